@@ -318,7 +318,7 @@ void ask_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraw
         if (x.child < 0 || std::min(all.a, all.b) < least_count) continue;
         const NodeCounts& half = counts[static_cast<std::size_t>(x.child)];
         const TwoShares s(half.a, all.a, half.b, all.b);
-        const double floor = floor_of_cut(x, s.share, g.step);
+        const double floor = floor_of_cut(x, s.share);
         visit(answer_of(AgainstAnswer::nodes, static_cast<int>(i), s, floor));
         const auto in_each = [&](const AgainstDraws& d, double n) {
             return std::min(s.share, 1 - s.share) * n * d.scrambled / d.independent / replicate_sets;
@@ -367,8 +367,7 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
         if (std::min(all.a, all.b) < least_count) continue;
         const TwoShares s(counts[first].a, all.a, counts[first].b, all.b);
         const double needed =
-            needed_by_bennett(floor_of_cut(x, s.share, g.step) / s.per_share, s.variance, 1, 1e12, level / tests) *
-            s.per_share;
+            needed_by_bennett(floor_of_cut(x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) * s.per_share;
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;
             // Of the node's draws; it lies across cells, half of it in one.

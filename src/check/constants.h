@@ -87,7 +87,7 @@ inline constexpr double negative_weight = 1e-6;
 inline constexpr double repeats_factor = 4, repeats_floor = 8;
 /// Solid angle that single precision may make one direction. Derived: a cosine computed with an error of 4 ulp rounds
 /// to 1 up to an angle of sqrt(8 ulp) from the axis, and about a half vector the direction turns by twice that; the
-/// disk has pi (2 sqrt(8 ulp))^2.
+/// disk has pi (2 sqrt(8 ulp))^2. A ring of one cosine has as much: 2 pi times a step of 16 ulp.
 inline constexpr double one_direction = 3.14159265358979 * 32 * ulp;
 
 /// Directions of a delta part and probabilities that are stated with it, at most this many of each: chosen; a boundary

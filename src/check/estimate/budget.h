@@ -65,6 +65,8 @@ struct CheckBudget {
     Look look(int i) const { return look_of(0.6 * evaluations).divided_by(1u << 3 * (looks - 1 - i)); }
     /// Pilot draws shape the tree alone.
     std::uint32_t pilot() const { return part(92); }
+    /// Of them, those at which the steps of the arithmetic are measured, by 1 to 18 draws for each number.
+    std::uint32_t of_steps() const { return part(1465); }
     /// At least so many; more until the integrals are known to a quarter of the detection floor. A leaf costs 8.
     int leaves() const { return static_cast<int>(part(366)); }
     int most_leaves() const { return static_cast<int>(part(90)); }

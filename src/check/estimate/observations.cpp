@@ -8,6 +8,7 @@
 
 #include "check/constants.h"
 #include "check/estimate/weights.h"
+#include "simd/frame.h"
 
 namespace crescent::check {
 
@@ -85,7 +86,7 @@ private:
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set);
+            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set, u[at_[k]]);
             else if (set < 0) ++to_.checks.nothing;
     }
 
@@ -140,7 +141,7 @@ private:
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
                     same_number * p_[k] + 2 * source_.subject.tabulation_error(w_[k])))
                 odd.push_back(k);
-        to_.checks.odd += odd.size();
+        to_.checks.followed += w_.size(), to_.checks.odd += odd.size();
         if (to_.checks.odd_compared >= most_compared) return;
         odd.resize(std::min<std::size_t>(odd.size(), most_compared - to_.checks.odd_compared));
         if (odd.empty()) return;
@@ -216,8 +217,20 @@ private:
         if (untrue && !source_.f_estimates) to_.checks.true_f.add({u, d, f.x, due.x});
     }
 
-    void take(Vec3d w, double p, int set) {
+    /// Where rounding leaves few directions, one of them may lie on a cut: draws are spread over half a step about it.
+    std::size_t leaf_of(Vec3d w, const Numbers& u) const {
         const std::size_t l = plan_.tree.find(to_chart(w));
+        const double step = plan_.tree.nodes()[static_cast<std::size_t>(plan_.tree.leaves()[l].node)].step;
+        if (step <= plan_.step) return l;
+        const auto bits = [](double x) { return static_cast<std::uint32_t>(x * 0x1p31); };
+        const Vec4u<std::uint32_t> hash = pcg4d(Vec4u<std::uint32_t>{bits(u[0]), bits(u[1]), bits(u[2]), bits(u[3])});
+        const double r = step / 2 * std::sqrt(unit_number(hash.x)), angle = two_pi * unit_number(hash.y);
+        const Frame<double> frame = frame_about(w);
+        return plan_.tree.find(to_chart(w + frame.t * (r * math::cos(angle)) + frame.b * (r * math::sin(angle))));
+    }
+
+    void take(Vec3d w, double p, int set, const Numbers& u) {
+        const std::size_t l = leaf_of(w, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
         const Values v = plan_.values(leaf, w, p);
         if (set >= 0) {

@@ -37,8 +37,8 @@ struct DrawChecks {
     Count weight;     // weight against f cos / pdf
     Count true_f;     // f against what it ought to be
     std::uint64_t weights = 0;
-    // Draws whose pdf is not pdf(w), and how many of them were compared with the neighbours of w.
-    std::uint64_t odd = 0, odd_compared = 0;
+    // Draws that pdf(w) followed; those whose pdf is another; how many of these were compared with the neighbours of w.
+    std::uint64_t followed = 0, odd = 0, odd_compared = 0;
     std::uint64_t null_below = 0;  // draws below the surface at which p is 0: what the estimator takes for nothing
 };
 

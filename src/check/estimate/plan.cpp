@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/estimate/local_steps.h"
 
 namespace crescent::check {
 
@@ -33,6 +34,7 @@ namespace {
 struct Pilot {
     std::vector<DensityPoint> points;
     std::vector<Vec3d> directions;
+    std::vector<Numbers> u;  // of the first of them
     std::array<double, 3> weight{};
     std::uint32_t of = 0;
 };
@@ -62,6 +64,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
             if (!is_direction(*of[i], p[i])) continue;
             out.points.push_back({to_chart(w[i]), p[i]});
             out.directions.push_back(w[i]);
+            if (out.u.size() < budget.of_steps()) out.u.push_back(u[static_cast<std::size_t>(of[i] - draws.data())]);
             if (!of[i]->weight) continue;
             const Vec3d x =
                 source.channels() == 3 ? of[i]->weights : Vec3d{*of[i]->weight, *of[i]->weight, *of[i]->weight};
@@ -69,6 +72,27 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
                 if (std::isfinite(channel_of(x, c)))
                     out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.of;
         }
+    }
+    return out;
+}
+
+Values change_per_step(Source& source, const Plan& plan, const Pilot& pilot, const std::vector<LocalStep>& steps) {
+    std::vector<std::size_t> which;
+    std::vector<Vec3d> next;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (steps[i].jump > 0) which.push_back(i), next.push_back(steps[i].next);
+    std::vector<double> p(next.size());
+    source.density(next, p);
+    Values out{};
+    for (std::size_t k = 0; k < which.size(); ++k) {
+        if (!(p[k] > 0)) continue;
+        const auto at = [&](Vec3d w, double density) {
+            return plan.values(plan.tree.leaves()[plan.tree.find(to_chart(w))], w, density);
+        };
+        const std::size_t i = which[k];
+        const Values here = at(pilot.directions[i], pilot.points[i].p), there = at(next[k], p[k]);
+        for (std::size_t q = 0; q < integrands; ++q)
+            out[q] += std::fabs(there[q] - here[q]) / static_cast<double>(steps.size());
     }
     return out;
 }
@@ -85,6 +109,9 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
     Vec3d middle{};
     for (Vec3d w : pilot.directions) middle = middle + w * (1.0 / drawn);
     const double step = step_of_directions(pilot.directions);
+    const std::vector<LocalStep> steps =
+        local_steps(source, pilot.u, {pilot.directions.begin(), pilot.directions.begin() + std::ssize(pilot.u)});
+    for (std::size_t i = 0; i < steps.size(); ++i) pilot.points[i].step = steps[i].jump;
     double median = 0;
     if (!log_p.empty()) {
         const auto at = log_p.begin() + static_cast<std::ptrdiff_t>(log_p.size() / 2);
@@ -92,8 +119,10 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
         median = math::log(*at);
     }
     key.purpose = Purpose::tree;
-    return {Tree(source, std::move(pilot.points), pilot.of, std::move(hints), step, budget, key), step, median, middle,
-        pilot.weight, source.estimates || !source.has_density(), drawn, pilot.of};
+    Plan plan{Tree(source, pilot.points, pilot.of, std::move(hints), step, budget, key), step, median, middle,
+        pilot.weight, {}, source.estimates || !source.has_density(), drawn, pilot.of};
+    if (!plan.estimates) plan.per_step = change_per_step(source, plan, pilot, steps);
+    return plan;
 }
 
 }  // namespace crescent::check

@@ -22,6 +22,7 @@ struct Plan {
     double median_log_p = 0;          // over the pilot draws
     Vec3d middle{};                   // their mean direction
     std::array<double, 3> usual{};    // their mean weight by channel
+    Values per_step{};                // how much h changes in a local step of the arithmetic, mean over pilot draws
     bool estimates = false;           // p is a random estimate, and h does not depend on it
     std::uint32_t drawn = 0, of = 0;  // pilot draws that are directions; in all
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t round_share = 8;  // a round cuts one leaf in eight
 constexpr double worthless = 1e-7;      // a score that no cut can use: 1/2000 of the detection floor
+constexpr int fewest_steps = 4;         // measured in a leaf of a mean of its own
 constexpr double fewest_pilots = 8;     // draws of a leaf that is cut by them alone: its halves then have some
 
 }  // namespace
@@ -33,12 +34,13 @@ public:
           source_(source),
           pilots_(std::move(pilots)),
           of_(of),
-          least_(std::max(least_width, 4 * step)),
+          step_(step),
           budget_(budget),
           stream_(key) {}
 
     void grow(std::vector<DensityPoint> hints) {
         tree_.nodes_.push_back({});
+        tree_.nodes_[0].step = step_;
         growing_.push_back({});
         growing_[0].points = std::move(hints);
         for (DensityPoint& e : growing_[0].points) e.hint = true;
@@ -62,7 +64,7 @@ private:
     Source& source_;
     std::vector<DensityPoint> pilots_;
     std::uint32_t of_;
-    double least_;
+    double step_;
     const CheckBudget& budget_;
     Stream stream_;
     std::vector<Growing> growing_;  // by node
@@ -93,7 +95,9 @@ private:
     Growing& at(int node) { return growing_[static_cast<std::size_t>(node)]; }
 
     /// Which side to cut, by what the halves differ in; none where both are too narrow.
-    std::optional<bool> side_to_cut(const ChartRect& rect, const Growing& g) const {
+    std::optional<bool> side_to_cut(const TreeNode& node, const Growing& g) const {
+        const ChartRect& rect = node.rect;
+        const double least = std::max(least_width, 4 * node.step);
         double gain[2];
         for (bool along_phi : {false, true}) {
             const double middle = rect.middle(along_phi);
@@ -105,7 +109,7 @@ private:
             to = std::fabs(2 * drawn - static_cast<double>(g.last - g.first)) / of_ + 1e-12;
             if (count[0] > 0 && count[1] > 0) to += rect.area() * std::fabs(sum[0] / count[0] - sum[1] / count[1]) / 2;
             if (rect.width(along_phi) > rect.width(!along_phi)) to *= wider_side;
-            if (rect.width(along_phi) < least_) to = 0;
+            if (rect.width(along_phi) < least) to = 0;
         }
         if (gain[0] == 0 && gain[1] == 0) return {};
         return gain[1] > gain[0];
@@ -115,14 +119,13 @@ private:
     std::vector<int> cut(const std::vector<int>& which) {
         std::vector<int> fresh;
         for (int i : which) {
-            const std::optional<bool> side = side_to_cut(tree_.nodes_[static_cast<std::size_t>(i)].rect, at(i));
+            const std::optional<bool> side = side_to_cut(tree_.nodes_[static_cast<std::size_t>(i)], at(i));
             if (!side) continue;
             TreeNode& parent = tree_.nodes_[static_cast<std::size_t>(i)];
-            const double middle = parent.rect.middle(*side);
+            const double middle = parent.rect.middle(*side), step = parent.step;
             parent.along_phi = *side;
             parent.child = static_cast<int>(tree_.nodes_.size());
-            TreeNode halves[2] = {
-                {parent.rect, -1, parent.depth + 1, -1, false}, {parent.rect, -1, parent.depth + 1, -1, false}};
+            TreeNode halves[2] = {{parent.rect, -1, parent.depth + 1}, {parent.rect, -1, parent.depth + 1}};
             (*side ? halves[0].rect.phi1 : halves[0].rect.t1) = middle;
             (*side ? halves[1].rect.phi0 : halves[1].rect.t0) = middle;
             const auto left = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
@@ -135,6 +138,7 @@ private:
             parts[0].first = whole.first, parts[0].last = parts[1].first = split, parts[1].last = whole.last;
             for (int k : {0, 1}) {
                 fresh.push_back(static_cast<int>(tree_.nodes_.size()));
+                halves[k].step = step_in(parts[k], step);
                 tree_.nodes_.push_back(halves[k]);
                 growing_.push_back(std::move(parts[k]));
             }
@@ -142,6 +146,15 @@ private:
         }
         rate(fresh);
         return fresh;
+    }
+
+    /// The mean over the draws where it was measured; that of the whole where they are too few.
+    double step_in(const Growing& g, double of_whole) const {
+        double sum = 0;
+        int count = 0;
+        for (std::size_t k = g.first; k < g.last; ++k)
+            if (pilots_[k].step >= 0) sum += pilots_[k].step, ++count;
+        return count < fewest_steps ? of_whole : std::max(step_, sum / count);
     }
 
     static int sampled(const Growing& g) {

@@ -20,6 +20,7 @@ struct DensityPoint {
     ChartPoint at;
     double p = 0;
     bool hint = false;  // met earlier, where p was high: it has no part in averages
+    double step = -1;   // of a draw: what its direction jumps by there; below 0 if that was not measured
 };
 
 struct TreeNode {
@@ -28,6 +29,7 @@ struct TreeNode {
     int depth = 0, leaf = -1;
     int row = -1;            // its number among nodes down to `replicated_depth`
     bool along_phi = false;  // of its cut
+    double step = 0;         // of the sampler's arithmetic here, as an angle
 };
 
 struct Leaf {

@@ -33,8 +33,8 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
     return out;
 }
 
-double floor_of_cut(const TreeNode& x, double share, double step) {
-    const double less = std::min(share, 1 - share);
+double floor_of_cut(const TreeNode& x, double share) {
+    const double less = std::min(share, 1 - share), step = x.step;
     const double moved = step / x.rect.width(x.along_phi) + less * step / (x.rect.width(!x.along_phi) + 1e-300);
     return detection_floor * less + moved;
 }
@@ -46,7 +46,7 @@ NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::si
     NodeSplit out;
     const double r = out.share = a.claimed / all.claimed, less = std::min(r, 1 - r), n = e.observations.independent;
     out.difference = a.drawn - r * all.drawn;
-    out.floor = all.drawn * (floor_of_cut(x, r, e.plan.step) + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
+    out.floor = all.drawn * (floor_of_cut(x, r) + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
     const double c2 = all.claimed * all.claimed, to_variance = all.drawn * all.drawn / (c2 * c2);
     out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };

@@ -113,8 +113,8 @@ struct NodeSplit {
     double one_draw = 0;      // what one counts for: E[h^2] / E[h]
 };
 /// What a cut's difference must exceed, in shares of the node's draws: the detection floor of its smaller half, and
-/// what rounding by `step` moves over the cut and over the node's other edges.
-double floor_of_cut(const TreeNode& node, double share, double step);
+/// what rounding by the node's step moves over the cut and over the node's other edges.
+double floor_of_cut(const TreeNode& node, double share);
 /// Sums over replicates below each node down to the replicated depth, from those of its lowest rows.
 std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicates> lowest);
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node);
