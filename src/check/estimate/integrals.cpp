@@ -55,16 +55,20 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs a leaf
     const double rest = std::max(points / 2.0 - least * static_cast<double>(leaves.size()), 0.0);
     std::vector<Grid> out(leaves.size());
+    double due = 0;  // what is left of parts of a pair
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const ChartRect& rect = plan.tree.rect(leaves[l]);
         const double share =
             even_points / static_cast<double>(leaves.size()) + (1 - even_points) * worth(leaves[l]) / sum;
-        const int pairs = least + static_cast<int>(rest * share);
+        due += rest * share;
+        const int pairs = least + static_cast<int>(due);
+        due -= static_cast<int>(due);
         Grid& g = out[l];
         g.leaf = static_cast<std::uint32_t>(l);
         const double square = std::sqrt(pairs * rect.theta_width() / (rect.phi_width() + 1e-300));
         g.rows = static_cast<int>(std::clamp(square + 0.5, 1.0, static_cast<double>(pairs)));
         g.columns = std::max(1, pairs / g.rows);
+        g.rows = pairs / g.columns;
         g.per_point = rect.area() / (2.0 * g.cells());
     }
     return out;
