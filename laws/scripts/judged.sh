@@ -82,6 +82,10 @@ expect 0 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table ta
 expect 1 "$CRESCENT" check --quiet --samples wrong.csv --wo 0,0,1 --pdf-table table.csv
 expect 0 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv --against cosine --expect same
 expect 1 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv --against uniform --expect same
+awk -F, -v OFS=, 'NR == 17 { $6 = -$6 } { print }' right.csv >negative.csv
+expect 1 "$CRESCENT" check --samples negative.csv --wo 0,0,1 --pdf-table table.csv
+grep -q "pdf is negative: 1 of 40000 rows, first at negative.csv:17: u = " printed ||
+    die "a bad draw is not named by its line: $(cat printed)"
 sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
 expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
 grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"

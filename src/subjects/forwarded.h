@@ -29,9 +29,7 @@ public:
     bool has_true_f() const override { return inner_->has_true_f(); }
     void true_f(std::span<const Pair> at, std::span<double> out) const override { inner_->true_f(at, out); }
     bool has_drawn_f() const override { return inner_->has_drawn_f(); }
-    std::vector<TabulationError> tabulation_errors() const override { return inner_->tabulation_errors(); }
     double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
-    std::string place(int round, std::size_t draw) const override { return inner_->place(round, draw); }
     bool draws_at_will() const override { return inner_->draws_at_will(); }
     Spending spending() const override { return inner_->spending(); }
     void make_way(std::size_t steps) const override { inner_->make_way(steps); }

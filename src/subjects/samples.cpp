@@ -203,27 +203,7 @@ double SampleFile::tabulation_error(Vec3d w) const {
             {bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
 }
 
-/// In pieces that are small beside any bin.
-std::vector<TabulationError> SampleFile::tabulation_errors() const {
-    std::vector<TabulationError> out;
-    if (cells_) return out;
-    const std::size_t rows = 1 + 192 / rows_.size(), columns = 1 + 64 / columns_.size();
-    for (std::size_t i = 0; i < rows_.size() * rows; ++i)
-        for (std::size_t j = 0; j < columns_.size() * columns; ++j) {
-            const std::size_t r = i / rows, c = j / columns;
-            const double dz = (row_edges_[r + 1] - row_edges_[r]) / static_cast<double>(rows),
-                         dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
-            const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)),
-                         phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
-            const Vec3d w = math::spherical(z, phi);
-            const double mass = tabulation_error(w) * dz * dphi;
-            if (mass > 0) out.push_back({w, mass});
-        }
-    return out;
-}
-
-std::string SampleFile::place(int round, std::size_t draw) const {
-    const std::size_t row = 2 * draw + static_cast<std::size_t>(round);  // every other row is judged first
+std::string SampleFile::place(std::size_t row) const {
     return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
 }
 

@@ -22,9 +22,8 @@ public:
     std::string name() const override { return name_; }
     bool has_drawn_f() const override { return has_drawn_f_; }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override;
-    std::vector<TabulationError> tabulation_errors() const override;
     double tabulation_error(Vec3d w) const override;
-    std::string place(int round, std::size_t draw) const override;
+    std::string place(std::size_t row) const override;
 
 private:
     struct GridCell {  // between rows i and i + 1, columns j and j + 1

@@ -68,12 +68,6 @@ struct Draw {
 /// The probability of a delta part that says it was chosen with 0; valid tells of it.
 inline constexpr double delta_never_chosen = -std::numeric_limits<double>::infinity();
 
-/// How much of p's mass about a direction is not known, where p was tabulated.
-struct TabulationError {
-    Vec3d at;
-    double mass;
-};
-
 /// wo and wi of one question.
 struct Pair {
     Vec3d wo, wi;
@@ -117,11 +111,8 @@ public:
     virtual void true_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
     /// f is known at the draws, though not elsewhere: their weights can be looked at, but compared with no integral.
     virtual bool has_drawn_f() const { return has_f(); }
-    /// A tabulated p is known to this much, over the sphere and at one direction, 1/sr.
-    virtual std::vector<TabulationError> tabulation_errors() const { return {}; }
+    /// A tabulated p is known to this much there, 1/sr.
     virtual double tabulation_error(Vec3d /*w*/) const { return 0; }
-    /// Where a recorded draw stands, "samples.csv:17"; "" where it was asked for.
-    virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.
     virtual bool draws_at_will() const { return true; }
     /// What was asked of a sampler from outside so far; of a program, how long that took.

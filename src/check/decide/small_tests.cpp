@@ -66,6 +66,20 @@ bool same_draw(const Draw& a, const Draw& b, bool random = false) {
 
 }  // namespace
 
+std::optional<SmallFault> rows_of_file(const Source& source) {
+    const RecordedSubject* file = source.recorded();
+    if (!file) return {};
+    SmallFault out{Family::values, 0, static_cast<double>(file->rows())};
+    for (std::size_t i = 0; i < file->rows(); ++i) {
+        const Draw& d = file->row(i);
+        std::optional<const char*> fault = fault_of(d);
+        if (!fault && d.f && !(std::isfinite(*d.f) && *d.f >= 0)) fault = "f is not a number >= 0";
+        if (fault && out.times++ == 0)
+            out.first = {file->row_numbers(i), d, 0, 0}, out.what = *fault, out.place = file->place(i);
+    }
+    return out.times > 0 ? std::optional(out) : std::nullopt;
+}
+
 std::optional<SmallFault> corners_of_u(Source& source) {
     if (!source.subject.draws_at_will()) return {};
     const std::vector<Numbers> u = corner_numbers(source.traits.numbers);
@@ -216,6 +230,7 @@ std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
     const auto add = [&](std::optional<SmallFault> fault) {
         if (fault) out.push_back(*fault);
     };
+    add(rows_of_file(source));
     add(corners_of_u(source));
     key.purpose = Purpose::corners;
     add(same_u_again(source, key));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "check/verdicts/questions.h"
@@ -20,8 +21,11 @@ struct SmallFault {
     Example first{};
     const char* what = "";
     std::optional<Vec3d> wo{};  // of the first, where it is none of the call's
+    std::string place{};        // of the first in a file
 };
 
+/// Every row of a file of draws, whichever question it serves.
+std::optional<SmallFault> rows_of_file(const Source& source);
 /// u at 0, next to 0, at quarters and next to 1, in every two numbers and in every corner: samplers divide by 0 there.
 std::optional<SmallFault> corners_of_u(Source& source);
 /// The same u in another order, in other batches and alone.

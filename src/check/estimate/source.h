@@ -28,6 +28,8 @@ public:
     /// No index is stated, and none scales f across the surface (both_ways.h).
     bool unscaled = false;
 
+    /// The file that the draws are read from, if they are.
+    const RecordedSubject* recorded() const { return recorded_; }
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
     bool has_density() const { return traits.has_pdf && !by_draws; }

@@ -169,6 +169,7 @@ std::string sentence_of(const SmallFault& f, int numbers) {
     if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
     else if (f.family == Family::mis) out += fmt::format(", by up to {:.3g}", std::fabs(f.size));
     const std::string where = first_at(f.first, numbers);
+    if (!f.place.empty()) return fmt::format("{} rows, first at {}: {}.", out, f.place, where.substr(9));
     return out + ", " + (f.wo ? fmt::format("first at w_o = {}, {}", direction_text(*f.wo), where.substr(9)) : where) +
         ".";
 }

@@ -40,12 +40,14 @@ void ask_repeats(const Evidence& e, const Visit& visit) {
 
 void ask_counts(const Evidence& e, const Visit& visit) {
     const DrawChecks& c = e.observations.checks;
-    const double draws = static_cast<double>(c.looked_at);
-    const double invalid = static_cast<double>(c.invalid.times + e.source.invalid());
+    const double followed = static_cast<double>(c.followed);
+    // All rows of a file were looked at before.
+    const std::uint64_t of_draws = e.source.recorded() ? 0 : c.invalid.times;
+    const double invalid = static_cast<double>(of_draws + e.source.invalid());
     visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
     const double per = static_cast<double>(c.odd) / static_cast<double>(std::max<std::uint64_t>(c.odd_compared, 1));
-    ask_share(Family::pointwise, c.pointwise, draws, tolerated_share, visit, std::max(per, 1.0));
-    ask_share(Family::zero, c.zero, draws, tolerated_zeros, visit, std::max(per, 1.0));
+    ask_share(Family::pointwise, c.pointwise, followed, tolerated_share, visit, std::max(per, 1.0));
+    ask_share(Family::zero, c.zero, followed, tolerated_zeros, visit, std::max(per, 1.0));
     ask_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
     ask_share(Family::true_f, c.true_f, static_cast<double>(c.weights), tolerated_share, visit);
     if (!e.source.traits.delta) ask_repeats(e, visit);
