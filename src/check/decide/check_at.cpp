@@ -129,7 +129,10 @@ private:
             if (least.p() < level_of(look)) suspects.push_back(least);
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
-        return budget_.stop_when_conclusive && worst_ratio(sizes(e, level_of(look))) <= out_.most_ratio();
+        if (!budget_.stop_when_conclusive && look < budget_.looks - 1) return false;
+        out_.sizes = sizes(e, level_of(look));
+        out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
+        return budget_.stop_when_conclusive && !out_.inconclusive;
     }
 
     /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is
@@ -216,10 +219,7 @@ private:
             out_.answers.push_back(least.answer);
             out_.answers.back().p = least.p();
         }
-        if (!out_.wrong()) {
-            out_.sizes = sizes(e, level_of(budget_.looks - 1));
-            out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
-        }
+        if (out_.wrong()) out_.sizes = {}, out_.inconclusive = false;
         out_.integrals = std::move(first_.integrals);
         out_.observations = std::move(first_.observations);
     }

@@ -3,7 +3,9 @@
 // sqrt(stated_power) is stated.
 #include "check/decide/sizes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "check/constants.h"
 #include "check/verdicts/statistics.h"
@@ -269,30 +271,39 @@ public:
                     noncentrality(degrees[d], passing.level_again) * passing.first.independent / std::max(again, 1.0));
         for (const Leaf& leaf : e.plan.tree.leaves()) {
             const NodeSums& s = sums[static_cast<std::size_t>(leaf.node)];
-            if (s.claimed > 0)
-                leaves_.push_back({from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)), leaf.node, s.claimed,
-                    s.claimed * s.claimed / std::max(s.second, 1e-300)});
+            if (!(s.claimed > 0)) continue;
+            leaves_.push_back({leaf.node, s.claimed, s.claimed * s.claimed / std::max(s.second, 1e-300)});
+            const Vec3d middle = from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5));
+            x_.push_back(middle.x), y_.push_back(middle.y), z_.push_back(middle.z);
         }
+        cosine_.resize(leaves_.size());
     }
-    double mass_about(Vec3d centre) {
-        std::vector<std::pair<double, std::size_t>> near;
-        near.reserve(leaves_.size());
-        for (std::size_t l = 0; l < leaves_.size(); ++l) near.push_back({dot(centre, leaves_[l].middle), l});
-        std::make_heap(near.begin(), near.end());
+    /// p: the density there, by which the first ring about it is about as wide as a cap that is found.
+    double mass_about(Vec3d centre, double p) {
+        constexpr double first = 2e-3;
+        for (std::size_t l = 0; l < leaves_.size(); ++l)
+            cosine_[l] = centre.x * x_[l] + centre.y * y_[l] + centre.z * z_[l];
+        std::vector<std::pair<double, std::size_t>> ring;
         std::vector<int> touched;
-        double mass = 0;
+        double mass = 0, inner = 2, wide = first / (two_pi * std::max(p, 1e-3));
         bool found = false;
-        while (!near.empty() && !found) {
-            std::pop_heap(near.begin(), near.end());
-            const Piece& leaf = leaves_[near.back().second];
-            near.pop_back();
-            mass += leaf.mass;
-            for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
-                const auto i = static_cast<std::size_t>(at);
-                const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
-                gone_[i] += leaf.claimed, touched.push_back(at);
-                found = found || shows(i, before);
+        for (; !found && inner > -1; wide *= 4) {
+            const double outer = 1 - wide;
+            ring.clear();
+            for (std::size_t l = 0; l < leaves_.size(); ++l)
+                if (cosine_[l] < inner && cosine_[l] >= outer) ring.push_back({cosine_[l], l});
+            std::sort(ring.begin(), ring.end(), std::greater<>());
+            for (std::size_t k = 0; k < ring.size() && !found; ++k) {
+                const Piece& leaf = leaves_[ring[k].second];
+                mass += leaf.mass;
+                for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
+                    const auto i = static_cast<std::size_t>(at);
+                    const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
+                    gone_[i] += leaf.claimed, touched.push_back(at);
+                    found = found || shows(i, before);
+                }
             }
+            inner = outer;
         }
         for (int i : touched) gone_[static_cast<std::size_t>(i)] = 0;
         std::ranges::fill(shift_, 0);
@@ -301,7 +312,6 @@ public:
 
 private:
     struct Piece {
-        Vec3d middle;
         int node;
         double claimed, mass;
     };
@@ -312,6 +322,7 @@ private:
     std::vector<double> variance_;             // by node, of those that a depth counts
     std::vector<double> shift_, least_shift_;  // by depth: of chi^2, and the least that is found
     std::vector<Piece> leaves_;
+    std::vector<double> x_, y_, z_, cosine_;  // of their middles; of those to a centre
 
     double difference(std::size_t i) const {
         const int child = e_.plan.tree.nodes()[i].child;
@@ -339,10 +350,23 @@ std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sum
     if (sample.w.empty()) return {};
     Caps caps(e, sums, nodes, passing);
     std::vector<double> sizes;
-    for (std::size_t i = 0; i < std::min(centres, sample.w.size()); ++i) sizes.push_back(caps.mass_about(sample.w[i]));
+    for (std::size_t i = 0; i < std::min(centres, sample.w.size()); ++i)
+        sizes.push_back(caps.mass_about(sample.w[i], sample.p[i]));
     const auto at = static_cast<std::ptrdiff_t>(stated_power * static_cast<double>(sizes.size()));
     std::nth_element(sizes.begin(), sizes.begin() + at, sizes.end());
     return sizes[static_cast<std::size_t>(at)];
+}
+
+/// A direction on the chart, with h there.
+struct Place {
+    ChartPoint at;
+    Values values{};
+};
+Place place_of(const Evidence& e, Vec3d w, double p) {
+    Place out{to_chart(w)};
+    // Where p is 0 the estimator takes it for nothing.
+    if (p > 0) out.values = e.plan.values(e.plan.tree.leaves()[e.plan.tree.find(out.at)], w, p);
+    return out;
 }
 
 /// What a rotation of the draws by `angle` about one axis changes, by question: as draws that are moved, and as p there
@@ -350,7 +374,8 @@ std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sum
 /// noise where p is smooth; of each effect the larger of the low ends of both counts.
 class Turned {
 public:
-    Turned(Source& source, const Evidence& e, const Sample& sample, Vec3d axis, double angle)
+    Turned(Source& source, const Evidence& e, const Sample& sample, const std::vector<Place>& places, Vec3d axis,
+        double angle)
         : e_(e), of_(sample.of), moved_(e.plan.tree.nodes().size()), weighted_(moved_) {
         std::vector<Vec3d> turned;
         const double c = math::cos(angle), s = math::sin(angle);
@@ -360,13 +385,13 @@ public:
         source.density(turned, p);
         const double n = static_cast<double>(sample.w.size());
         for (std::size_t i = 0; i < turned.size(); ++i) {
-            const Values here = values(sample.w[i], sample.p[i]), there = values(turned[i], p[i]);
-            add(moved_, turned[i], there, sample.w[i], here);
+            const Place here = places[i], there = place_of(e, turned[i], p[i]);
+            add(moved_, there, here);
             if (!(sample.p[i] > 0)) continue;
             const double change = p[i] / sample.p[i] - 1;
-            Values times = here;
-            for (double& v : times) v *= change;
-            add(weighted_, sample.w[i], times, sample.w[i], {});
+            Place times = here;
+            for (double& v : times.values) v *= change;
+            add(weighted_, times, {here.at, {}});
             distance += std::min(1.0, std::fabs(change)) / n / 2;
         }
     }
@@ -407,23 +432,18 @@ private:
     double of_;
     Change moved_, weighted_;
 
-    Values values(Vec3d w, double p) const {
-        if (!(p > 0)) return {};  // the estimator takes it for nothing
-        return e_.plan.values(e_.plan.tree.leaves()[e_.plan.tree.find(to_chart(w))], w, p);
-    }
     /// What is gained at one place and lost at another, as one difference in each node that both are in.
-    void add(Change& to, Vec3d gain_at, const Values& gain, Vec3d loss_at, const Values& loss) const {
-        for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(gain[q] - loss[q]);
-        const ChartPoint a = to_chart(gain_at), b = to_chart(loss_at);
+    void add(Change& to, const Place& gain, const Place& loss) const {
+        for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(gain.values[q] - loss.values[q]);
         std::size_t i = 0, j = 0;
         for (bool in_a = true, in_b = true; in_a || in_b;) {
             if (i == j) {
-                to.nodes[i].add(gain[bridge] - loss[bridge]);
+                to.nodes[i].add(gain.values[bridge] - loss.values[bridge]);
             } else {
-                if (in_a) to.nodes[i].add(gain[bridge]);
-                if (in_b) to.nodes[j].add(-loss[bridge]);
+                if (in_a) to.nodes[i].add(gain.values[bridge]);
+                if (in_b) to.nodes[j].add(-loss.values[bridge]);
             }
-            in_a = in_a && step(i, a), in_b = in_b && step(j, b);
+            in_a = in_a && step(i, gain.at), in_b = in_b && step(j, loss.at);
         }
     }
     /// To the half that a place is in; false at the end.
@@ -466,11 +486,16 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     if (sample.w.size() < 64) return;
     const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
     const Frame<double> frame = frame_about(axis_of_lobe);
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < sample.w.size(); ++i) places.push_back(place_of(e, sample.w[i], sample.p[i]));
     for (Vec3d axis : {frame.t, frame.b, normalize(frame.t + frame.b), normalize(frame.t - frame.b)}) {
         std::vector<std::vector<double>> ratios;
         double changed = 0;
         for (double by : {1.0, growth, growth * growth}) {
-            const Turned turned(source, e, sample, axis, by * target_rotation);
+            const bool shown = std::ranges::any_of(ratios,
+                [](const std::vector<double>& r) { return std::ranges::any_of(r, [](double x) { return x >= 1; }); });
+            if (by > growth && shown) break;
+            const Turned turned(source, e, sample, places, axis, by * target_rotation);
             if (by == 1) changed = turned.distance;
             ratios.push_back(turned.ratios(whole, nodes));
         }
