@@ -51,17 +51,6 @@ void expect(const Trial& trial, bool reaches_all, Verdict& v) {
     }
 }
 
-constexpr const char* more_time = "More time (--patience), or a program that answers faster.";
-
-/// What is said where the time of a program did not suffice.
-std::string too_slow(const Trial& trial, const TestSettings& settings) {
-    return fmt::format(
-        "Not examined: {:g} s are too short for this program to be examined at every w_o. {} --accept-few judges by "
-        "the w_o that were examined.",
-        trial.subject->spending().allowed,
-        settings.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you set;");
-}
-
 /// What the verdicts of a trial that ended early say: the first of them, and the others.
 struct Said {
     State state = State::error;
@@ -75,7 +64,9 @@ Said said_of(const Cut& cut, const Trial& trial, const TestSettings& settings) {
         case Cut::Why::gone: return {State::error, rest, rest};
         case Cut::Why::too_slow: break;
     }
-    const std::string say = too_slow(trial, settings);
+    const std::string say =
+        fmt::format("Not examined: {:g} s are too short for this program to be examined at every w_o.",
+            trial.subject->spending().allowed);
     return {settings.accept_few ? State::skipped : State::inconclusive, say, say};
 }
 
@@ -92,7 +83,7 @@ void cut_short(
         v.say = first ? said.first : said.rest;
         v.evidence = nlohmann::ordered_json::object();
         if (first && cut.why == Cut::Why::fault) v.evidence["first_fault"] = cut.what;
-        if (v.state == State::inconclusive) v.settle = more_time;
+        if (v.state == State::inconclusive) v.next.kind = NextStep::Kind::more_time;
         left.verdicts.push_back(v.name);
     }
     if (said.state != State::error) j.left_out.push_back(std::move(left));
@@ -156,7 +147,7 @@ void refuse_none(std::span<const CheckOutcome> outcomes, Judgement& j) {
     for (const LeftOut& left : j.left_out)
         for (Verdict& v : j.verdicts)
             if (v.trial == left.trial && v.arm == left.arm && v.state == State::skipped)
-                v.state = State::inconclusive, v.settle = more_time;
+                v.state = State::inconclusive, v.next.kind = NextStep::Kind::more_time;
 }
 
 void count(const CheckOutcome& outcome, Judgement& j) {

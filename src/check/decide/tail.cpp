@@ -100,7 +100,7 @@ void tell_unseen(const WeightTail& t, Verdict& v) {
         "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
         "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
         100 * share, 196 * t.unseen_error / t.due, t.spread.n, t.spread.largest, t.half_chance);
-    constexpr double within_reach = 64;  // times as many draws; --full makes twelve times as many
+    constexpr double within_reach = 64;  // times as many draws; a thorough check makes twelve times as many
     const double times = t.half_chance > 0 ? 1 / (t.half_chance * t.spread.n) : 1e300;
     if (times <= within_reach) v.next = {NextStep::Kind::more_draws, std::max(times, 2.0)};
     else v.next.kind = NextStep::Kind::heavier_pdf;

@@ -19,7 +19,8 @@ namespace {
 
 void add_sizes(const Sizes& s, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
-        if (!size) return;
+        constexpr double all = 0.99;  // of the draws or of p: no fault of this kind would be found
+        if (!size || *size > all) return;
         double& most = v.hidden[name];
         most = std::max(most, *size);
         v.evidence["would_have_found"][name] = most;
