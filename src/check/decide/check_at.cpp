@@ -113,7 +113,9 @@ private:
         const double all = left() - budget_.reserve() + first_.done.cost();
         const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
         Look last = look_of(all);
-        const double of_f = Stage::of_f(source_, last.divided_by(1u << 3 * (budget_.looks - 1)), budget_.of_f());
+        Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
+        begin.points = std::max(begin.points, 2 * static_cast<std::uint32_t>(out_.plan->tree.leaves().size()));
+        const double of_f = Stage::of_f(source_, begin, budget_.of_f());
         const double paid = first_.observations.weighed + first_.integrals.light.points;
         last = look_of(all - std::max(of_f - paid, 0.0));
         return last.divided_by(parts);
@@ -214,7 +216,6 @@ private:
 
     void finish() {
         look_at_deltas();
-        const Evidence e = first_.evidence(source_, *out_.plan);
         for (const auto& [family, least] : least_) {
             out_.answers.push_back(least.answer);
             out_.answers.back().p = least.p();
