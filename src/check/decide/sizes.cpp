@@ -44,10 +44,12 @@ struct Variances {
             by_sets ? ratio(first.scrambled, second.scrambled) : ratio(first.independent, second.independent);
         return drawn * draws * (by_sets ? draws : 1) + claimed * points * points;
     }
-    /// How much larger one term is there.
-    double largest_again(const Passing& passing) const {
-        const Look second = look_again(passing.again, claimed / (all() + 1e-300), Kinds::independent);
-        return passing.first.independent / std::max<double>(second.independent, 1);
+    /// How much larger one draw is there.
+    double draws_again(const Passing& passing, bool by_sets) const {
+        const Look second =
+            look_again(passing.again, claimed / (all() + 1e-300), by_sets ? Kinds::scrambled : Kinds::independent);
+        return by_sets ? passing.first.scrambled / std::max<double>(second.scrambled, 1)
+                       : passing.first.independent / std::max<double>(second.independent, 1);
     }
 };
 
@@ -60,7 +62,7 @@ public:
             const double z2 = -2 * math::log(level / 2) / freedom;
             return z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300;
         };
-        return {floor, v.all(), v.again(passing, false), largest, largest * v.largest_again(passing),
+        return {floor, v.all(), v.again(passing, false), v.draws_again(passing, false), largest,
             exponent(passing.level), exponent(2 * passing.level_again)};
     }
     /// For many tests of one number of degrees of freedom: the quantiles of Student's t.
@@ -69,20 +71,28 @@ public:
         return {stats::student_two_sided_quantile(nu, passing.level),
             stats::student_two_sided_quantile(nu, 2 * passing.level_again)};
     }
-    static Needed by_student(double floor, Variances v, std::pair<double, double> t, const Passing& passing) {
-        return {floor, v.all(), v.again(passing, true), 0, 0, t.first, t.second};
+    static Needed by_student(
+        double floor, Variances v, std::pair<double, double> t, double freedom, const Passing& passing) {
+        Needed out{floor, v.all(), v.again(passing, true), v.draws_again(passing, true), 0, t.first, t.second};
+        out.unknown_ = 1 / (2 * std::clamp(freedom, 1.0, 1e6));
+        return out;
     }
 
     /// `tested` is variance that the fault adds and the test takes from its draws; `beside` is not known to the test.
     double difference(double tested = 0, double beside = 0, double quantile_of_stage = stage_quantile) const {
-        const double ratio = second_ / std::max(first_, 1e-300);
-        const auto stage = [&](double quantile, double largest, double times) {
-            const double v = (first_ + tested) * times;
+        // What the fault adds is of independent draws, or has the variance of the others.
+        const double added_again = std::max(draws_again_, second_ / std::max(first_, 1e-300));
+        const auto stage = [&](double quantile, double largest, double before, double draws) {
+            const double v = before + tested * draws;
             const double critical = largest > 0 ? bennett_difference(quantile, v, largest) : quantile * std::sqrt(v);
-            return critical + quantile_of_stage * std::sqrt(v + beside * times);
+            // A standard deviation of nu degrees of freedom is known to 1 / sqrt(2 nu) of itself: the one that is
+            // tested against, t times, and the one by which the size is stated, t + the quantile times.
+            const double more = largest > 0 ? 0 : unknown_ * (sqr(quantile) + sqr(quantile + quantile_of_stage));
+            return critical + quantile_of_stage * std::sqrt(v * (1 + more) + beside * draws);
         };
         return floor_ +
-            std::max(stage(at_first_, largest_, 1), stage(at_second_, largest_again_, std::max(ratio, 0.25)));
+            std::max(stage(at_first_, largest_, first_, 1),
+                stage(at_second_, largest_ * draws_again_, std::max(second_, 0.25 * first_), added_again));
     }
     /// The size of a fault of this effect and these variances of a share 1.
     double size(double effect, double tested = 0, double beside = 0) const {
@@ -93,14 +103,15 @@ public:
     }
 
 private:
-    double floor_, first_, second_, largest_, largest_again_, at_first_, at_second_;
-    Needed(double floor, double first, double second, double largest, double largest_again, double at_first,
+    double floor_, first_, second_, draws_again_, largest_, at_first_, at_second_;
+    double unknown_ = 0;  // relative variance of the standard deviation
+    Needed(double floor, double first, double second, double draws_again, double largest, double at_first,
         double at_second)
         : floor_(floor),
           first_(first),
           second_(second),
+          draws_again_(draws_again),
           largest_(largest),
-          largest_again_(largest_again),
           at_first_(at_first),
           at_second_(at_second) {}
 };
@@ -125,14 +136,14 @@ std::vector<SumTest> whole_sums(const Evidence& e, const Passing& of_family) {
         const bool vary = draws_vary(e, static_cast<int>(q));
         out.push_back({q,
             vary ? Needed::by_bennett(floor, v, 1 / n, of_draws, passing)
-                 : Needed::by_student(floor, v, Needed::quantiles(of_draws, passing), passing),
+                 : Needed::by_student(floor, v, Needed::quantiles(of_draws, passing), of_draws, passing),
             n});
         if (e.observations.scrambled == 0 || !vary) continue;
         const ReplicateMean<Replicates> sets = replicate_mean(e, static_cast<int>(q));
         const Variances w{sets.variance, claimed.variance};
         const double nu = freedom(w.all(), claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1));
         out.push_back(
-            {q, Needed::by_student(floor, w, Needed::quantiles(nu, passing), passing), e.observations.scrambled});
+            {q, Needed::by_student(floor, w, Needed::quantiles(nu, passing), nu, passing), e.observations.scrambled});
     }
     return out;
 }
@@ -169,7 +180,8 @@ std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>&
                 0});
         else
             out.push_back({i, s.share, s.one_draw,
-                Needed::by_student(s.floor, {a.sd * a.sd * (1 - a.claimed), a.sd * a.sd * a.claimed}, t, of_sets),
+                Needed::by_student(
+                    s.floor, {a.sd * a.sd * (1 - a.claimed), a.sd * a.sd * a.claimed}, t, replicate_sets - 1, of_sets),
                 e.observations.scrambled});
     }
     return out;
