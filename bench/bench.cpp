@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "crescent.h"
+#include "crescent/crescent.h"
 #include "straightforward.h"
 
 namespace {

@@ -3,7 +3,7 @@
 // + - * / and sqrt count one each; comparisons, selections and integers none.
 #pragma once
 
-#include "crescent.h"
+#include "crescent/crescent.h"
 
 namespace crescent {
 

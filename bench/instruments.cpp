@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "counted.h"
-#include "crescent.h"
+#include "crescent/crescent.h"
 
 namespace {
 
@@ -63,7 +63,7 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
     std::cout << "| sampler | CPU, Msamples/s | GL, Msamples/s | CPU / GL | operations per sample |"
               << (peak > 0 ? " of the peak |" : "") << "\n|---|--:|--:|--:|--:|" << (peak > 0 ? "--:|" : "")
               << std::endl;
-    for_each_arm(Arms{}, [&]<template <class> class A>() {
+    for_each_sampler(Samplers{}, [&]<template <class> class A>() {
         const std::string name(A<float>::name);
         const double operations = share * static_cast<double>(bench::operations_per_sample<A, PhongLobe<Counted>>()) +
             (1 - share) * static_cast<double>(bench::operations_per_sample<A, NoLobe<Counted>>());

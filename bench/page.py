@@ -22,7 +22,7 @@ import time
 from compare import processor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "laws" / "page"))
+sys.path.insert(0, str(ROOT / "tests/system/browser"))
 import browser  # noqa: E402
 
 TITLE = "\n## Web app\n"

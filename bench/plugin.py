@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def scene(samples: int) -> str:
-    text = (ROOT / "laws/scripts/tiny.toml").read_text()
+    text = (ROOT / "tests/system/tiny.toml").read_text()
     head, _, arms = text.partition("[arms.uniform]")
     _, _, rest = arms.partition("[regions.ball]")
     region, _, _ = rest.partition("[plates")

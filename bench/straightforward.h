@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "crescent.h"
+#include "crescent/crescent.h"
 
 namespace crescent::bench {
 

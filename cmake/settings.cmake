@@ -18,18 +18,18 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
-add_library(crescent_settings INTERFACE)
+add_library(crescent_compile_options INTERFACE)
 # No contraction into fused multiply-add anywhere: films are the same bits from every compiler and instruction set.
-target_compile_options(crescent_settings INTERFACE -ffp-contract=off)
+target_compile_options(crescent_compile_options INTERFACE -ffp-contract=off)
 if(PROJECT_IS_TOP_LEVEL)
-  target_compile_options(crescent_settings INTERFACE -Wall -Wextra -Wpedantic
+  target_compile_options(crescent_compile_options INTERFACE -Wall -Wextra -Wpedantic
     $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)  # in one file, a name of another file is no shadow
 else()
   # Part of another project: its warnings. Debug code of a check takes several times as long to run, and what is more
   # than -O1 takes longer to compile than it saves.
-  target_compile_options(crescent_settings INTERFACE -O1)
+  target_compile_options(crescent_compile_options INTERFACE -O1)
 endif()
-target_compile_options(crescent_settings INTERFACE -fno-math-errno
+target_compile_options(crescent_compile_options INTERFACE -fno-math-errno
   # g++ 12 sees overlaps and overflows in std::string's operator+ that are not there (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>
   # Masks of one lane are plain bool, and & on them is meant.
@@ -37,9 +37,9 @@ target_compile_options(crescent_settings INTERFACE -fno-math-errno
 if(CRESCENT_SANITIZE)
   # AddressSanitizer itself stops at null and behind an object's end; looking for these twice, and for the type behind
   # each pointer, takes a fifth of the build and of the tests.
-  target_compile_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE}
+  target_compile_options(crescent_compile_options INTERFACE -fsanitize=${CRESCENT_SANITIZE}
     -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
-  target_link_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE})
+  target_link_options(crescent_compile_options INTERFACE -fsanitize=${CRESCENT_SANITIZE})
 endif()
 if(CRESCENT_FUZZ)
   if(NOT CRESCENT_SANITIZE OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
@@ -49,9 +49,9 @@ if(CRESCENT_FUZZ)
 endif()
 
 # What nearly every file reads, read once a target: two thirds of the time to compile is spent in these.
-option(CRESCENT_PRECOMPILED "precompile the standard library's headers" ON)
-function(crescent_precompiled target)
-  if(CRESCENT_PRECOMPILED)
+option(CRESCENT_PCH "precompile the standard library's headers" ON)
+function(crescent_use_pch target)
+  if(CRESCENT_PCH)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
       <functional> <map> <memory>
       <optional> <span> <sstream> <string> <string_view> <variant> <vector> <fmt/format.h> ${ARGN})
@@ -69,6 +69,6 @@ function(crescent_apart)
 endfunction()
 
 # Files that run once and take long to optimise, JSON above all. Without it they cannot use the precompiled headers.
-function(crescent_unoptimised)
+function(crescent_low_optimization)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
 endfunction()

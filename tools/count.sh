@@ -68,15 +68,15 @@ check() {
 # fuzz PRESET TARGET SECONDS: no finding in that time counts as one test.
 fuzz() {
     local target log found
-    target="$(binary_dir "$1")/laws/fuzz/$2"
+    target="$(binary_dir "$1")/tests/fuzz/$2"
     log="$log_dir/$2.log"
     [ -x "$target" ] || { say "  skipped: $2"; return; }
-    found="$(binary_dir "$1")/laws/fuzz/found"
+    found="$(binary_dir "$1")/tests/fuzz/found"
     mkdir -p "$found"
     say "fuzzing $2 for $3 s"
     if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" \
-        -dict="$root/laws/fuzz/experiment.dict" \
-        "$found" "$root/laws/fuzz/corpus" "$root/experiments" >"$log" 2>&1; then
+        -dict="$root/tests/fuzz/experiment.dict" \
+        "$found" "$root/tests/fuzz/corpus" "$root/experiments" >"$log" 2>&1; then
         add 1 0
     else
         add 0 1

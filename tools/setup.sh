@@ -81,13 +81,13 @@ follow() {
     return 0
 }
 
-# build_core MACHINE [TARGET...]: the numerical core alone for another machine, laws/core/MACHINE.cmake.
+# build_core MACHINE [TARGET...]: the numerical core alone for another machine, tests/portability/MACHINE.cmake.
 build_core() {
     local dir="$root/build-$1" log="$log_dir/$1.log" start=$SECONDS
-    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/laws/core" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
-    [ -f "$dir/build.ninja" ] || cmake -S "$root/laws/core" -B "$dir" -G Ninja \
-        -DCMAKE_TOOLCHAIN_FILE="$root/laws/core/$1.cmake" >"$log" 2>&1 ||
-        fail 3 "$log" "configuring laws/core for $1 failed"
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/tests/portability" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
+    [ -f "$dir/build.ninja" ] || cmake -S "$root/tests/portability" -B "$dir" -G Ninja \
+        -DCMAKE_TOOLCHAIN_FILE="$root/tests/portability/$1.cmake" >"$log" 2>&1 ||
+        fail 3 "$log" "configuring tests/portability for $1 failed"
     ninja -C "$dir" "${@:2}" 2>&1 | follow "$1" "$log" >>"$log"
     [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building the core for $1 failed"
     [ $((SECONDS - start)) -lt 2 ] || say "built $1 in $((SECONDS - start)) s"
@@ -98,13 +98,13 @@ build_page() {
     local dir="$root/build-web" log="$log_dir/page.log" start
     build_core wasm32 core
     start=$SECONDS
-    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/web" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
-    [ -f "$dir/build.ninja" ] || cmake -S "$root/web" -B "$dir" -G Ninja \
-        -DCMAKE_TOOLCHAIN_FILE="$root/laws/core/wasm32.cmake" >"$log" 2>&1 ||
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/apps/web" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
+    [ -f "$dir/build.ninja" ] || cmake -S "$root/apps/web" -B "$dir" -G Ninja \
+        -DCMAKE_TOOLCHAIN_FILE="$root/tests/portability/wasm32.cmake" >"$log" 2>&1 ||
         fail 3 "$log" "configuring the page failed"
     ninja -C "$dir" 2>&1 | follow page "$log" >>"$log"
     [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building the page's module failed"
-    tsc -p "$root/web" >"$log" 2>&1 || fail 3 "$log" "the page's scripts are not sound"
+    tsc -p "$root/apps/web" >"$log" 2>&1 || fail 3 "$log" "the page's scripts are not sound"
     [ $((SECONDS - start)) -lt 2 ] || say "built the page in $((SECONDS - start)) s"
 }
 

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <numeric>
 
-#include <crescent.h>
+#include <crescent/crescent.h>
 
 int main(int argc, char** argv) try {
     const crescent::Experiment experiment = crescent::load(argc > 1 ? argv[1] : "experiment.toml");

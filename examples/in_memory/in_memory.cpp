@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include <crescent.h>
+#include <crescent/crescent.h>
 
 namespace {
 
@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     const crescent::Measured measured =
         crescent::collect(plan, std::move(prepared), std::move(results), engine, monitor);
 
-    for (const crescent::BandMeter& band : measured.metrics.bands)
+    for (const crescent::SeedSpread& band : measured.metrics.bands)
         if (band.meter == "rmse.ball" && band.key.n == 16)
             std::printf("%s: RMSE %.4g, 5 to 95 %% of %d seeds: %.4g to %.4g%s\n", band.key.arm.c_str(), band.measured,
                 band.band.seeds, band.band.q05, band.band.q95, band.band.heavy ? " (heavy tail)" : "");

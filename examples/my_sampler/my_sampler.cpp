@@ -21,7 +21,7 @@ struct MySampler {
 };
 
 int main() {
-    const crescent::Judgement j = crescent::judge_sampler("mine", MySampler{});
+    const crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
     std::printf("%s\n%s", crescent::word(j.state).data(), crescent::what_is_wrong(j).c_str());
     return j.state == crescent::State::right ? 0 : 1;
 }

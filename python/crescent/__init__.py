@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ._check import Description, check, describe
 from ._crescent import commit
 from ._crescent import version as __version__
-from ._judgement import Judgement, Verdict
+from ._judgement import CheckResult, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, join, load, parse, run
@@ -26,7 +26,7 @@ __all__ = [
     "Description",
     "Experiment",
     "Film",
-    "Judgement",
+    "CheckResult",
     "Measured",
     "Sampler",
     "Tail",

@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from . import Judgement, __version__, _crescent, commit
+from . import CheckResult, __version__, _crescent, commit
 from ._check import _grid, _judge, _trials
 from ._files import names_a_file, sampler_at
 
@@ -50,7 +50,7 @@ def _one_subject(args: argparse.Namespace, own: bool) -> None:
         raise ValueError(f"--set is of a built-in arm: {given[0]} has its parameters in itself")
 
 
-def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
+def _trials_of(args: argparse.Namespace) -> tuple[_crescent.CheckCases, bool]:
     """The trials, and whether they are of the whole list of arms."""
     at = [(word, *word.partition(",")[::2]) for word in args.wo]
     wo = [(_number(f"--wo {w}", theta), _number(f"--wo {w}", azimuth or "0")) for w, theta, azimuth in at] or None
@@ -92,7 +92,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _write(judgement: Judgement, args: argparse.Namespace) -> None:
+def _write(judgement: CheckResult, args: argparse.Namespace) -> None:
     if args.json:
         _crescent.write_whole(args.json, judgement.json())
     if args.junit:

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._files import names_a_file, sampler_at
-from ._judgement import Judgement
+from ._judgement import CheckResult
 from ._libraries import library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
 
@@ -109,7 +109,7 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
     return max(counts, default=1), weight is not None, delta is not None
 
 
-def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.Trials:
+def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     grid = _grid(wo_deg, s.wo)
     try:
         s = _of_library(s)
@@ -142,7 +142,7 @@ def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.Trials:
 
 
 def _judge(
-    trials: _crescent.Trials,
+    trials: _crescent.CheckCases,
     command: str,
     *,
     alpha: float = 1e-3,
@@ -150,10 +150,10 @@ def _judge(
     full: bool = False,
     accept_few: bool = False,
     threads: int = 0,
-    other: _crescent.Trials | None = None,
+    other: _crescent.CheckCases | None = None,
     expect_same: bool = False,
     progress: Progress | None = None,
-) -> Judgement:
+) -> CheckResult:
     if progress is not None and not callable(progress):
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total)")
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
@@ -170,7 +170,7 @@ def _judge(
         command=command,
         progress=progress,
     )
-    return Judgement(judged)
+    return CheckResult(judged)
 
 
 def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
@@ -189,7 +189,7 @@ def _trials_and_title(
     settings: Mapping[str, float] | None,
     full: bool,
     wo_deg: Grid | None,
-) -> tuple[_crescent.Trials, str]:
+) -> tuple[_crescent.CheckCases, str]:
     """What `check` and `describe` are given, over its w_o, and its name."""
     _must_be_known(known)
     if isinstance(sample, str) and names_a_file(sample):
@@ -244,7 +244,7 @@ def check(
     threads: int = 0,
     progress: Progress | None = None,
     **known: Unpack[Known],
-) -> Judgement:
+) -> CheckResult:
     """Judges a sampler over a grid of w_o.
 
     `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`), or `sample` is a :class:`Sampler`, or

@@ -69,7 +69,7 @@ class _Kept:
         return self.texts["html"]
 
 
-class Judgement:
+class CheckResult:
     """What a call of :func:`crescent.check` found. It has no truth value: ask for ``.state``."""
 
     def __init__(self, judged: _crescent.Judged | _Kept) -> None:
@@ -79,7 +79,7 @@ class Judgement:
     def __reduce__(self) -> tuple[Any, ...]:
         j = self._judged
         texts = {"table": j.text(), "all": j.text(True), "json": j.json(), "junit": j.junit(), "html": j.html()}
-        return Judgement, (
+        return CheckResult, (
             _Kept(self.state, self.as_expected, self.tests, self.questions, list(j.verdicts), texts),
         )
 
@@ -128,7 +128,7 @@ class Judgement:
 
     def __repr__(self) -> str:
         broken = f": {', '.join(self.broken())}" if self.broken() else ""
-        return f"<Judgement {self.state}{broken}; {len(self._verdicts)} verdicts>"
+        return f"<CheckResult {self.state}{broken}; {len(self._verdicts)} verdicts>"
 
     def __str__(self) -> str:
         return self._judged.text()

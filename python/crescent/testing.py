@@ -16,7 +16,7 @@ import numpy as np
 from . import _arrays
 from ._check import _of_library, check
 from ._files import names_a_file, sampler_at
-from ._judgement import Judgement
+from ._judgement import CheckResult
 from ._sampler import Sampler
 
 ALPHA = 1e-3  #: of a whole session
@@ -61,7 +61,7 @@ def assert_sampler(
     alpha: float | None = None,
     allow: Iterable[str] = (),
     **known: Any,
-) -> Judgement:
+) -> CheckResult:
     """Raises AssertionError unless the sampler is right; arguments as of :func:`crescent.check`.
 
     A file, "mine.py:sampler", is looked for from pytest's rootdir.

@@ -32,10 +32,10 @@ struct ListedArm {
     std::string name;
     SurfaceSetup surface;
 
-    std::shared_ptr<const JudgedSampler> at(Vec3d wo) const {
-        std::shared_ptr<const JudgedSampler> out;
-        for_each_arm(Arms{}, [&]<template <class> class A>() {
-            if (A<float>::name == name) out = std::make_shared<BuiltIn<A>>(surface, wo, TrialLight{});
+    std::shared_ptr<const SamplerAdapter> at(Vec3d wo) const {
+        std::shared_ptr<const SamplerAdapter> out;
+        for_each_sampler(Samplers{}, [&]<template <class> class A>() {
+            if (A<float>::name == name) out = std::make_shared<BuiltIn<A>>(surface, wo, CaseLighting{});
         });
         return out;
     }
@@ -55,7 +55,7 @@ ListedArm arm_of(const std::string& name, const std::string& lobe, double s, dou
 
 /// Calls ask(subject, i) row by row; an arm is aimed anew where w_o changes.
 template <class Ask> void each_row(const ListedArm& arm, const In& wo, Ask&& ask) {
-    std::shared_ptr<const JudgedSampler> subject;
+    std::shared_ptr<const SamplerAdapter> subject;
     Vec3d aimed{};
     for (std::size_t i = 0; i < wo.shape(0); ++i) {
         if (const Vec3d w = row(wo, i); !subject || !same(w, aimed)) subject = arm.at(aimed = w);
@@ -73,8 +73,8 @@ nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const 
     std::vector<double> wi(3 * n), pdf(n);
     {
         const Work here;
-        each_row(arm, wo, [&](const JudgedSampler& subject, std::size_t i) {
-            const Numbers numbers(u(i, 0), u(i, 1));
+        each_row(arm, wo, [&](const SamplerAdapter& subject, std::size_t i) {
+            const PrimarySample numbers(u(i, 0), u(i, 1));
             Draw d;
             subject.sample(0, row(wo, i), {&numbers, 1}, {&d, 1});
             wi[3 * i] = d.wi.x, wi[3 * i + 1] = d.wi.y, wi[3 * i + 2] = d.wi.z;
@@ -90,7 +90,7 @@ Out pdf(const ListedArm& arm, const In& wo, const In& wi) {
     std::vector<double> p(n);
     {
         const Work here;
-        each_row(arm, wo, [&](const JudgedSampler& subject, std::size_t i) {
+        each_row(arm, wo, [&](const SamplerAdapter& subject, std::size_t i) {
             const Pair at{row(wo, i), row(wi, i)};
             subject.pdf(0, {&at, 1}, {&p[i], 1});
         });

@@ -50,7 +50,7 @@ template <class Ask> void CallableSampler::ask(Ask&& ask) const {
     }
 }
 
-void CallableSampler::sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const {
+void CallableSampler::sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const {
     if (u.empty()) return;
     ask([&] {
         const nb::object from = matrix(u.size(), 3, [&](std::size_t, std::size_t j) { return component(wo, j); });

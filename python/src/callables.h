@@ -22,7 +22,7 @@ struct Callables {
     bool serial = false;      // they want one thread
 };
 
-class CallableSampler : public CalledSampler {
+class CallableSampler : public InProcessAdapter {
 public:
     explicit CallableSampler(Callables callables) : c_(std::move(callables)) {}
     std::string name() const override { return c_.name; }
@@ -30,7 +30,7 @@ public:
     bool serial() const override { return c_.serial; }
     bool has_f() const override { return !c_.f.is_none(); }
     bool has_drawn_f() const override { return has_f() || c_.weighs; }
-    void sample(int technique, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override;
+    void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override;
     void pdf(int technique, std::span<const Pair> at, std::span<double> out) const override;
     void f(std::span<const Pair> at, std::span<double> out) const override;
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override;

@@ -163,11 +163,11 @@ void write_folder(const RunResult& r, const std::string& folder) {
 /// The meters whose values are whole numbers.
 std::vector<std::string> counting_meters() {
     std::vector<std::string> out{"pixels", "tail_exceedances"};
-    const auto add = [&](std::string_view name, const MeterInfo&, auto value) {
+    const auto add = [&](std::string_view name, const MetricInfo&, auto value) {
         if constexpr (std::is_same_v<decltype(value), std::uint64_t>) out.emplace_back(name);
     };
-    for_each_meter(RegionMeter{}, add);
-    for_each_meter(RunMeter{}, add);
+    for_each_metric(RegionMetrics{}, add);
+    for_each_metric(RunMetrics{}, add);
     return out;
 }
 

@@ -14,7 +14,7 @@
 #include <atomic>
 #include <utility>
 
-#include "crescent.h"
+#include "crescent/crescent.h"
 
 namespace crescent::python {
 

@@ -1,4 +1,4 @@
-// Samplers and their judgement, for crescent/_check.py: subjects in, a Judgement out.
+// Samplers and their judgement, for crescent/_check.py: subjects in, a CheckResult out.
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -13,15 +13,15 @@ namespace crescent::python {
 
 namespace {
 
-using Subject = std::shared_ptr<const JudgedSampler>;
+using Subject = std::shared_ptr<const SamplerAdapter>;
 
-/// Trials over w_o, and who is asked in them.
-struct Trials {
-    std::vector<Trial> all;
+/// CheckCases over w_o, and who is asked in them.
+struct CheckCases {
+    std::vector<CheckCase> all;
     Subject subject;  // null: an arm of the list
     std::size_t size() const {
         std::size_t judged = 0;
-        for (const Trial& t : all) judged += !t.baseline;
+        for (const CheckCase& t : all) judged += !t.baseline;
         return judged;
     }
 };
@@ -33,9 +33,9 @@ Traits::Asked asked_word(const std::string& wo) {
     throw nb::value_error(fmt::format("wo is '{}': expected 'upper', 'both' or 'none'", wo).c_str());
 }
 
-Trials of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers, int channels,
-    const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial, bool reciprocal, bool own_random,
-    std::optional<std::vector<double>> eta, bool importance, bool full, const Grid& grid) {
+CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers,
+    int channels, const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial, bool reciprocal,
+    bool own_random, std::optional<std::vector<double>> eta, bool importance, bool full, const Grid& grid) {
     Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
     c.traits.numbers = numbers;
     c.traits.channels = channels;
@@ -47,16 +47,16 @@ Trials of_callables(nb::object sample, nb::object pdf, nb::object f, const std::
     c.traits.importance = importance;
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
     const auto subject = std::make_shared<CallableSampler>(std::move(c));
-    return {trials_of_subject(subject, full, grid), subject};
+    return {make_user_cases(subject, full, grid), subject};
 }
 
-Trials of_subject(const Subject& subject, bool full, const Grid& grid) {
-    return {trials_of_subject(subject, full, grid), subject};
+CheckCases of_subject(const Subject& subject, bool full, const Grid& grid) {
+    return {make_user_cases(subject, full, grid), subject};
 }
 
 /// What was judged of what, in words and for files.
 struct Judged {
-    Judgement judgement;
+    CheckResult judgement;
     JudgementSource source;
     bool against = false;
 };
@@ -72,15 +72,15 @@ TestSettings settings_of(double alpha, std::uint32_t seed, bool full, bool accep
     return r;
 }
 
-void tell(const Trials& trials, Raised* raised) {
+void tell(const CheckCases& trials, Raised* raised) {
     if (const auto* callables = dynamic_cast<const CallableSampler*>(trials.subject.get())) callables->tell(raised);
 }
 
-bool is_serial(const Trials& trials) {
+bool is_serial(const CheckCases& trials) {
     return dynamic_cast<const CallableSampler*>(trials.subject.get()) && trials.subject->serial();
 }
 
-Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
+Judged judged(CheckCases& trials, CheckCases* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
     bool expect_same, int threads, const std::string& command, const nb::object& progress) {
     const TestSettings settings = settings_of(alpha, seed, full, accept_few);
     PolledMonitor monitor;
@@ -91,10 +91,11 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
             out.judgement = judge(trials.all, settings, monitor);
             return;
         }
-        std::vector<Trial> a = trials.all, b = other->all;
-        for (std::vector<Trial>* side : {&a, &b}) std::erase_if(*side, [](const Trial& t) { return t.baseline; });
+        std::vector<CheckCase> a = trials.all, b = other->all;
+        for (std::vector<CheckCase>* side : {&a, &b})
+            std::erase_if(*side, [](const CheckCase& t) { return t.baseline; });
         if (other->subject) b = sampler_against(other->subject, a);
-        out.judgement = judge_against(a, b, settings, expect_same, monitor);
+        out.judgement = compare_samplers(a, b, settings, expect_same, monitor);
     };
     const bool serial = is_serial(trials) || (other && is_serial(*other));
     tell(trials, &raised);
@@ -115,7 +116,7 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
 
 /// What distribution the draws have: as text and as JSON.
 std::pair<std::string, std::string> described(
-    Trials& trials, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
+    CheckCases& trials, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
     check::DescribeSettings settings;
     settings.seed = seed;
     if (full) settings.draws *= 16, settings.draws_of_limited *= 16;
@@ -138,26 +139,26 @@ std::pair<std::string, std::string> described(
 }
 
 /// The trials of an arm of the list where `a` was judged.
-Trials arm_beside(const std::string& arm, const Trials& a) {
+CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
     if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
         const std::string near = nearest(arm, names);
         throw nb::value_error(fmt::format(
             "against is '{}': no built-in arm{}", arm, near.empty() ? "" : fmt::format("; did you mean '{}'?", near))
                 .c_str());
     }
-    std::vector<Trial> judged = a.all;
-    std::erase_if(judged, [](const Trial& t) { return t.baseline; });
-    return {arm_against(arm, judged), nullptr};
+    std::vector<CheckCase> judged = a.all;
+    std::erase_if(judged, [](const CheckCase& t) { return t.baseline; });
+    return {sampler_named_against(arm, judged), nullptr};
 }
 
-void draw_batches(const Trials& trials, std::uint32_t batches) {
+void draw_batches(const CheckCases& trials, std::uint32_t batches) {
     if (!trials.subject) throw nb::value_error("an arm of the list has no callables");
     PolledMonitor monitor;
     Raised raised(monitor);
     tell(trials, &raised);
     const int count = trials.subject->traits().numbers;
     const auto batch = [&](std::uint32_t b) {
-        std::vector<Numbers> u(32768);
+        std::vector<PrimarySample> u(32768);
         std::vector<Draw> out(u.size());
         for (std::size_t i = 0; i < u.size(); ++i)
             for (int k = 0; k < count; k += 2) {
@@ -220,11 +221,11 @@ void add_judged(nb::module_& m) {
 
 void add_judging(nb::module_& m) {
     using namespace nb::literals;
-    nb::class_<Trials>(m, "Trials", "A sampler over a grid of w_o, ready to be judged.")
-        .def("__len__", &Trials::size)
+    nb::class_<CheckCases>(m, "CheckCases", "A sampler over a grid of w_o, ready to be judged.")
+        .def("__len__", &CheckCases::size)
         .def_prop_ro(
             "draws",
-            [](const Trials& t) {
+            [](const CheckCases& t) {
                 const auto* c = dynamic_cast<const CallableSampler*>(t.subject.get());
                 return c ? c->draws() : 0;
             },
@@ -235,7 +236,7 @@ void add_judging(nb::module_& m) {
     m.def(
         "trials_of_arm",
         [](const std::string& arm, const Settings& settings, bool full, const Grid& grid) {
-            return Trials{trials_of(arm, settings, full, grid), nullptr};
+            return CheckCases{make_cases(arm, settings, full, grid), nullptr};
         },
         "arm"_a, "settings"_a, "full"_a, "grid"_a);
     m.def(
@@ -254,7 +255,7 @@ void add_judging(nb::module_& m) {
         "trials_of_samples",
         [](const std::string& samples, const std::string& table, double theta, double azimuth) {
             const auto file = std::make_shared<SampleFile>(samples, table);
-            return Trials{{trial_of_subject(file, theta, azimuth)}, file};
+            return CheckCases{{make_user_case(file, theta, azimuth)}, file};
         },
         "samples"_a, "table"_a, "theta"_a, "azimuth"_a);
     m.def("draw", &draw_batches, "trials"_a, "batches"_a,

@@ -1,5 +1,5 @@
 // The module `crescent._crescent`: what the package `crescent` is made of. Errors keep their kind: InputError and
-// SubjectFault become ValueError and RuntimeError, OutputError an OSError.
+// SamplerError become ValueError and RuntimeError, OutputError an OSError.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
@@ -17,7 +17,7 @@ NB_MODULE(_crescent, m) {
             PyErr_SetString(PyExc_ValueError, e.what());
         } catch (const crescent::OutputError& e) {
             PyErr_SetString(PyExc_OSError, e.what());
-        } catch (const crescent::SubjectFault& e) { PyErr_SetString(PyExc_RuntimeError, e.what()); }
+        } catch (const crescent::SamplerError& e) { PyErr_SetString(PyExc_RuntimeError, e.what()); }
     });
     nb::set_leak_warnings(false);  // a callable of the main module may live until the interpreter ends
     m.doc() = "The C++ core of crescent; use the package `crescent`.";

@@ -7,13 +7,13 @@ import pytest
 
 from crescent.field import faults_in
 
-FOLDER = Path(os.environ.get("CRESCENT_FIELD", Path(__file__).resolve().parents[2] / "laws" / "field"))
+FOLDER = Path(os.environ.get("CRESCENT_FIELD", Path(__file__).resolve().parents[2] / "tests" / "field"))
 FAULTS = faults_in(FOLDER) if FOLDER.is_dir() else []
 
 
 def test_there_are_thirteen_at_least_each_with_its_source():
     if not FAULTS:
-        pytest.skip("the repository's laws/field is not here")
+        pytest.skip("the repository's tests/field is not here")
     assert len(FAULTS) >= 13 and len({f.name for f in FAULTS}) == len(FAULTS)
     assert all(f.source.startswith("https://") and f.caught_by for f in FAULTS)
 

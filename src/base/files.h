@@ -16,12 +16,15 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 
 namespace crescent::inline base {
 
@@ -77,5 +80,15 @@ struct PublishingFaults {
 };
 /// Those of this process: none, where no test set some.
 PublishingFaults& publishing_faults();
+
+// ---- All of a file at once.
+
+/// The bytes of a file; "" where it cannot be read.
+inline std::string contents_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream all;
+    all << file.rdbuf();
+    return std::move(all).str();
+}
 
 }  // namespace crescent::inline base

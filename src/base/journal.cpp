@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#ifndef CRESCENT_NO_FILES
+#ifndef CRESCENT_NO_FILESYSTEM
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -33,7 +33,7 @@ Journal::Journal(Journal&& other) noexcept
       file_(std::exchange(other.file_, -1)),
       off_(other.off_) {}
 
-#ifndef CRESCENT_NO_FILES
+#ifndef CRESCENT_NO_FILESYSTEM
 
 namespace {
 

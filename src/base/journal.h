@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 
 namespace crescent::inline base {
 

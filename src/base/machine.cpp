@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/contents.h"
+#include "base/files.h"
 
 namespace crescent::inline base {
 

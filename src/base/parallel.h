@@ -1,4 +1,4 @@
-// Threads: oneTBB where there are threads, one call after another where CRESCENT_SERIAL says that there are none (a
+// Threads: oneTBB where there are threads, one call after another where CRESCENT_NO_THREADS says that there are none (a
 // page in a browser, another machine's core under test). Nothing outside this file asks which.
 //
 // Outputs never depend on it: what threads add up is merged in the order of tiles, by the caller.
@@ -8,7 +8,7 @@
 #include <functional>
 #include <utility>
 
-#ifndef CRESCENT_SERIAL
+#ifndef CRESCENT_NO_THREADS
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
@@ -19,7 +19,7 @@
 
 namespace crescent::inline base {
 
-#ifndef CRESCENT_SERIAL
+#ifndef CRESCENT_NO_THREADS
 
 /// Calls work(i) for every i in [begin, end), on all cores, in any order; returns when all are done. What one of them
 /// throws ends the rest and comes out here.

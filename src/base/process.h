@@ -11,7 +11,7 @@
 
 #include <sys/types.h>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 
 namespace crescent::inline base {
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/errors.h"
+
 namespace crescent::inline base {
 namespace {
 
@@ -100,6 +102,19 @@ std::string shell_word(std::string_view word) {
     std::string out = "'";
     for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return out + "'";
+}
+
+// ---- The nearest word is that of nearest(); a word of more than 64 characters is near to none.
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& valid) {
+    const std::string near = word.size() > 64 ? "" : nearest(word, valid);
+    return near.empty() || near == word ? "" : "; did you mean '" + near + "'?";
+}
+
+std::string expected_one_of(const std::vector<std::string>& valid, std::string_view word) {
+    std::string all;
+    for (const std::string& one : valid) all += (all.empty() ? "" : ", ") + one;
+    return "expected one of " + all + ", not '" + printable(std::string(word)) + "'" + did_you_mean(word, valid);
 }
 
 }  // namespace crescent::inline base

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace crescent::inline base {
 
@@ -19,5 +20,14 @@ std::string printable_lines(std::string_view text);
 
 /// The word as a POSIX shell reads it back: as it is where that is plain, else in quotes.
 std::string shell_word(std::string_view word);
+
+// ---- What is said of a word that is none of those that are known.
+
+/// "; did you mean 'phong'?" for the word of `valid` that is nearest; "" where none is near, or `word` is one of them.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& valid);
+
+/// "expected one of uniform, cosine, phong, not 'phonk'; did you mean 'phong'?"; control characters are taken out of
+/// `word`.
+std::string expected_one_of(const std::vector<std::string>& valid, std::string_view word);
 
 }  // namespace crescent::inline base

@@ -9,7 +9,6 @@
 #include <random>
 
 #include "base/errors.h"
-#include "base/hint.h"
 
 namespace crescent::inline base {
 namespace {

@@ -2,6 +2,8 @@
 // Directions are unit vectors; lengths are in scene units.
 #pragma once
 
+#include <array>
+
 namespace crescent::inline base {
 
 template <class F> struct Vec2 {
@@ -37,4 +39,34 @@ template <class F> [[gnu::always_inline]] constexpr Vec3<F> cross(Vec3<F> a, Vec
 using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 
+// ---- Points of the plane in doubles: coordinates of directions, random numbers.
+
+using Vec2d = Vec2<double>;
+
+// ---- Vectors from one number type to another, component by component, as static_cast rounds.
+
+/// `v` in doubles (exact for floats).
+template <class F> constexpr Vec3d widen(Vec3<F> v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+/// `v` rounded to F.
+template <class F> constexpr Vec3<F> as(Vec3d v) {
+    return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)};
+}
+
 }  // namespace crescent::inline base
+
+// ---- A colour: three numbers of linear Rec.709, and what it is worth to the eye.
+
+namespace crescent::inline color {
+
+using Rgb = std::array<double, 3>;  // linear Rec.709
+
+/// Weights of linear Rec.709 luminance, ITU-R BT.709.
+inline constexpr double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
+
+template <class C> double luminance(const C& rgb) {
+    return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
+}
+
+}  // namespace crescent::inline color

@@ -14,11 +14,10 @@
 #include "check/check.h"
 #include "check/constants.h"
 #include "check/explain/text.h"
+#include "check/report/print.h"
+#include "check/sources/sampler_adapter.h"
+#include "check/sources/wrappers.h"
 #include "check/verdicts/two_stages.h"
-#include "judgements/next_step.h"
-#include "subjects/asked_once.h"
-#include "subjects/faults.h"
-#include "subjects/named_side.h"
 
 namespace crescent::check {
 
@@ -205,28 +204,28 @@ private:
     }
 };
 
-/// Trials of the same w_o one after the other.
-std::vector<std::size_t> by_direction(std::span<const Trial> trials) {
+/// CheckCases of the same w_o one after the other.
+std::vector<std::size_t> by_direction(std::span<const CheckCase> trials) {
     std::vector<std::size_t> order(trials.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-        const Trial &x = trials[i], &y = trials[k];
+        const CheckCase &x = trials[i], &y = trials[k];
         return std::tuple(x.theta_deg, x.azimuth_deg, i) < std::tuple(y.theta_deg, y.azimuth_deg, k);
     });
     return order;
 }
 
 /// The three verdicts of a w_o at which a sampler broke off.
-std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFault& fault) {
-    const bool slow = dynamic_cast<const SubjectTooSlow*>(&fault);
+std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const SamplerError& fault) {
+    const bool slow = dynamic_cast<const SamplerTimeout*>(&fault);
     std::vector<Verdict> out;
     for (const char* name : compared_by) {
         Verdict v;
         v.arm = a.arm + " against " + b.arm, v.trial = a.text(), v.name = name;
         v.state = slow ? State::inconclusive : State::error;
-        v.say = slow                                   ? std::string(fault.what())
-            : dynamic_cast<const SubjectGone*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
-                                                       : fmt::format("The sampler broke off: {}.", fault.what());
+        v.say = slow                                     ? std::string(fault.what())
+            : dynamic_cast<const SamplerExited*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
+                                                         : fmt::format("The sampler broke off: {}.", fault.what());
         if (slow) v.next.kind = NextStep::Kind::more_time;
         out.push_back(std::move(v));
     }
@@ -234,11 +233,11 @@ std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFau
 }
 
 /// What breaks off says which side it was. A subject stays one for all of its trials.
-std::vector<Trial> named_trials(std::span<const Trial> trials, const std::string& side) {
-    std::vector<Trial> out(trials.begin(), trials.end());
-    std::map<std::shared_ptr<const JudgedSampler>, std::shared_ptr<const JudgedSampler>> named;
-    for (Trial& t : out) {
-        std::shared_ptr<const JudgedSampler>& one = named[t.subject];
+std::vector<CheckCase> named_trials(std::span<const CheckCase> trials, const std::string& side) {
+    std::vector<CheckCase> out(trials.begin(), trials.end());
+    std::map<std::shared_ptr<const SamplerAdapter>, std::shared_ptr<const SamplerAdapter>> named;
+    for (CheckCase& t : out) {
+        std::shared_ptr<const SamplerAdapter>& one = named[t.subject];
         if (!one) one = named_side(t.subject, side);
         t.subject = one;
     }
@@ -254,29 +253,29 @@ State worst_state(const std::vector<Verdict>& verdicts) {
 
 }  // namespace
 
-Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& settings,
+CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const CheckCase> b, const TestSettings& settings,
     bool expect_same, ProgressMonitor& monitor) {
     monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
-    const std::vector<Trial> of_a = named_trials(a, "A"), of_b = named_trials(b, "B");
+    const std::vector<CheckCase> of_a = named_trials(a, "A"), of_b = named_trials(b, "B");
     const auto either = [&](auto is) { return std::ranges::any_of(a, is) || std::ranges::any_of(b, is); };
-    const bool serial = either([](const Trial& t) { return t.subject->serial(); });
-    const bool limited = either([](const Trial& t) { return t.subject->limited(); });
+    const bool serial = either([](const CheckCase& t) { return t.subject->serial(); });
+    const bool limited = either([](const CheckCase& t) { return t.subject->limited(); });
     const AgainstPlan plan = plan_of(settings, limited, expect_same, a.size());
-    AskedByDirection asked_a, asked_b;  // kept by one thread, where either is serial
+    PerDirectionCache asked_a, asked_b;  // kept by one thread, where either is serial
     const auto one = [&](std::size_t i) {
         monitor.check();
         try {
             const auto stream = static_cast<std::uint32_t>(i);
             const Side side_a = asked_a.of(of_a[i], stream), side_b = asked_b.of(of_b[i], stream + places_of_b);
             all[i] = Comparison(side_a, side_b, plan).run();
-        } catch (const SubjectFault& fault) { all[i] = broken_off(a[i], b[i], fault); }
+        } catch (const SamplerError& fault) { all[i] = broken_off(a[i], b[i], fault); }
         monitor.advance(1);
     };
     if (serial)
         for (std::size_t i : by_direction(a)) one(i);
     else parallel_for(std::size_t{0}, a.size(), one);
-    Judgement out;
+    CheckResult out;
     out.alpha = settings.alpha;
     for (std::size_t i = 0; i < a.size(); ++i) {
         out.questions = std::max(out.questions,
@@ -288,7 +287,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
     return out;
 }
 
-std::string against_text(const Judgement& j) {
+std::string against_text(const CheckResult& j) {
     std::string out, last;
     for (const Verdict& v : j.verdicts) {
         if (v.trial != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.trial);

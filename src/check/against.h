@@ -9,22 +9,22 @@
 // Without a pdf(w) X is the weight that comes with a draw.
 #pragma once
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 #include "check/settings.h"
-#include "judgements/verdict.h"
-#include "subjects/list.h"
+#include "check/sources/cases.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 
-/// Trials of A and of B, one for one. expect_same: a difference in distribution or f is wrong, not only stated.
-Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& settings,
+/// CheckCases of A and of B, one for one. expect_same: a difference in distribution or f is wrong, not only stated.
+CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const CheckCase> b, const TestSettings& settings,
     bool expect_same, ProgressMonitor& monitor);
 
 /// A w_o a line: both states, the ratio and its interval.
-std::string against_text(const Judgement& judgement);
+std::string against_text(const CheckResult& judgement);
 
 }  // namespace crescent::check
 
 namespace crescent {
-using check::against_text, check::judge_against;
+using check::against_text, check::compare_samplers;
 }

@@ -60,7 +60,7 @@ std::uint32_t draw_pilots(
         StreamKey key = side.key;
         key.purpose = Purpose::pilot, key.technique = static_cast<std::uint8_t>(t);
         const std::uint32_t count = sorter.source().available(key, budget.pilot());
-        std::vector<Numbers> u;
+        std::vector<PrimarySample> u;
         std::vector<Draw> draws;
         for (std::uint32_t from = 0; from < count; from += batch_size) {
             u.resize(std::min(batch_size, count - from)), draws.assign(u.size(), {});
@@ -130,7 +130,7 @@ public:
         }
     }
     void scrambled(StreamKey key, std::uint32_t first, std::uint32_t last) {
-        if (source_.traits.own_random || !source_.subject.draws_at_will()) return;
+        if (source_.traits.own_random || !source_.subject.can_draw()) return;
         key.purpose = Purpose::scrambles, key.technique = static_cast<std::uint8_t>(source_.technique);
         for (int set = 0; set < replicate_sets; ++set) {
             key.part = static_cast<std::uint16_t>(set);
@@ -150,7 +150,7 @@ private:
     Sorter sorter_;
     Source& source_;
     AgainstDraws& to_;
-    std::vector<Numbers> u_;
+    std::vector<PrimarySample> u_;
     std::vector<Draw> draws_;
 
     void take(const Draw& d, int set) {

@@ -16,8 +16,8 @@ namespace crescent::check {
 
 /// One of the two samplers at its w_o, with streams of its own. `other` may know p where this one does not.
 struct AgainstSide {
-    const Trial& trial;
-    const JudgedSampler& other;
+    const CheckCase& trial;
+    const SamplerAdapter& other;
     StreamKey key;
 };
 

@@ -11,7 +11,7 @@
 #include "check/decide/tail.h"
 #include "check/estimate/scatter.h"
 #include "check/explain/text.h"
-#include "stats/moments.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 
@@ -23,22 +23,22 @@ struct SharedF {
     std::vector<double> a, b;
 };
 
-std::vector<double> f_at(const JudgedSampler& subject, std::span<const Pair> at) {
+std::vector<double> f_at(const SamplerAdapter& subject, std::span<const Pair> at) {
     std::vector<double> out(at.size());
     subject.f(at, out);
     return out;
 }
 
-bool only_at_draws(const JudgedSampler& s) { return !s.has_f() && s.has_drawn_f() && !s.draws_at_will(); }
+bool only_at_draws(const SamplerAdapter& s) { return !s.has_f() && s.has_drawn_f() && !s.can_draw(); }
 
 SharedF f_of_both(const AgainstCase& c) {
     SharedF out;
-    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
     if (only_at_draws(a)) {
         Source source(a, 0, c.a.trial.wo, c.a.trial.light);
         StreamKey key = c.a.key;
         key.purpose = Purpose::draws;
-        std::vector<Numbers> u(source.available(key, c.of_f));
+        std::vector<PrimarySample> u(source.available(key, c.of_f));
         std::vector<Draw> draws(u.size());
         source.draw(key, 0, u, draws);
         for (const Draw& d : draws)
@@ -62,7 +62,7 @@ SharedF f_of_both(const AgainstCase& c) {
 }
 
 /// What roundings of single precision move f by there.
-double moved_f(const JudgedSampler& s, Vec3d wo, Vec3d wi, double f) {
+double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
     std::vector<Pair> at;
     for (int k = 0; k < 6; ++k) {
         const double by = (k % 2 ? 4 : -4) * ulp;
@@ -76,7 +76,7 @@ double moved_f(const JudgedSampler& s, Vec3d wo, Vec3d wi, double f) {
 }
 
 void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
-    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
     std::size_t count = 0, worst = 0;
     double most = 0, sum_a = 0, sum_b = 0;
     for (std::size_t i = 0; i < both.wi.size(); ++i) {
@@ -127,7 +127,7 @@ std::string differing_delta(const AgainstCase& c) {
 }  // namespace
 
 void compare_f(const AgainstCase& c, Verdict& v) {
-    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
     const auto is_estimate = [](const AgainstSide& side) {
         Source source(*side.trial.subject, 0, side.trial.wo, side.trial.light);
         return look_for_scatter(source, side.key).f();
@@ -135,7 +135,7 @@ void compare_f(const AgainstCase& c, Verdict& v) {
     if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
         v.state = State::skipped;
         v.say = only_at_draws(a) ? "f of A is known at its draws alone, and B has no f to compare with it."
-            : a.draws_at_will()  ? "There is no f to compare."
+            : a.can_draw()       ? "There is no f to compare."
                                  : "The file of A has no column f: there is nothing to compare.";
     } else if (is_estimate(c.a) || is_estimate(c.b)) {
         v.state = State::skipped;
@@ -257,7 +257,7 @@ struct ReweighedDraws {
             b(*c.b.trial.subject, 0, c.b.trial.wo, c.b.trial.light);
         StreamKey key = c.a.key;
         key.purpose = Purpose::draws, key.stage = static_cast<std::uint8_t>(stage);
-        std::vector<Numbers> u(a.available(key, c.of_f));
+        std::vector<PrimarySample> u(a.available(key, c.of_f));
         std::vector<Draw> draws(u.size());
         a.draw(key, 0, u, draws);
         for (std::size_t i = 0; i < draws.size(); ++i) {
@@ -286,7 +286,7 @@ struct ReweighedDraws {
 };
 
 void over_draws_of_a(const AgainstCase& c, Verdict& v) {
-    const JudgedSampler& b = *c.b.trial.subject;
+    const SamplerAdapter& b = *c.b.trial.subject;
     if (!b.traits().has_pdf)
         return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
     if (b.techniques() > 1)
@@ -333,13 +333,13 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
 }  // namespace
 
 void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
-    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
     if (of_f.evidence.contains("same") && !of_f.evidence["same"].get<bool>())
         return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
         return skip(v,
-            a.draws_at_will() ? "There is no f, so f L cos / p has no variance."
-                              : "The file of A has no column f, so there are no weights f L cos / p.");
+            a.can_draw() ? "There is no f, so f L cos / p has no variance."
+                         : "The file of A has no column f, so there are no weights f L cos / p.");
     if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, so its f L cos / p has no variance.");
     for (const auto& [draws, subject, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
         if (subject->has_drawn_f() && !draws->weighs)

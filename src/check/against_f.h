@@ -4,7 +4,7 @@
 #include "check/against_draws.h"
 #include "check/constants.h"
 #include "check/decide/check_at.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 

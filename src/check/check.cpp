@@ -11,9 +11,8 @@
 #include "check/explain/causes.h"
 #include "check/report/pictures.h"
 #include "check/report/verdicts.h"
-#include "judgements/all.h"
-#include "subjects/capped.h"
-#include "subjects/faults.h"
+#include "check/sources/sampler_adapter.h"
+#include "check/verdict_names.h"
 
 namespace crescent {
 
@@ -33,7 +32,7 @@ bool may_stay_open(const Verdict& v) {
 }
 
 /// Whether it is what is expected of a right sampler, or of a built-in arm here.
-void expect(const Trial& trial, bool reaches_all, Verdict& v) {
+void expect(const CheckCase& trial, bool reaches_all, Verdict& v) {
     const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= check::heavy_index;
     if (trial.theory.wrong && *trial.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
@@ -57,7 +56,7 @@ struct Said {
     std::string first, rest;
 };
 
-Said said_of(const Cut& cut, const Trial& trial, const TestSettings& settings) {
+Said said_of(const Cut& cut, const CheckCase& trial, const TestSettings& settings) {
     const std::string rest = "It could not be evaluated: the sampler broke off before.";
     switch (cut.why) {
         case Cut::Why::fault: return {State::error, fmt::format("The sampler broke off: {}.", cut.what), rest};
@@ -72,10 +71,10 @@ Said said_of(const Cut& cut, const Trial& trial, const TestSettings& settings) {
 
 /// Every verdict of a trial that ended early, but for `valid` where the first draws were seen. Notes what there was no
 /// time for.
-void cut_short(
-    const Trial& trial, const Cut& cut, const TestSettings& settings, std::vector<Verdict>& verdicts, Judgement& j) {
+void cut_short(const CheckCase& trial, const Cut& cut, const TestSettings& settings, std::vector<Verdict>& verdicts,
+    CheckResult& j) {
     const Said said = said_of(cut, trial, settings);
-    LeftOut left{trial.arm, trial.text(), {}, said.first};
+    SkippedCase left{trial.arm, trial.text(), {}, said.first};
     for (Verdict& v : verdicts) {
         if (cut.first_draws && v.name == verdict_names[0]) continue;
         const bool first = left.verdicts.empty();
@@ -90,7 +89,7 @@ void cut_short(
 }
 
 /// The tests of the sampler as a whole ended early: said where they would be, at its first w_o.
-void cut_whole(const Cut& cut, const Trial& trial, const TestSettings& settings, Verdict& valid) {
+void cut_whole(const Cut& cut, const CheckCase& trial, const TestSettings& settings, Verdict& valid) {
     if (valid.state != State::right) return;
     const Said said = said_of(cut, trial, settings);
     valid.state = said.state, valid.say = said.first;
@@ -101,30 +100,32 @@ void cut_whole(const Cut& cut, const Trial& trial, const TestSettings& settings,
 /// seven turns of 512 samples each that are timed, the first draws, a rose. And for the call: corners, reciprocity.
 constexpr std::size_t evaluations_beside = 16000, evaluations_for_all = 8000;
 
-/// Trials whose programs may be asked what is left of what they may be asked in all, less what follows.
-std::vector<Trial> with_what_is_left(std::span<const Trial> trials, const TestSettings& settings) {
-    std::vector<Trial> out(trials.begin(), trials.end());
-    const auto w_o = static_cast<std::size_t>(std::ranges::count_if(out, [](const Trial& t) { return !t.baseline; }));
+/// CheckCases whose programs may be asked what is left of what they may be asked in all, less what follows.
+std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> trials, const TestSettings& settings) {
+    std::vector<CheckCase> out(trials.begin(), trials.end());
+    const auto w_o =
+        static_cast<std::size_t>(std::ranges::count_if(out, [](const CheckCase& t) { return !t.baseline; }));
     const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
-    for (Trial& t : out)
+    for (CheckCase& t : out)
         if (t.subject->limited())
-            t.subject = std::make_shared<CappedSampler>(t.subject, in_all - std::min(in_all, w_o * evaluations_beside));
+            t.subject =
+                std::make_shared<LimitedAdapter>(t.subject, in_all - std::min(in_all, w_o * evaluations_beside));
     return out;
 }
 
 /// What is wrong, as far as the evaluations that are left tell.
 std::optional<check::Cause> cause_of(
-    std::span<const Trial> trials, const CheckOutcome& outcome, const TestSettings& settings) {
+    std::span<const CheckCase> trials, const CheckOutcome& outcome, const TestSettings& settings) {
     if (!outcome.wrong()) return {};
-    const std::vector<Trial> capped = with_what_is_left(trials, settings);
+    const std::vector<CheckCase> capped = with_what_is_left(trials, settings);
     try {
         return check::cause_of(capped, outcome);
-    } catch (const SubjectFault&) { return {}; }  // they did not suffice, or it ended meanwhile
+    } catch (const SamplerError&) { return {}; }  // they did not suffice, or it ended meanwhile
 }
 
 /// Verdicts of one sampler, handed to its trials.
-void distribute(std::span<const Trial> trials, const CheckOutcome& outcome, const TestSettings& settings, ByTrial& to,
-    Judgement& j) {
+void distribute(std::span<const CheckCase> trials, const CheckOutcome& outcome, const TestSettings& settings,
+    ByTrial& to, CheckResult& j) {
     const std::optional<check::Cause> cause = cause_of(trials, outcome, settings);
     std::vector<Verdict> all = check::verdicts_of(trials, outcome, cause);
     auto next = all.begin();
@@ -139,18 +140,18 @@ void distribute(std::span<const Trial> trials, const CheckOutcome& outcome, cons
 }
 
 /// Few w_o may be accepted, none may not.
-void refuse_none(std::span<const CheckOutcome> outcomes, Judgement& j) {
+void refuse_none(std::span<const CheckOutcome> outcomes, CheckResult& j) {
     const auto whole = [](const CheckOutcome& o) {
         return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
     };
     if (std::ranges::any_of(outcomes, whole)) return;
-    for (const LeftOut& left : j.left_out)
+    for (const SkippedCase& left : j.left_out)
         for (Verdict& v : j.verdicts)
             if (v.trial == left.trial && v.arm == left.arm && v.state == State::skipped)
                 v.state = State::inconclusive, v.next.kind = NextStep::Kind::more_time;
 }
 
-void count(const CheckOutcome& outcome, Judgement& j) {
+void count(const CheckOutcome& outcome, CheckResult& j) {
     for (const auto& techniques : outcome.at)
         for (const CheckAt& c : techniques) {
             j.tests += c.answers.size();
@@ -160,9 +161,9 @@ void count(const CheckOutcome& outcome, Judgement& j) {
     j.evaluations += outcome.evaluations;
 }
 
-/// Trials beside each other; the call does nothing else while it takes times. What ended early stays so.
-void rank(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes, const check::CheckSettings& settings,
-    const ProgressMonitor& monitor, ByTrial& verdicts) {
+/// CheckCases beside each other; the call does nothing else while it takes times. What ended early stays so.
+void rank(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
+    const check::CheckSettings& settings, const ProgressMonitor& monitor, ByTrial& verdicts) {
     std::vector<check::Efficiency> all = check::variances_of(trials, outcomes, settings, monitor);
     check::measure_costs(trials, settings.seed, all, monitor);
     std::vector<Verdict> ranked = check::judge_efficiency(trials, all);
@@ -179,21 +180,21 @@ void rank(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes,
 
 /// Maps and weights by trial. A program is asked for them in any case: what it is asked does not depend on what is
 /// written.
-void draw_pictures(
-    std::span<const Trial> trials, std::span<const CheckOutcome> outcomes, const TestSettings& settings, Judgement& j) {
-    std::vector<std::vector<BinMap>> maps(trials.size());
-    std::vector<std::optional<WeightPicture>> weights(trials.size());
+void draw_pictures(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
+    const TestSettings& settings, CheckResult& j) {
+    std::vector<std::vector<BinHistogram>> maps(trials.size());
+    std::vector<std::optional<WeightHistogram>> weights(trials.size());
     for (const CheckOutcome& o : outcomes)
         for (std::size_t k = 0; k < o.trials.size(); ++k) {
             const std::size_t i = o.trials[k];
             if (o.cut[k] || !(settings.pictures || trials[i].subject->limited())) continue;
             for (const CheckAt& c : o.at[k])
-                if (std::optional<BinMap> map = check::bin_map(trials[i], c)) maps[i].push_back(std::move(*map));
+                if (std::optional<BinHistogram> map = check::bin_map(trials[i], c)) maps[i].push_back(std::move(*map));
             if (!o.tails[k].weighed) continue;
             weights[i] = check::weight_picture(trials[i], check::weights_of(o.at[k]), o.tails[k]);
             try {
                 check::add_rose(trials[i], *weights[i]);
-            } catch (const SubjectFault&) { weights[i]->rose_p.clear(); }  // it ended meanwhile
+            } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // it ended meanwhile
         }
     if (!settings.pictures) return;
     for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -219,15 +220,15 @@ CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }
 
-Judgement judge(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& monitor) {
+CheckResult judge(std::span<const CheckCase> trials, const TestSettings& settings, ProgressMonitor& monitor) {
     const auto judged =
-        static_cast<std::size_t>(std::ranges::count_if(trials, [](const Trial& t) { return !t.baseline; }));
+        static_cast<std::size_t>(std::ranges::count_if(trials, [](const CheckCase& t) { return !t.baseline; }));
     check::CheckSettings of_engine;
     of_engine.budget = budget_of(settings, false, judged);
     of_engine.limited = budget_of(settings, true, judged);
     of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_evidence = settings.pictures;
     monitor.begin("verdicts", static_cast<double>(judged));
-    Judgement out;
+    CheckResult out;
     out.alpha = settings.alpha;
     const std::vector<CheckOutcome> outcomes = check::check_samplers(trials, of_engine, monitor);
     ByTrial verdicts(trials.size());

@@ -6,22 +6,22 @@
 
 #include "check/constants.h"
 #include "check/decide/check_at.h"
-#include "judgements/all.h"
-#include "subjects/users_trials.h"
+#include "check/sources/cases.h"
+#include "check/verdict_names.h"
 
 namespace crescent {
 namespace {
 
 /// Lambert by the cosine, p times `factor`; a program that answers `rate` times a second and has `allowed` seconds.
-class Program : public JudgedSampler {
+class Program : public SamplerAdapter {
 public:
     double factor = 1, rate = 1e5, allowed = 0;
     std::uint64_t breaks_at = ~std::uint64_t{0};  // after so many answers
 
     std::string name() const override { return "program"; }
     bool serial() const override { return true; }
-    Spending spending() const override { return {answers_, static_cast<double>(answers_) / rate, allowed}; }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    QueryUsage spending() const override { return {answers_, static_cast<double>(answers_) / rate, allowed}; }
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         answer(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double r = std::sqrt(u[i].x), phi = 2 * pi * u[i].y, z = std::sqrt(1 - u[i].x);
@@ -42,25 +42,25 @@ private:
     mutable std::uint64_t answers_ = 0;
     mutable bool gone_ = false;
     void answer(std::size_t n) const {
-        if (gone_) throw SubjectGone("given up");
+        if (gone_) throw SamplerExited("given up");
         answers_ += n;
-        if (answers_ > breaks_at) gone_ = true, throw SubjectFault("it fell silent");
-        if (allowed > 0 && spending().seconds > allowed) throw SubjectTooSlow("too slow");
+        if (answers_ > breaks_at) gone_ = true, throw SamplerError("it fell silent");
+        if (allowed > 0 && spending().seconds > allowed) throw SamplerTimeout("too slow");
     }
 };
 
-std::vector<Trial> trials_of_program(const std::shared_ptr<const Program>& program) {
-    return trials_of_subject(program, false, {{0, 0}, {45, 90}, {85, 0}, {20, 10}});
+std::vector<CheckCase> trials_of_program(const std::shared_ptr<const Program>& program) {
+    return make_user_cases(program, false, {{0, 0}, {45, 90}, {85, 0}, {20, 10}});
 }
 
-Judgement judged(const std::shared_ptr<const Program>& program, bool accept_few = false) {
+CheckResult judged(const std::shared_ptr<const Program>& program, bool accept_few = false) {
     TestSettings settings;
     settings.accept_few = accept_few;
     ProgressMonitor monitor;
     return judge(trials_of_program(program), settings, monitor);
 }
 
-const Verdict& verdict_at(const Judgement& j, std::size_t trial, std::string_view name) {
+const Verdict& verdict_at(const CheckResult& j, std::size_t trial, std::string_view name) {
     for (std::size_t k = 0; k < verdict_names.size(); ++k)
         if (verdict_names[k] == name) return j.verdicts[trial * verdict_names.size() + k];
     throw std::out_of_range("no such verdict");
@@ -68,10 +68,10 @@ const Verdict& verdict_at(const Judgement& j, std::size_t trial, std::string_vie
 
 TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
     const auto program = std::make_shared<Program>();
-    std::vector<Trial> trials = trials_of_program(program);
+    std::vector<CheckCase> trials = trials_of_program(program);
     ProgressMonitor monitor;
-    const Judgement j = judge(trials, TestSettings::quick(), monitor);
-    std::erase_if(trials, [](const Trial& t) { return t.baseline; });
+    const CheckResult j = judge(trials, TestSettings::quick(), monitor);
+    std::erase_if(trials, [](const CheckCase& t) { return t.baseline; });
     ASSERT_EQ(j.verdicts.size(), 4 * verdict_names.size());
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);
@@ -87,7 +87,7 @@ TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
 TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
     const auto program = std::make_shared<Program>();
     program->allowed = 8.5;  // 850,000 answers, two w_o
-    const Judgement j = judged(program);
+    const CheckResult j = judged(program);
     for (std::size_t examined : {std::size_t{1}, std::size_t{2}})
         EXPECT_EQ(verdict_at(j, examined, "density").state, State::right);
     for (std::size_t left : {std::size_t{0}, std::size_t{3}}) {
@@ -103,7 +103,7 @@ TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
 TEST(Judge, AcceptsFewButNotNone) {
     const auto some = std::make_shared<Program>(), none = std::make_shared<Program>();
     some->allowed = 8.5, none->allowed = 0.5;
-    const Judgement j = judged(some, true);
+    const CheckResult j = judged(some, true);
     EXPECT_EQ(j.state, State::right);
     EXPECT_EQ(j.left_out.size(), 2u);
     EXPECT_EQ(verdict_at(j, 0, "density").state, State::skipped);
@@ -114,7 +114,7 @@ TEST(Judge, AcceptsFewButNotNone) {
 TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
     const auto program = std::make_shared<Program>();
     program->breaks_at = 500000;
-    const Judgement j = judged(program);
+    const CheckResult j = judged(program);
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
     EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // of its first draws

@@ -38,7 +38,7 @@ public:
 
     /// Whether the sampler is right. Explains in at most 8 lines where it is not.
     bool MatchAndExplain(Argument arg, testing::MatchResultListener* listener) const override {
-        const Judgement j = judgement_of(arg, listener->IsInterested());
+        const CheckResult j = judgement_of(arg, listener->IsInterested());
         const bool matches = j.state == State::right || (open_ && j.state == State::inconclusive);
         if (!matches && listener->IsInterested()) *listener << "\n" << what_is_wrong(j);
         return matches;
@@ -55,12 +55,12 @@ public:
 private:
     /// Matchers of several elements (Each, ElementsAre) match some before they explain the first: only an explanation
     /// that follows a single match can take its judgement.
-    Judgement judgement_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
+    CheckResult judgement_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
         if (explains && since_explained_ == 1 && of_ == &arg && kept_) {
             since_explained_ = 0;
             return *std::exchange(kept_, std::nullopt);
         }
-        Judgement j = judge_sampler("sampler", user::handed(arg), shared_settings(settings_));
+        CheckResult j = check_sampler("sampler", user::handed(arg), shared_settings(settings_));
         kept_.reset();
         since_explained_ = explains ? 0 : since_explained_ + 1;
         if (!explains) kept_ = j, of_ = &arg;
@@ -69,12 +69,12 @@ private:
 
     TestSettings settings_;
     bool open_;
-    mutable std::optional<Judgement> kept_;
+    mutable std::optional<CheckResult> kept_;
     mutable const void* of_ = nullptr;
     mutable int since_explained_ = 0;
 };
 
-/// A matcher of any sampler that judge_sampler takes.
+/// A matcher of any sampler that check_sampler takes.
 class AnySamplerMatcher {
 public:
     /// As of SamplerMatcher.

@@ -40,10 +40,10 @@ TestSettings one_wo() {
 }
 
 TEST(Matchers, CheckOnceAlsoWhereTheyFail) {
-    const int once = calls_of([] { judge_sampler("sampler", Counted{1.1}, one_wo()); });
+    const int once = calls_of([] { check_sampler("sampler", Counted{1.1}, one_wo()); });
     ASSERT_GT(once, 0);
     EXPECT_EQ(calls_of([] { EXPECT_THAT(Counted{}, IsARightSamplerBy(one_wo())); }),
-        calls_of([] { judge_sampler("sampler", Counted{}, one_wo()); }));
+        calls_of([] { check_sampler("sampler", Counted{}, one_wo()); }));
     EXPECT_EQ(calls_of([] {
         EXPECT_NONFATAL_FAILURE(EXPECT_THAT(Counted{1.1}, IsARightSamplerBy(one_wo())), "normalised is wrong");
     }),

@@ -1,4 +1,4 @@
 // What writes a judgement, for those who include the verdicts alone.
 #pragma once
 
-#include "judgements/print.h"
+#include "check/report/print.h"

@@ -12,7 +12,7 @@
 // to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be written through references. An
 // environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. No SIMD, no base class:
 //
-//   crescent::Judgement j = crescent::judge_sampler("mine", MySampler{});
+//   crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
 //
 // A pointer to one is judged as what it points to; sampler_of(sample, pdf, f) makes one of lambdas.
 //
@@ -23,9 +23,9 @@
 #include <fmt/format.h>
 
 #include "check/check.h"
-#include "subjects/faults.h"
-#include "subjects/user_call.h"
-#include "subjects/users_trials.h"
+#include "check/sources/sampler_adapter.h"
+#include "check/sources/user_cases.h"
+#include "check/sources/user_sampler.h"
 
 namespace crescent::user {
 
@@ -67,7 +67,8 @@ template <class S> consteval bool takes_numbers() {
             return ((Written<At<T, i>> || size_of<At<T, i>>() >= 0) && ...);
         }(std::make_index_sequence<count_of<T>>{});
         if constexpr (!known) return false;
-        else return numbers<S>() >= 1 && numbers<S>() <= Numbers::most && (without_wo<S>() || Direction<At<T, 0>>);
+        else
+            return numbers<S>() >= 1 && numbers<S>() <= PrimarySample::most && (without_wo<S>() || Direction<At<T, 0>>);
     }
 }
 template <class S> consteval bool gives_draws() {
@@ -179,17 +180,17 @@ template <class S> Traits traits_of(const S& s) {
 namespace crescent {
 
 /// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
-template <class Given> class UserSubject : public CalledSampler {
+template <class Given> class UserSampler : public InProcessAdapter {
     using S = user::SamplerOf<Given>;
 
 public:
     /// `name` is what messages call it; `sampler` may be a pointer to one.
-    UserSubject(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
+    UserSampler(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler()); }
     bool serial() const override { return !user::all_const<S>(); }
     bool limited() const override { return false; }
-    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         count(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = called(
@@ -230,7 +231,7 @@ private:
     decltype(auto) sampler() const { return user::Sampler<Given>::of(given_); }
 
     static std::string text_of(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
-    static std::string text_of(const Numbers& u) {
+    static std::string text_of(const PrimarySample& u) {
         std::string out = "u = (";
         for (int k = 0; k < user::numbers<S>(); ++k) out += fmt::format("{}{:.9g}", k ? ", " : "", u[k]);
         return out + ")";
@@ -242,20 +243,20 @@ private:
             throw fault(what, "something", wo, where());
         }
     }
-    static SubjectFault fault(const char* what, const char* why, Vec3d wo, const std::string& where) {
-        return SubjectFault(
+    static SamplerError fault(const char* what, const char* why, Vec3d wo, const std::string& where) {
+        return SamplerError(
             fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {}", what, why, wo.x, wo.y, wo.z, where));
     }
 };
 
 /// Judges a sampler, or what a pointer points to, over a grid of w_o under an even light. TestSettings::thorough()
 /// looks harder, and takes minutes. Where `monitor` says stop, Interrupted is thrown.
-template <class S> Judgement judge_sampler(std::string name, S sampler,
+template <class S> CheckResult check_sampler(std::string name, S sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
     if constexpr (user::must_be_judgeable<user::SamplerOf<S>>()) {
-        const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));
+        const auto subject = std::make_shared<UserSampler<S>>(std::move(name), std::move(sampler));
         ProgressMonitor alone;
-        return judge(trials_of_subject(subject, settings.full, settings.wo), settings, monitor ? *monitor : alone);
+        return judge(make_user_cases(subject, settings.full, settings.wo), settings, monitor ? *monitor : alone);
     } else {
         return {};
     }
@@ -278,7 +279,7 @@ template <class Sample, class Pdf, class F> struct SamplePdfAndF {
 };
 /// For classes whose own members are overloaded, templates or of other names; what they take and give is as of members:
 ///
-///   judge_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
+///   check_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
 ///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
 template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits known = {}) {
     return {std::move(sample), std::move(pdf), known};

@@ -3,17 +3,19 @@
 // t-test", JCGT 9(2); Student's over the differences of renders that share their random numbers. The chance of a false
 // alarm is shared out: half to the regions (Holm), a quarter each to tiles and pixels (false discoveries); within each,
 // half to Y and a sixth to each channel (Bonferroni). Where values are not finite, half of all of it is for them.
-#include <fmt/format.h>
+#include "compare/bias.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fmt/format.h>
 
-#include "compare/judge.h"
-#include "compare/pairs.h"
-#include "compare/pixel_tests.h"
-#include "compare/quantities.h"
-#include "compare/sides.h"
-#include "pages/numbers.h"
+#include "base/parallel.h"
+#include "compare/compare.h"
+#include "compare/metrics.h"
+#include "compare/noise.h"
+#include "compare/wording.h"
+#include "output/format.h"
 
 namespace crescent::inline comparing {
 
@@ -25,21 +27,21 @@ constexpr std::size_t named_most = 5;  // places that are named
 
 /// The two sides, one for each quantity: with independent renders, and in pairs where there are some.
 struct AllSides {
-    std::vector<Sides> apart, paired;
+    std::vector<BiasPair> apart, paired;
 
-    const Sides& first() const { return apart[0]; }
+    const BiasPair& first() const { return apart[0]; }
     /// Pairs, unless a few of their pixels decide the mean.
-    const Sides& in_region(std::size_t quantity, std::size_t region) const {
+    const BiasPair& in_region(std::size_t quantity, std::size_t region) const {
         const bool pairs = !paired.empty() && paired[quantity].heavy_in(region).empty();
         return pairs ? paired[quantity] : apart[quantity];
     }
-    const Sides& in_tile(std::size_t quantity, std::size_t tile) const {
+    const BiasPair& in_tile(std::size_t quantity, std::size_t tile) const {
         const bool pairs = !paired.empty() && !paired[quantity].lone_pixel_in(tile);
         return pairs ? paired[quantity] : apart[quantity];
     }
 };
 
-std::string why_not(const Sides& sides, std::size_t region) {
+std::string why_not(const BiasPair& sides, std::size_t region) {
     if (sides.all.regions[region].pixels.empty()) return "no pixel is finite in every render";
     if (sides.a.files.size() < 2 || (sides.other && sides.b.files.size() < 2))
         return "two renders or more of each arm are needed";
@@ -55,7 +57,7 @@ std::string why_not(const Sides& sides, std::size_t region) {
     return heavy.empty() ? "" : "heavy tail: " + heavy;
 }
 
-MeanTest mean_test(const Sides& sides, std::size_t r, double level) {
+MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     const Values a = sides.region_means(sides.a, r), b = sides.region_means(sides.b, r);
     const PixelSet& set = sides.all.regions[r];
     MeanTest t;
@@ -63,7 +65,7 @@ MeanTest mean_test(const Sides& sides, std::size_t r, double level) {
     t.a = mean_interval(a, confidence).mean, t.b = mean_interval(b, confidence).mean;
     t.why = why_not(sides, r);
     if (!t.why.empty()) return t;
-    const SetNoise noise = sides.noise_of(set);
+    const SetVariance noise = sides.noise_of(set);
     t.welch = sides.test(a, b, noise, false);
     const double blind = std::max({sides.unseen(1, noise.pixels, level), sides.unseen(-1, noise.pixels, level),
         sides.blind(t.a, t.b, noise.pixels, noise.own, level)});
@@ -73,7 +75,7 @@ MeanTest mean_test(const Sides& sides, std::size_t r, double level) {
 }
 
 /// p is small, and events no brighter than some render's or than the files' bound could have been missed.
-std::string doubted(const Sides& sides, const MeanTest& t, double pixels, double level) {
+std::string doubted(const BiasPair& sides, const MeanTest& t, double pixels, double level) {
     const auto events = sides.needed({{}, t.a, t.b, t.welch.p, sides.quantity}, pixels, level);
     if (!events) return {};
     return fmt::format(
@@ -93,13 +95,13 @@ struct RegionTests {
 RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
     RegionTests out;
     for (std::size_t q = 0; q < all.apart.size(); ++q) {
-        const Sides& sides = all.in_region(q, r);
+        const BiasPair& sides = all.in_region(q, r);
         const double share = level * level_share(q, all.apart.size());
         const MeanTest t = mean_test(sides, r, share);
         const double p = t.why.empty() ? t.welch.p : std::nan("");
         out.p.push_back(p), out.seen.push_back(p), out.each.push_back(t);
         if (std::isnan(p)) continue;
-        const SetNoise noise = sides.noise_of(sides.all.regions[r]);
+        const SetVariance noise = sides.noise_of(sides.all.regions[r]);
         if (std::fabs(t.a - t.b) < sides.blind(t.a, t.b, noise.pixels, noise.own, share)) out.seen.back() = 1;
     }
     return out;
@@ -108,7 +110,7 @@ RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
 /// What is small by p alone, and is none of the differences that the tests can see.
 std::string doubt_of(const AllSides& all, const RegionTests& tests, std::size_t r, double level) {
     const std::size_t q = joint_p(tests.p).quantity;
-    const Sides& sides = all.in_region(q, r);
+    const BiasPair& sides = all.in_region(q, r);
     const MeanTest& t = tests.each[q];
     const double pixels = static_cast<double>(sides.all.regions[r].pixels.size()),
                  share = level * level_share(q, tests.each.size());
@@ -143,10 +145,10 @@ struct TileTest {
     bool left_out = false;
 };
 
-TileTest test_tile(const Sides& sides, std::size_t t, double level) {
+TileTest test_tile(const BiasPair& sides, std::size_t t, double level) {
     TileTest out;
     const Values a = sides.tile_means(sides.a, t), b = sides.tile_means(sides.b, t);
-    const SetNoise noise = sides.noise_of(sides.all.tiles.box(t, sides.all.width, sides.all.height));
+    const SetVariance noise = sides.noise_of(sides.all.tiles.box(t, sides.all.width, sides.all.height));
     if (noise.pixels == 0) return out;  // none is finite
     const double d = out.difference = mean_interval(a, confidence).mean - mean_interval(b, confidence).mean;
     out.left_out = sides.lone_pixel_in(t);
@@ -168,7 +170,7 @@ void name_tiles(const AllSides& all, BiasResult& result) {
     std::sort(found.begin(), found.end(),
         [&](std::size_t s, std::size_t t) { return out.p[s] != out.p[t] ? out.p[s] < out.p[t] : s < t; });
     for (std::size_t k = 0; k < std::min(found.size(), named_most); ++k) {
-        const Readings& readings = all.first().all;
+        const RenderStats& readings = all.first().all;
         const Box box = readings.tiles.box(found[k], readings.width, readings.height);
         const std::size_t q = out.quantity[found[k]];
         const double b = all.apart[q].noise_of(box).mean_b;
@@ -223,8 +225,8 @@ std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult&
 }
 
 /// Whether the renders of the two sides have the same pixels, one for one.
-bool same_renders(const ArmReadings& a, const ArmReadings& b) {
-    const auto hashes = [](const ArmReadings& arm) {
+bool same_renders(const ArmStats& a, const ArmStats& b) {
+    const auto hashes = [](const ArmStats& arm) {
         std::vector<std::string> out;
         for (const RenderFile& file : arm.files) out.push_back(file.hash);
         std::sort(out.begin(), out.end());
@@ -233,7 +235,7 @@ bool same_renders(const ArmReadings& a, const ArmReadings& b) {
     return hashes(a) == hashes(b);
 }
 
-SingleDifference single_difference(const Sides& sides) {
+SingleDifference single_difference(const BiasPair& sides) {
     SingleDifference out;
     const auto& pixels = sides.all.regions.back().pixels;
     double squares = 0;
@@ -254,7 +256,7 @@ SingleDifference single_difference(const Sides& sides) {
 
 /// Pairs by the names of the files where that was wished, else by what the renders share where it makes the tests
 /// sharper; `level` is that of one region.
-std::vector<RenderPair> pairs_for(const ComparePlan& plan, const Sides& sides, double level, BiasResult& out) {
+std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides, double level, BiasResult& out) {
     out.shared = shared_seeds(sides.all, sides.a, sides.b);
     out.all_shared = all_paired(out.shared, sides.a, sides.b);
     if (plan.pair && !sides.referred) return pairs_of(sides.a, sides.b);
@@ -265,15 +267,15 @@ std::vector<RenderPair> pairs_for(const ComparePlan& plan, const Sides& sides, d
 }
 
 /// What the tests of means say of renders that are not the same.
-void test_means(const ComparePlan& plan, const CompareResult& measured, const Readings& all, double alpha,
+void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& all, double alpha,
     BiasResult& out, ProgressMonitor& monitor) {
     AllSides sides;
-    const auto sides_of = [&](std::vector<Sides>& to, const PairedRenders* paired) {
+    const auto sides_of = [&](std::vector<BiasPair>& to, const PairedRenders* paired) {
         for (std::size_t q = 0; q < all.quantities; ++q)
             to.emplace_back(plan, all, measured, out.arm_a, out.arm_b, q, paired);
     };
     sides_of(sides.apart, nullptr);
-    const Sides& first = sides.first();
+    const BiasPair& first = sides.first();
     const double region = alpha / 2 / static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
     std::optional<PairedRenders> paired;
     if (auto pairs = pairs_for(plan, first, region, out); !pairs.empty())
@@ -323,16 +325,16 @@ std::size_t BiasResult::shown() const {
     return counts[0] ? 0 : static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
 }
 
-std::string reference_error_from(const ArmReadings& reference) {
+std::string reference_error_from(const ArmStats& reference) {
     if (reference.files.size() > 1) return fmt::format("over its {} files", reference.files.size());
     if (!reference.film.told_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
     return "one file that does not say it: taken from how its difference from the arms varies between neighbouring "
            "pixels";
 }
 
-BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
+BiasResult judge_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
     std::size_t b, double alpha, ProgressMonitor& monitor) {
-    const Sides sides(plan, all, measured, a, b);
+    const BiasPair sides(plan, all, measured, a, b);
     BiasResult out;
     out.a = plan.arms[a].name, out.b = sides.referred ? the_reference : plan.arms[b].name;
     out.arm_a = a, out.arm_b = b, out.dependent = sides.dependent;
@@ -350,6 +352,171 @@ BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const Compar
     else test_means(plan, measured, all, rest, out, monitor);
     out.sentence = sentence_of(all, out, rest / 2);
     return out;
+}
+
+// ---- Welch's t-test at each pixel over the renders (Student's of the differences where they are paired), in chunks
+// side by side, of Y and of each channel. Two p: the histogram's is plain and of Y; the one that names pixels takes a
+// spread for no less than its tile's, since a pixel may give one value in every render by chance. Named pixels are
+// those of a false discovery rate of alpha.
+
+namespace {
+
+constexpr std::size_t bins = 20;                  // of the histogram of p
+constexpr std::size_t pixels_at_once = 1u << 14;  // pixels
+constexpr std::size_t table_from = 1u << 17;
+
+/// Which twentieth a p is in, by t and degrees of freedom (rounded to an eighth): a search instead of a beta function.
+class Bins {
+public:
+    /// A table is worth its while for many pixels only: without one (most = 0) each p is computed.
+    explicit Bins(double most) {
+        for (double df = 1; most > 0 && df <= most + 1; df += 1.0 / 8) {
+            std::array<double, bins> limits{};  // |t| that p = (k + 1)/bins has
+            for (std::size_t k = 0; k + 1 < bins; ++k)
+                limits[k] = student_quantile(1 - static_cast<double>(k + 1) / (2.0 * bins), df);
+            table_.push_back(limits);
+        }
+    }
+    std::size_t of(double t, double df) const {
+        if (table_.empty()) return std::min(bins - 1, static_cast<std::size_t>(two_sided_p(t, df) * bins));
+        const auto row = std::min(table_.size() - 1, static_cast<std::size_t>(std::max(0.0, std::round((df - 1) * 8))));
+        std::size_t k = 0;
+        while (k + 1 < bins && std::fabs(t) < table_[row][k]) ++k;
+        return k;
+    }
+
+private:
+    std::vector<std::array<double, bins>> table_;
+};
+
+struct Moments {
+    double difference = 0, se = 0, df = 1;
+    bool known = false;
+};
+
+/// A tile's variance at a pixel's brightness, where that is below the tile's.
+double scaled(const QuantityReadings& read, std::size_t tile, double variance, double value) {
+    double mean = 0;
+    for (const auto& render : read.tiles) mean += render[tile].mean / static_cast<double>(read.tiles.size());
+    const double share = mean > 0 ? std::min(1.0, std::fabs(value) / mean) : 1;
+    return variance * share * share;
+}
+
+/// A pixel may give the same value in every render by chance (so many hits of so many samples): where `floored`, its
+/// spread is never taken for less than that of its tile, at the pixel's own brightness.
+Moments moments(const BiasPair& s, std::size_t i, bool floored) {
+    const auto x = static_cast<int>(i % static_cast<std::size_t>(s.all.width)),
+               y = static_cast<int>(i / static_cast<std::size_t>(s.all.width));
+    const std::size_t t = s.all.tiles.of(x, y), q = s.quantity;
+    const auto over_renders = [&](const ArmStats& side, const std::vector<double>& tiles, const ArmStats& bright) {
+        double v = side.film.variance(i, q);
+        if (floored) v = std::max(v, scaled(bright.quantities[q], t, tiles[t], bright.film.of(q).mean[i]));
+        return v / static_cast<double>(side.files.size());
+    };
+    Moments m;
+    m.difference = s.mean_a(i) - s.mean_b(i);
+    double sum = 0, below = 0;
+    const auto add = [&](double v, std::size_t renders) {
+        sum += v, below += renders > 1 ? v * v / static_cast<double>(renders - 1) : 0;
+    };
+    if (s.in_pairs()) {
+        m.difference = s.differences->film.of(q).mean[i];
+        add(over_renders(*s.differences, s.tile_paired, s.a), s.differences->files.size());
+    } else {
+        add(over_renders(s.a, s.tile_a, s.a), s.a.files.size());
+        add(over_renders(s.b, s.tile_b, s.b), s.b.files.size());
+    }
+    m.known = std::isfinite(sum) && (sum > 0 || m.difference != 0 || s.in_pairs());
+    if (!m.known) return m;
+    m.se = std::sqrt(sum);
+    m.df = below > 0 ? sum * sum / below : 1;
+    return m;
+}
+
+/// p of one pixel; NaN where it has no noise and no difference, or its noise is not known. 1 where rare events that no
+/// render met could make up the difference (`level`, see BiasPair::unseen).
+double pixel_p(const BiasPair& s, std::size_t i, double level) {
+    const Moments m = moments(s, i, true);
+    if (!m.known) return std::nan("");
+    if (std::fabs(m.difference) < s.blind(s.mean_b(i) + m.difference, s.mean_b(i), 1, 0, level)) return 1;
+    return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : m.difference == 0 ? 1 : 0;
+}
+
+/// A pixel that may differ.
+struct Candidate {
+    JointP p;
+    std::uint32_t pixel = 0;
+    bool operator<(const Candidate& other) const { return p.p != other.p.p ? p.p < other.p.p : pixel < other.pixel; }
+};
+
+/// Counts by pixels_at_once, so that threads need not meet.
+struct PixelCounts {
+    std::array<std::uint64_t, bins> histogram{};
+    std::uint64_t tested = 0;
+    std::vector<Candidate> small;  // p at most alpha
+};
+
+double most_degrees(const BiasPair& s) { return static_cast<double>(s.a.files.size() + s.b.files.size()); }
+
+PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double alpha, double level, const Bins& table) {
+    const auto& pixels = sides[0].all.regions.back().pixels;
+    PixelCounts out;
+    for (std::size_t k = begin; k < std::min(pixels.size(), begin + pixels_at_once); ++k) {
+        bool known = false, small = alpha > 1.0 / bins;
+        for (const BiasPair& s : sides) {
+            const Moments m = moments(s, pixels[k], false);
+            if (!m.known) continue;
+            const std::size_t bin = m.se > 0 ? table.of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0;
+            if (s.quantity == 0) ++out.histogram[bin];
+            known = true, small |= bin == 0;
+        }
+        out.tested += known;
+        if (!known || !small) continue;
+        std::array<double, colour_quantities> p{};
+        for (const BiasPair& s : sides)
+            p[s.quantity] = pixel_p(s, pixels[k], level * level_share(s.quantity, sides.size()));
+        const JointP joint = joint_p(std::span(p).first(sides.size()));
+        if (joint.p <= alpha) out.small.push_back({joint, pixels[k]});
+    }
+    return out;
+}
+
+}  // namespace
+
+double pixel_level(const BiasPair& s, double alpha) {
+    return alpha / static_cast<double>(s.all.regions.back().pixels.size());
+}
+
+void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out) {
+    const BiasPair& s = sides[0];
+    if (s.lone_reference() && s.b.film.told_variance.empty()) return;
+    const std::size_t count = s.all.regions.back().pixels.size();
+    const double level = pixel_level(s, alpha);
+    const Bins table(count > table_from ? most_degrees(s) : 0);
+    std::vector<PixelCounts> parts((count + pixels_at_once - 1) / pixels_at_once);
+    parallel_for(std::size_t{0}, parts.size(),
+        [&](std::size_t c) { parts[c] = part_of(sides, c * pixels_at_once, alpha, level, table); });
+    out.pixel_p.assign(bins, 0), out.pixels_by.assign(sides.size(), 0);
+    std::vector<Candidate> small;
+    for (const PixelCounts& part : parts) {
+        for (std::size_t k = 0; k < bins; ++k) out.pixel_p[k] += part.histogram[k];
+        out.pixels_tested += part.tested;
+        small.insert(small.end(), part.small.begin(), part.small.end());
+    }
+    std::sort(small.begin(), small.end());
+    std::vector<double> p;
+    for (const Candidate& c : small) p.push_back(c.p.p);
+    out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), alpha, s.dependent);
+    small.resize(out.pixels_different);
+    for (const Candidate& c : small) {
+        ++out.pixels_by[c.p.quantity], out.different_pixels.push_back(c.pixel);
+        if (out.pixels_found.size() == named_most) continue;
+        const int x = static_cast<int>(c.pixel) % s.all.width, y = static_cast<int>(c.pixel) / s.all.width;
+        const BiasPair& of = sides[c.p.quantity];
+        const double b = of.mean_b(c.pixel);
+        out.pixels_found.push_back({{x, y, x, y}, b + moments(of, c.pixel, false).difference, b, c.p.p, c.p.quantity});
+    }
+    std::sort(out.different_pixels.begin(), out.different_pixels.end());
 }
 
 }  // namespace crescent::inline comparing

@@ -1,20 +1,163 @@
 // The order of a comparison: read twice, judge, draw, write.
 #include "compare/compare.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "base/files.h"
-#include "compare/judge.h"
+#include "compare/plan.h"
 #include "compare/plates.h"
-#include "plates/canvas.h"
+#include "output/format.h"
+#include "report/plates/canvas.h"
 
 namespace crescent::inline comparing {
+
+// ---- Every meter, every test, and what they amount to.
+
+namespace {
+
+/// What the plan says, else what all files of the arm say alike.
+template <class Read> std::optional<double> told(const std::optional<double>& plan, const ArmStats& arm, Read read) {
+    if (plan) return plan;
+    double sum = 0;
+    for (const RenderFile& file : arm.files) {
+        if (!read(file)) return {};
+        sum += *read(file);
+    }
+    return sum / static_cast<double>(arm.files.size());
+}
+
+ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t a, ProgressMonitor& monitor) {
+    ArmResult out;
+    const ArmStats& arm = all.arms[a];
+    out.name = plan.arms[a].name, out.renders = arm.files.size();
+    out.spp = told(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
+    out.seconds = told(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
+    const std::vector<Flips> flip = measure_flip(plan, all, a, monitor);
+    for (std::size_t r = 0; r < all.regions.size(); ++r)
+        out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
+    return out;
+}
+
+double value_of(const ParsedQuantity& side, const CompareResult& result, std::string& why) {
+    if (side.number) return *side.number;
+    for (const ArmResult& arm : result.arms) {
+        if (arm.name != side.subject) continue;
+        const MeterValue& value = arm.region(side.region).meter(side.word);
+        if (value.value) return *value.value;
+        why = fmt::format("{} has no value: {}", to_string(side), value.why);
+    }
+    return std::nan("");
+}
+
+/// Why no number of a region counts: some of its pixels are not finite on one side of some pair; "" where none is.
+std::string spoiled(const RenderStats& all, const CompareResult& result, const std::string& region) {
+    const auto set =
+        std::find_if(all.regions.begin(), all.regions.end(), [&](const PixelSet& s) { return s.name == region; });
+    const auto inside = [&](const FailingPixels& failing) {
+        return std::any_of(failing.pixels.begin(), failing.pixels.end(),
+            [&](std::uint32_t i) { return std::binary_search(set->left_out.begin(), set->left_out.end(), i); });
+    };
+    for (const BiasResult& b : result.bias)
+        if (inside(b.non_finite.a) || inside(b.non_finite.b)) return failing_pixels(all, b);
+    if (all.arms.size() > 1 || all.reference) return {};
+    const ArmStats& only = all.arms[0];
+    const auto fails = [&](std::uint32_t i) { return only.not_finite[i] == only.files.size(); };
+    const auto count = std::count_if(set->left_out.begin(), set->left_out.end(), fails);
+    return count ? fmt::format("{} of its pixels are finite in no render", count) : "";
+}
+
+AssertionResult asserted(const AssertionPlan& plan, const RenderStats& all, CompareResult& result) {
+    AssertionResult out;
+    out.name = plan.name, out.op = plan.check.op, out.text = to_string(plan.check);
+    std::string why;
+    out.measured = value_of(plan.check.left, result, why), out.bound = value_of(plan.check.right, result, why);
+    if (!why.empty()) result.warnings.push_back(out.name + ": " + why);
+    out.pass = holds(out.measured, out.op, out.bound);
+    for (const ParsedQuantity* side : {&plan.check.left, &plan.check.right}) {
+        if (side->number) continue;
+        const std::string bad = spoiled(all, result, side->region);
+        if (bad.empty()) continue;
+        out.pass = false, out.text += fmt::format(" (cannot hold in {}: {})", side->region, bad);
+        break;
+    }
+    return out;
+}
+
+/// With expect = "same": what was not seen well enough to say so; "" where all was.
+std::string not_seen(const ComparePlan& plan, const BiasResult& bias) {
+    if (bias.non_finite.undecided)
+        return fmt::format(
+            "of {} and {}, {} pixels are not finite in half of the renders of one side or more and in "
+            "none of the other; more renders would show whether that is chance",
+            bias.a, bias.b, bias.non_finite.undecided);
+    for (const MeanTest& t : bias.regions) {
+        if (!t.doubt.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.doubt);
+        if (!t.why.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.why);
+        for (const MeanTest& c : t.channels)
+            if (!c.why.empty())
+                return fmt::format("{} of {} and {} in {}: {}", c.region, bias.a, bias.b, t.region, c.why);
+        if (!(t.smallest <= plan.smallest))
+            return fmt::format(
+                "{} and {} in {}: a difference of {:.2g} % would have been seen, {:.2g} % was asked; more renders "
+                "would tell",
+                bias.a, bias.b, t.region, 100 * t.smallest, 100 * plan.smallest);
+    }
+    return "";
+}
+
+void conclude(const ComparePlan& plan, CompareResult& result) {
+    using State = CompareResult::State;
+    for (const AssertionResult& a : result.assertions)
+        if (!a.pass)
+            result.state = State::fails,
+            result.sentence = std::isnan(a.measured) || std::isnan(a.bound)
+                ? fmt::format("An assertion does not pass: {}: a side of it was not measured.", a.text)
+                : fmt::format(
+                      "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
+    if (plan.expect != Expectation::same) return;
+    for (const BiasResult& bias : result.bias)
+        if (bias.differs()) result.state = State::fails, result.sentence = bias.sentence;
+    for (const BiasResult& bias : result.bias) {
+        const std::string why = bias.identical ? "" : not_seen(plan, bias);
+        if (why.empty() || result.state != State::holds) continue;
+        result.state = State::inconclusive;
+        result.sentence = bias.single ? bias.sentence : "Whether they are the same cannot be said: " + why + ".";
+    }
+}
+
+}  // namespace
+
+CompareResult judge(const ComparePlan& plan, const RenderStats& all, ProgressMonitor& monitor) {
+    CompareResult out;
+    out.warnings = all.warnings;
+    const std::size_t arms = all.arms.size();
+    for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, all, a, monitor));
+    for (std::size_t r = 0; r < all.regions.size() && all.reference; ++r)
+        out.reference_error[all.regions[r].name] = std::sqrt(reference_variance(all, r));
+    if (all.reference) out.reference_error_from = reference_error_from(*all.reference);
+    const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
+    const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
+    for (std::size_t a = 0; a < arms; ++a) {
+        if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, alpha, monitor));
+        for (std::size_t b = 0; b < a; ++b) {
+            out.bias.push_back(judge_bias(plan, all, out, a, b, alpha, monitor));
+            if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1)
+                out.noise.push_back(judge_noise(plan, all, a, b, alpha));
+        }
+    }
+    out.rankings = rank(out), out.ladders = ladders_of(out);
+    for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, all, out));
+    conclude(plan, out);
+    return out;
+}
 
 CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary) {
     const plates::Canvas probe(1, 1, {});  // a missing font is found before the work, and a folder that is in use
     Staging staging(options.out);
-    const Readings all = read_all(plan, monitor);
+    const RenderStats all = read_all(plan, monitor);
     const CompareResult result = judge(plan, all, monitor);
     std::map<std::string, std::vector<unsigned char>> pictures;
     for (const auto& [name, picture] : compare_plates(plan, all, result))

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/memory_renders_test.h"
-#include "compare/schema.h"
+#include "compare/plan.h"
+#include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparing {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using Kind = MadeNoise::Kind;
+using Kind = SyntheticNoise::Kind;
 using State = CompareResult::State;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -76,13 +76,13 @@ TEST(NonFinite, SomeRendersOfOneSideAreADifferenceWhereEqualRatesAreUnlikely) {
 }
 
 TEST(NonFinite, ScatteredFailuresOfOneSideAreADifferenceAndOfBothNone) {
-    MadeWorld one{{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 8, 32, false}, both = one;
+    SyntheticScene one{{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 8, 32, false}, both = one;
     one.b.failing = both.a.failing = both.b.failing = 3e-3;  // about 25 pixels of 8 renders
     int alarms = 0;
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-        const CompareResult found = compare_made(one, seed);
+        const CompareResult found = compare_synthetic(one, seed);
         EXPECT_TRUE(found.bias[0].non_finite.differs()) << found.bias[0].sentence;
-        alarms += compare_made(both, seed).bias[0].non_finite.differs();
+        alarms += compare_synthetic(both, seed).bias[0].non_finite.differs();
     }
     EXPECT_LE(alarms, 4);  // 2.5 % each: more with a probability below 0.02 %
 }
@@ -132,9 +132,9 @@ TEST(NonFinite, AStatisticThatIsNoNumberIsNoAgreement) {
 
 // Red is 5 % brighter and blue 15 % darker, so that Y is the same.
 TEST(Channels, AHueAtEqualLuminanceIsFoundAndNamed) {
-    MadeWorld w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 8, 32, false, 0.25};
+    SyntheticScene w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 8, 32, false, 0.25};
     w.b.hue = 0.05;
-    const CompareResult r = compare_made(w, 3, {same, wide});
+    const CompareResult r = compare_synthetic(w, 3, {same, wide});
     EXPECT_EQ(r.state, State::fails);
     const MeanTest& frame = r.bias[0].regions[0];
     EXPECT_THAT(frame.differs_in(), ElementsAre("R", "B"));
@@ -164,7 +164,7 @@ TEST(Channels, OneChannelAloneIsFoundWhereverItIs) {
 }
 
 TEST(Channels, GreyRendersAreTestedOnce) {
-    const CompareResult r = compare_made({{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 4, 24, false}, 3);
+    const CompareResult r = compare_synthetic({{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 4, 24, false}, 3);
     EXPECT_TRUE(r.bias[0].regions[0].channels.empty());
     EXPECT_EQ(r.bias[0].regions[0].joint_p, r.bias[0].regions[0].welch.p);
     EXPECT_EQ(r.bias[0].tiles_by.size(), 1u);
@@ -172,18 +172,18 @@ TEST(Channels, GreyRendersAreTestedOnce) {
 
 // alpha = 0.05: 2 of 40 on average, more than 7 with a probability of 0.4 %.
 TEST(Channels, EqualArmsInColourRarelyDiffer) {
-    for (const MadeNoise& noise : {MadeNoise{Kind::gamma, 0.2}, {Kind::lognormal, 1}}) {
+    for (const SyntheticNoise& noise : {SyntheticNoise{Kind::gamma, 0.2}, {Kind::lognormal, 1}}) {
         int alarms = 0;
         for (std::uint32_t seed = 1; seed <= 40; ++seed)
-            alarms += compare_made({noise, noise, 4, 24, false, 0.25}, seed).differs();
+            alarms += compare_synthetic({noise, noise, 4, 24, false, 0.25}, seed).differs();
         EXPECT_LE(alarms, 7);
     }
 }
 
 TEST(SharedSeeds, AreRecognisedInAnyOrderAndComparedInPairs) {
     for (const int renders : {3, 4, 8}) {
-        MadeWorld w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2, 0.002}, renders, 32, false, 0.25, renders};
-        const BiasResult with = compare_made(w, 5).bias[0];
+        SyntheticScene w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2, 0.002}, renders, 32, false, 0.25, renders};
+        const BiasResult with = compare_synthetic(w, 5).bias[0];
         EXPECT_TRUE(with.all_shared);
         EXPECT_TRUE(with.paired);
         EXPECT_TRUE(with.differs()) << with.sentence;
@@ -193,7 +193,7 @@ TEST(SharedSeeds, AreRecognisedInAnyOrderAndComparedInPairs) {
             EXPECT_GT(p.correlation, 0.99);
         }
         w.shared = 0;
-        const BiasResult without = compare_made(w, 5).bias[0];
+        const BiasResult without = compare_synthetic(w, 5).bias[0];
         EXPECT_TRUE(without.shared.empty());
         EXPECT_FALSE(without.paired);
         EXPECT_FALSE(without.differs()) << without.sentence;
@@ -202,8 +202,8 @@ TEST(SharedSeeds, AreRecognisedInAnyOrderAndComparedInPairs) {
 
 TEST(SharedSeeds, OfSomeRendersPairThose) {
     for (const int shared : {2, 4}) {
-        const MadeWorld w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2, 0.002}, 6, 32, false, 0, shared};
-        const BiasResult found = compare_made(w, 5).bias[0];
+        const SyntheticScene w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2, 0.002}, 6, 32, false, 0, shared};
+        const BiasResult found = compare_synthetic(w, 5).bias[0];
         EXPECT_EQ(found.shared.size(), static_cast<std::size_t>(shared));
         for (const SeedPair& p : found.shared) EXPECT_GT(p.correlation, 0.999);
         EXPECT_FALSE(found.all_shared);
@@ -213,9 +213,9 @@ TEST(SharedSeeds, OfSomeRendersPairThose) {
 }
 
 TEST(SharedSeeds, IndependentOnesAreNotTakenForEqual) {
-    for (const MadeNoise& noise : {MadeNoise{Kind::gamma, 0.2}, {Kind::lognormal, 1}, {Kind::pareto, 1.5}})
+    for (const SyntheticNoise& noise : {SyntheticNoise{Kind::gamma, 0.2}, {Kind::lognormal, 1}, {Kind::pareto, 1.5}})
         for (std::uint32_t seed = 1; seed <= 40; ++seed)  // 1e-3 each
-            EXPECT_TRUE(compare_made({noise, noise, 6, 24, false}, seed).bias[0].shared.empty()) << seed;
+            EXPECT_TRUE(compare_synthetic({noise, noise, 6, 24, false}, seed).bias[0].shared.empty()) << seed;
 }
 
 // The same renders with sums in another order: relative differences of 1e-6, all of one sign.

@@ -5,14 +5,14 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfRgbaFile.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "base/errors.h"
-#include "compare/exr_chunks.h"
+#include "compare/exr_file.h"
+#include "compare/exr_layers.h"
 
 namespace crescent::inline comparing {
 
@@ -168,6 +168,62 @@ Planes ExrFile::read_luminance_chroma(const ExrPart& part, const std::string& la
                 out[0][to + i] = row[i].r, out[1][to + i] = row[i].g, out[2][to + i] = row[i].b;
         }
     });
+    return out;
+}
+
+// ---- OpenEXR as renderers write it: scanlines or tiles, half or float, one part or many, layers with dotted names,
+// luminance and chroma, XYZ. Deep parts and what is not radiance (Cryptomatte, normals, depth, ...) are passed by.
+
+namespace {
+
+void set_primaries(Render& out, const ExrPart& part) {
+    if (!part.primaries) return;
+    out.primaries = *part.primaries, out.weights = luminance_weights_of(*part.primaries);
+}
+
+/// Every plane the layer's colours, then what the part says beside them.
+Render render_of(const ExrPart& part, const OpenFile& file, const ExrLayer& layer) {
+    Render out(file.path(), static_cast<int>(part.data.width()), static_cast<int>(part.data.height()), Render::empty);
+    out.layer = layer.name;
+    out.data = part.data, out.display = part.display;
+    out.spp =
+        exr_attribute(file.path(), part, "samples a pixel", {"spp", "samples", "samplesperpixel", "samplecount", "n"});
+    out.seconds = exr_attribute(file.path(), part, "seconds", {"rendertime", "seconds", "time", "rendertimes"});
+    const bool half = layer.kind == ExrLayer::Kind::luminance_chroma || part.channel(layer.channels[0])->half;
+    if (half) out.rounding = 0x1p-11;
+    return out;
+}
+
+}  // namespace
+
+Render read_exr(const OpenFile& file, const std::string& wanted) {
+    const ExrFile exr(file);
+    const ExrLayer layer = chosen_layer(exr, file.path(), wanted);
+    const ExrPart& part = exr.parts()[static_cast<std::size_t>(layer.part)];
+    Render out = render_of(part, file, layer);
+    set_primaries(out, part);
+    const ExrExtra extra = exr_extra(part);
+    std::vector<std::string> channels;
+    if (layer.kind == ExrLayer::Kind::luminance_chroma) {
+        auto rgb = exr.read_luminance_chroma(part, layer.prefix);
+        out.r = std::move(rgb[0]), out.g = std::move(rgb[1]), out.b = std::move(rgb[2]);
+    } else {
+        channels = layer.channels;
+    }
+    const std::size_t colours = channels.size();
+    channels.insert(channels.end(), extra.spread.begin(), extra.spread.end());
+    if (!extra.samples.empty()) channels.push_back(extra.samples);
+    if (channels.empty()) return out;
+    std::vector<std::vector<float>> planes = exr.read(part, channels);
+    std::vector<float> samples;
+    if (!extra.samples.empty()) samples = std::move(planes.back()), planes.pop_back();
+    std::vector<float>* to[] = {&out.r, &out.g, &out.b};
+    for (std::size_t c = 0; c < colours; ++c) *to[c] = std::move(planes[c]);
+    planes.erase(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(colours));
+    if (colours == 1) out.g = out.b = out.r;
+    if (layer.kind == ExrLayer::Kind::xyz) from_xyz(out);
+    set_variance(out, extra, planes);
+    if (!extra.samples.empty()) set_samples(out, extra, samples);
     return out;
 }
 

@@ -1,9 +1,13 @@
 // Kinds of warnings in the order in which they come.
 #include "compare/file_warnings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+#include "math/hypotheses.h"
+#include "math/statistics.h"
 
 namespace crescent::inline comparing {
 
@@ -25,6 +29,183 @@ std::vector<std::string> FileWarnings::lines() const {
                                                : fmt::format("{} to {} pixels ", k.fewest, k.most);
         out.push_back(fmt::format("{}: {}{}", file, pixels, k.text));
     }
+    return out;
+}
+
+// ---- The counts are of the first pass (each pixel over renders) and of the second (groups in each render and region).
+// A sample that fails spoils a pixel, or as many as its filter covers: groups count such events, and these are
+// independent where pixels are not.
+
+namespace {
+
+constexpr std::size_t named_places = 3;  // pixels whose places are written
+
+bool finite(const Render& r, std::size_t i) {
+    return std::isfinite(r.r[i]) && std::isfinite(r.g[i]) && std::isfinite(r.b[i]);
+}
+
+/// Connected components of pixels that come in rising order: each joins its left neighbour and the three of the row
+/// before.
+class Groups {
+public:
+    explicit Groups(int width) : width_(width) {}
+    std::uint32_t count(const std::vector<std::uint32_t>& pixels) {
+        parent_.resize(pixels.size());
+        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+        std::uint32_t groups = 0;
+        for (std::size_t k = 0; k < pixels.size(); ++k) {
+            ++groups;
+            const auto x = static_cast<int>(pixels[k] % static_cast<std::uint32_t>(width_));
+            for (const int step : {1, width_ - 1, width_, width_ + 1}) {
+                const int column = step == 1 || step == width_ + 1 ? x - 1 : step == width_ ? x : x + 1;
+                if (column < 0 || column >= width_ || pixels[k] < static_cast<std::uint32_t>(step)) continue;
+                const auto at =
+                    std::lower_bound(pixels.begin(), pixels.end(), pixels[k] - static_cast<std::uint32_t>(step));
+                if (at == pixels.end() || *at != pixels[k] - static_cast<std::uint32_t>(step)) continue;
+                groups -= join(k, static_cast<std::size_t>(at - pixels.begin()));
+            }
+        }
+        return groups;
+    }
+
+private:
+    std::size_t root(std::size_t k) {
+        while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+        return k;
+    }
+    bool join(std::size_t k, std::size_t other) {
+        const std::size_t a = root(k), b = root(other);
+        parent_[a] = b;
+        return a != b;
+    }
+    int width_;
+    std::vector<std::size_t> parent_;
+};
+
+std::uint32_t failures(const ArmStats& arm, std::uint32_t pixel) {
+    return arm.not_finite.empty() ? 0 : arm.not_finite[pixel];
+}
+
+/// The two sides' counts of one pixel.
+struct Counts {
+    std::uint32_t a = 0, b = 0;
+};
+
+class Sorting {
+public:
+    Sorting(const RenderStats& all, const ArmStats& a, const ArmStats& b)
+        : all_(all), a_(a), b_(b), na_(a.files.size()), nb_(b.files.size()) {}
+
+    NonFinite result(double alpha) {
+        for (const std::uint32_t i : all_.regions.back().left_out)
+            if (failures(a_, i) + failures(b_, i) > 0) failing_.push_back(i);
+        if (failing_.empty()) return {};
+        differs_.assign(failing_.size(), false);
+        groups(alpha / 2), pixels(alpha / 2);
+        collect();
+        return std::move(out_);
+    }
+
+private:
+    Counts counts(std::uint32_t i) const { return {failures(a_, i), failures(b_, i)}; }
+    bool more_in_a(const Counts& c) const { return c.a * nb_ > c.b * na_; }
+    bool more_in_b(const Counts& c) const { return c.a * nb_ < c.b * na_; }
+
+    void pixels(double alpha) {
+        std::vector<double> p;
+        for (std::size_t k = 0; k < failing_.size(); ++k) {
+            const Counts c = counts(failing_[k]);
+            p.push_back(fisher_exact(c.a, na_, c.b, nb_));
+            if ((c.a == na_ && c.b == 0) || (c.b == nb_ && c.a == 0)) differs_[k] = true;
+        }
+        const std::vector<bool> found = discoveries(p, alpha, false);
+        for (std::size_t k = 0; k < p.size(); ++k)
+            if (found[k]) differs_[k] = true;
+    }
+
+    void groups(double alpha) {
+        const auto sum = [](const ArmStats& arm, std::size_t region) {
+            std::uint64_t out = 0;
+            for (const auto& render : arm.failed_groups) out += render[region];
+            return out;
+        };
+        std::vector<double> p;
+        const double share = static_cast<double>(na_) / static_cast<double>(na_ + nb_);
+        for (std::size_t r = 0; r < all_.regions.size(); ++r) {
+            FailedGroups g{all_.regions[r].name, sum(a_, r), sum(b_, r), 1, false};
+            g.p = binomial_exact(g.a, g.a + g.b, share);
+            p.push_back(g.p), out_.groups.push_back(g);
+        }
+        const std::vector<bool> found = holm(p, alpha);
+        for (std::size_t r = 0; r < p.size(); ++r) {
+            FailedGroups& g = out_.groups[r];
+            g.differs = found[r];
+            const bool more_a = g.a * nb_ > g.b * na_;
+            for (const std::uint32_t i : all_.regions[r].left_out) {
+                const Counts c = counts(i);
+                if (!g.differs || !(more_a ? more_in_a(c) : more_in_b(c))) continue;
+                differs_[static_cast<std::size_t>(
+                    std::lower_bound(failing_.begin(), failing_.end(), i) - failing_.begin())] = true;
+            }
+        }
+    }
+
+    static void put(FailingPixels& to, std::uint32_t pixel, std::uint32_t own, std::uint32_t other) {
+        const bool first = to.pixels.empty();
+        to.pixels.push_back(pixel);
+        to.least = first ? own : std::min(to.least, own), to.most = std::max(to.most, own);
+        to.other_least = first ? other : std::min(to.other_least, other);
+        to.other_most = std::max(to.other_most, other);
+    }
+
+    void collect() {
+        for (std::size_t k = 0; k < failing_.size(); ++k) {
+            const Counts c = counts(failing_[k]);
+            if (!differs_[k]) {
+                ++(c.a > 0 && c.b > 0 ? out_.both : out_.one);
+                out_.undecided += (c.a == 0 && 2 * c.b >= nb_) || (c.b == 0 && 2 * c.a >= na_);
+            } else if (more_in_a(c)) put(out_.a, failing_[k], c.a, c.b);
+            else put(out_.b, failing_[k], c.b, c.a);
+        }
+    }
+
+    const RenderStats& all_;
+    const ArmStats &a_, &b_;
+    const std::size_t na_, nb_;
+    std::vector<std::uint32_t> failing_;  // pixels that fail in some render of either side, rising
+    std::vector<bool> differs_;           // one each
+    NonFinite out_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& all) {
+    std::vector<std::uint32_t> out;
+    for (const PixelSet& set : all.regions) {
+        std::vector<std::uint32_t> bad;
+        std::copy_if(set.left_out.begin(), set.left_out.end(), std::back_inserter(bad),
+            [&](std::uint32_t i) { return !finite(render, i); });
+        out.push_back(Groups(all.width).count(bad));
+    }
+    return out;
+}
+
+NonFinite compare_non_finite(const RenderStats& all, const ArmStats& a, const ArmStats& b, double alpha) {
+    return Sorting(all, a, b).result(alpha);
+}
+
+std::string places_of(const FailingPixels& failing, int width) {
+    const auto x = [&](std::uint32_t i) { return static_cast<int>(i) % width; };
+    const auto y = [&](std::uint32_t i) { return static_cast<int>(i) / width; };
+    std::vector<std::string> first;
+    Box box{x(failing.pixels[0]), y(failing.pixels[0]), 0, y(failing.pixels.back())};
+    for (const std::uint32_t i : failing.pixels) {
+        if (first.size() < named_places) first.push_back(fmt::format("({}, {})", x(i), y(i)));
+        box.x0 = std::min(box.x0, x(i)), box.x1 = std::max(box.x1, x(i));
+    }
+    std::string out = fmt::format("{}", fmt::join(first, ", "));
+    if (failing.pixels.size() > first.size())
+        out += fmt::format(", ... within x {}–{} y {}–{}", box.x0, box.x1, box.y0, box.y1);
     return out;
 }
 

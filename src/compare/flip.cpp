@@ -1,6 +1,6 @@
 // FLIP (Andersson et al. 2020) and HDR-FLIP (Andersson et al. 2021), with their constants: contrast sensitivities as
 // Gaussians, HyAB after Hunt's adjustment, edges and points of lightness. Distances in degrees of view become pixels by
-// ppd, pixels a degree. Planes are float, sums double.
+// ppd, pixels a degree. ColourPlanes are float, sums double.
 #include "compare/flip.h"
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 #include <numbers>
 
 #include "math/functions.h"
-#include "stats/quantiles.h"
+#include "math/statistics.h"
 
 namespace crescent::inline comparing {
 
 namespace {
 
 using Plane = std::vector<float>;
-using Planes = std::array<Plane, 3>;
+using ColourPlanes = std::array<Plane, 3>;
 using Triple = std::array<double, 3>;
 
 constexpr double pi = std::numbers::pi;
@@ -26,8 +26,8 @@ constexpr double pi = std::numbers::pi;
 constexpr double to_xyz[3][3] = {{10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
     {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382}};
-constexpr double from_xyz[3][3] = {{3.241003275, -1.537398934, -0.498615861}, {-0.969224334, 1.875930071, 0.041554224},
-    {0.055639423, -0.204011202, 1.057148933}};
+constexpr double rgb_of_xyz[3][3] = {{3.241003275, -1.537398934, -0.498615861},
+    {-0.969224334, 1.875930071, 0.041554224}, {0.055639423, -0.204011202, 1.057148933}};
 
 Triple times(const double (&m)[3][3], const Triple& v) {
     Triple out{};
@@ -53,7 +53,7 @@ Triple ycxcz(const Triple& rgb) {
 
 Triple rgb_of(const Triple& c) {
     const double y = (c[0] + 16) / 116;
-    return times(from_xyz, {(y + c[1] / 500) * white()[0], y * white()[1], (y - c[2] / 200) * white()[2]});
+    return times(rgb_of_xyz, {(y + c[1] / 500) * white()[0], y * white()[1], (y - c[2] / 200) * white()[2]});
 }
 
 /// CIELAB with a and b scaled by lightness: colours differ less where it is dark (Hunt).
@@ -163,8 +163,8 @@ Plane magnitude(const Plane& lightness, Size size, double ppd, bool edge) {
 
 // --- the two halves of FLIP -----------------------------------------------------------------------------------------
 
-Planes opponent(const FlipImage& image) {
-    Planes out;
+ColourPlanes opponent(const FlipImage& image) {
+    ColourPlanes out;
     for (Plane& p : out) p.resize(image.r.size());
     for (std::size_t i = 0; i < image.r.size(); ++i) {
         const auto in = [](float v) { return std::clamp(static_cast<double>(v), 0.0, 1.0); };
@@ -175,8 +175,8 @@ Planes opponent(const FlipImage& image) {
 }
 
 /// What the eye resolves of the picture, as Hunt-adjusted CIELAB.
-Planes perceived(const Planes& c, Size size, double ppd) {
-    Planes out{blurred(c[0], size, {&achromatic, 1}, ppd), blurred(c[1], size, {&red_green, 1}, ppd),
+ColourPlanes perceived(const ColourPlanes& c, Size size, double ppd) {
+    ColourPlanes out{blurred(c[0], size, {&achromatic, 1}, ppd), blurred(c[1], size, {&red_green, 1}, ppd),
         blurred(c[2], size, blue_yellow, ppd)};
     for (std::size_t i = 0; i < out[0].size(); ++i) {
         Triple rgb =
@@ -188,7 +188,7 @@ Planes perceived(const Planes& c, Size size, double ppd) {
     return out;
 }
 
-Triple at(const Planes& p, std::size_t i) {
+Triple at(const ColourPlanes& p, std::size_t i) {
     return {static_cast<double>(p[0][i]), static_cast<double>(p[1][i]), static_cast<double>(p[2][i])};
 }
 
@@ -203,7 +203,7 @@ double remapped(double difference) {
 struct Features {
     Plane edges, points;
 };
-Features features(const Planes& c, Size size, double ppd) {
+Features features(const ColourPlanes& c, Size size, double ppd) {
     Plane y = c[0];
     for (float& v : y) v = (v + 16) / 116;
     return {magnitude(y, size, ppd, true), magnitude(y, size, ppd, false)};
@@ -219,8 +219,8 @@ float tone_mapped(float radiance, double exposure) {
         std::clamp((aces[0] * x * x + aces[1] * x + aces[2]) / (aces[3] * x * x + aces[4] * x + aces[5]), 0.0, 1.0));
 }
 
-Planes tone_mapped(const FlipImage& image, double exposure) {
-    Planes out;
+ColourPlanes tone_mapped(const FlipImage& image, double exposure) {
+    ColourPlanes out;
     const std::span<const float> in[3] = {image.r, image.g, image.b};
     for (std::size_t k = 0; k < 3; ++k) {
         out[k].reserve(in[k].size());
@@ -233,9 +233,9 @@ Planes tone_mapped(const FlipImage& image, double exposure) {
 
 std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, double ppd) {
     const Size size{reference.width, reference.height};
-    const Planes a = opponent(reference), b = opponent(test);
+    const ColourPlanes a = opponent(reference), b = opponent(test);
     const Features fa = features(a, size, ppd), fb = features(b, size, ppd);
-    const Planes pa = perceived(a, size, ppd), pb = perceived(b, size, ppd);
+    const ColourPlanes pa = perceived(a, size, ppd), pb = perceived(b, size, ppd);
     std::vector<float> out(a[0].size());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const double colour = remapped(hyab(at(pa, i), at(pb, i)));
@@ -271,7 +271,7 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
     std::vector<float> out(reference.r.size());
     for (int k = 0; k < e.count; ++k) {
         const double exposure = math::exp2(e.start + k * (e.stop - e.start) / (e.count - 1));
-        const Planes a = tone_mapped(reference, exposure), b = tone_mapped(test, exposure);
+        const ColourPlanes a = tone_mapped(reference, exposure), b = tone_mapped(test, exposure);
         const std::vector<float> one = ldr_flip(
             {reference.width, reference.height, a[0], a[1], a[2]}, {test.width, test.height, b[0], b[1], b[2]}, ppd);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(out[i], one[i]);

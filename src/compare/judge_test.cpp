@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/made.h"
-#include "compare/schema.h"
+#include "compare/plan.h"
+#include "compare/synthetic.h"
 
 namespace crescent::inline comparing {
 namespace {
 
 using ::testing::HasSubstr;
-using Kind = MadeNoise::Kind;
+using Kind = SyntheticNoise::Kind;
 using State = CompareResult::State;
 
-constexpr MadeNoise coarse{Kind::normal, 0.5, 0}, fine{Kind::normal, 0.2, 0};
+constexpr SyntheticNoise coarse{Kind::normal, 0.5, 0}, fine{Kind::normal, 0.2, 0};
 
-MadeWorld world(int renders, double bias, int width = 24) {
+SyntheticScene world(int renders, double bias, int width = 24) {
     return {coarse, {Kind::normal, 0.2, bias}, renders, width};
 }
 
@@ -25,9 +25,10 @@ BiasResult between(const CompareResult& r, const std::string& a, const std::stri
     return *std::find_if(r.bias.begin(), r.bias.end(), [&](const BiasResult& x) { return x.a == a && x.b == b; });
 }
 
-int alarms(const MadeWorld& world, int repeats) {
+int alarms(const SyntheticScene& world, int repeats) {
     int out = 0;
-    for (int seed = 1; seed <= repeats; ++seed) out += compare_made(world, static_cast<std::uint32_t>(seed)).differs();
+    for (int seed = 1; seed <= repeats; ++seed)
+        out += compare_synthetic(world, static_cast<std::uint32_t>(seed)).differs();
     return out;
 }
 
@@ -44,8 +45,8 @@ TEST(CompareJudges, RareBrightEventsAreRarelyTakenForABias) {
 
 // Two versions of a renderer have the same noise: then events that no render met are missed on both sides.
 TEST(CompareJudges, ArmsWithTheSameRareEventsAreRarelyToldApart) {
-    for (const MadeNoise& noise :
-        {MadeNoise{Kind::events, 1e-3}, {Kind::events, 1e-4}, {Kind::pareto, 1.5}, {Kind::sparks, 2e-3}}) {
+    for (const SyntheticNoise& noise :
+        {SyntheticNoise{Kind::events, 1e-3}, {Kind::events, 1e-4}, {Kind::pareto, 1.5}, {Kind::sparks, 2e-3}}) {
         SCOPED_TRACE(to_string(noise));
         EXPECT_LE(alarms({noise, noise, 6, 24, false}, 40), 7);
     }
@@ -54,13 +55,14 @@ TEST(CompareJudges, ArmsWithTheSameRareEventsAreRarelyToldApart) {
 // Renders that met none of an arm's events are those of a darker arm. That is said beside the difference, and where a
 // bound on what a pixel can be allows for such events, no difference is told.
 TEST(CompareJudges, EventsThatNoRenderMetAreSaidAndABoundAllowsForThem) {
-    const MadeWorld w{{Kind::events, 1e-4, 0}, fine, 4, 24};
+    const SyntheticScene w{{Kind::events, 1e-4, 0}, fine, 4, 24};
     const CompareFlag same{{"expect"}, "same", false, ""}, bound{{"brightest"}, "10000", true, ""};
     int missed = 0;
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
         if (met_events(w, seed)) continue;
         ++missed;
-        const CompareResult without = compare_made(w, seed, {same}), with = compare_made(w, seed, {same, bound});
+        const CompareResult without = compare_synthetic(w, seed, {same}),
+                            with = compare_synthetic(w, seed, {same, bound});
         EXPECT_EQ(without.state, State::fails);
         const BiasResult told = between(without, "a", the_reference), allowed = between(with, "a", the_reference);
         EXPECT_THAT(told.sentence, HasSubstr("Without a bias a would have to meet events brighter than"));
@@ -76,24 +78,24 @@ TEST(CompareJudges, EventsThatNoRenderMetAreSaidAndABoundAllowsForThem) {
 TEST(CompareJudges, AlarmsAreRareWhereTheRareEventsWereMet) {
     int alarms = 0, calls = 0;
     for (std::uint32_t seed = 1; calls < 40; ++seed) {
-        const MadeWorld w{{Kind::events, 1e-4, 0}, fine, 8, 24};
+        const SyntheticScene w{{Kind::events, 1e-4, 0}, fine, 8, 24};
         if (!met_events(w, seed)) continue;
-        ++calls, alarms += compare_made(w, seed).differs();
+        ++calls, alarms += compare_synthetic(w, seed).differs();
     }
     EXPECT_LE(alarms, 7);
 }
 
 TEST(CompareJudges, ABiasOfFivePercentIsFound) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-        const BiasResult found = between(compare_made(world(6, 0.05), seed), "b", the_reference);
+        const BiasResult found = between(compare_synthetic(world(6, 0.05), seed), "b", the_reference);
         EXPECT_TRUE(found.differs()) << found.sentence;
         EXPECT_THAT(found.sentence, HasSubstr("differs from the reference"));
     }
 }
 
 TEST(CompareJudges, TilesAndPixelsThatDifferAreNamed) {
-    MadeWorld w{{Kind::normal, 0.01, 0}, {Kind::normal, 0.01, 0.5}, 8, 24};
-    const BiasResult found = between(compare_made(w, 1), "b", "a");
+    SyntheticScene w{{Kind::normal, 0.01, 0}, {Kind::normal, 0.01, 0.5}, 8, 24};
+    const BiasResult found = between(compare_synthetic(w, 1), "b", "a");
     EXPECT_EQ(found.tiles.different, 9u);
     EXPECT_EQ(found.pixels_different, 24u * 24u);
     EXPECT_EQ(found.tiles_found.size(), 5u);
@@ -103,7 +105,7 @@ TEST(CompareJudges, TilesAndPixelsThatDifferAreNamed) {
 }
 
 TEST(CompareJudges, PIsSpreadEvenlyOverPixelsOfEqualArms) {
-    const BiasResult found = between(compare_made({fine, fine, 8, 64}, 3), "b", "a");
+    const BiasResult found = between(compare_synthetic({fine, fine, 8, 64}, 3), "b", "a");
     ASSERT_EQ(found.pixel_p.size(), 20u);
     EXPECT_EQ(found.pixels_tested, 4096u);
     // 205 a bin on average, standard deviation 14; Welch's test is a little conservative at few degrees of freedom.
@@ -115,9 +117,9 @@ TEST(CompareJudges, IntervalsHoldTheTruthAsOftenAsTheySay) {
     std::map<std::string, int> held;
     const std::map<std::string, double> truth{{"var", 0.04}, {"bias2", 0.01}, {"rmse", std::sqrt(0.05)},
         {"relmse", 0.05 / 1.01}, {"y_mean", 1.1}, {"efficiency", 12.5}, {"unit_time", 0.08}, {"sample_var", 0.64}};
-    const MadeWorld w{coarse, {Kind::normal, 0.2 / 1.1, 0.1}, 6, 24};
+    const SyntheticScene w{coarse, {Kind::normal, 0.2 / 1.1, 0.1}, 6, 24};
     for (std::uint32_t seed = 1; seed <= repeats; ++seed) {
-        const CompareResult r = compare_made(
+        const CompareResult r = compare_synthetic(
             w, seed + 200, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"arms", "b", "spp"}, "16", true, ""}});
         for (const auto& [meter, value] : truth) {
             const MeterValue& m = r.arms[1].region(whole_frame).meter(meter);
@@ -129,9 +131,9 @@ TEST(CompareJudges, IntervalsHoldTheTruthAsOftenAsTheySay) {
 }
 
 TEST(CompareJudges, MetersAreWhatTheirNamesSay) {
-    const MadeWorld w{coarse, {Kind::normal, 0.2 / 1.1, 0.1}, 8, 24};
+    const SyntheticScene w{coarse, {Kind::normal, 0.2 / 1.1, 0.1}, 8, 24};
     const CompareResult r =
-        compare_made(w, 7, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"flip"}, "true", true, ""}});
+        compare_synthetic(w, 7, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"flip"}, "true", true, ""}});
     const RegionResult& b = r.arms[1].region(whole_frame);
     EXPECT_NEAR(*b.meter("var").value, 0.04, 0.002);
     EXPECT_NEAR(*b.meter("bias2").value, 0.01, 0.001);
@@ -148,8 +150,8 @@ TEST(CompareJudges, MetersAreWhatTheirNamesSay) {
 TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
     int heavy = 0, numbered = 0;
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-        const CompareResult events = compare_made({{Kind::events, 1e-3, 0}, fine, 6, 32}, seed),
-                            skewed = compare_made({{Kind::lognormal, 1, 0}, fine, 6, 32}, seed);
+        const CompareResult events = compare_synthetic({{Kind::events, 1e-3, 0}, fine, 6, 32}, seed),
+                            skewed = compare_synthetic({{Kind::lognormal, 1, 0}, fine, 6, 32}, seed);
         for (const CompareResult* r : {&events, &skewed}) {
             const RegionResult& a = r->arms[0].region(whole_frame);
             if (!a.heavy()) continue;
@@ -167,18 +169,18 @@ TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
 
 TEST(CompareJudges, SameIsSaidOnlyWhereADifferenceWouldHaveBeenSeen) {
     const std::vector<CompareFlag> same{{{"expect"}, "same", false, ""}};
-    EXPECT_EQ(compare_made(world(3, 0), 3, same).state, State::inconclusive);
+    EXPECT_EQ(compare_synthetic(world(3, 0), 3, same).state, State::inconclusive);
     std::vector<CompareFlag> large = same;
     large.push_back({{"smallest"}, "0.5", true, ""});
-    EXPECT_EQ(compare_made(world(8, 0), 3, large).state, State::holds);
-    EXPECT_EQ(compare_made(world(8, 0.3), 3, large).state, State::fails);
+    EXPECT_EQ(compare_synthetic(world(8, 0), 3, large).state, State::holds);
+    EXPECT_EQ(compare_synthetic(world(8, 0.3), 3, large).state, State::fails);
 }
 
 TEST(CompareJudges, ArmsAreRankedOnlyWhereTheirIntervalsPart) {
     const std::vector<CompareFlag> seconds{
         {{"arms", "a", "seconds"}, "1", true, ""}, {{"arms", "b", "seconds"}, "1", true, ""}};
-    const auto by_time = [&](const MadeWorld& w) {
-        const CompareResult r = compare_made(w, 5, seconds);
+    const auto by_time = [&](const SyntheticScene& w) {
+        const CompareResult r = compare_synthetic(w, 5, seconds);
         return std::find_if(r.rankings.begin(), r.rankings.end(), [](const Ranking& x) {
             return x.measure == "at equal time";
         })->sentence;
@@ -188,7 +190,7 @@ TEST(CompareJudges, ArmsAreRankedOnlyWhereTheirIntervalsPart) {
 }
 
 TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
-    const CompareResult r = compare_made(world(8, 0), 5);
+    const CompareResult r = compare_synthetic(world(8, 0), 5);
     ASSERT_EQ(r.noise.size(), 1u);
     const NoiseResult& n = r.noise[0];  // b over a: 0.04 / 0.25
     EXPECT_EQ(std::count(n.told_apart.begin(), n.told_apart.end(), true), 9);
@@ -196,7 +198,7 @@ TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
     std::uint64_t tiles = 0;
     for (const std::uint64_t count : n.regions.back().told) tiles += count;
     EXPECT_EQ(tiles, 9u);
-    const CompareResult equal = compare_made({fine, fine, 8, 24}, 5);
+    const CompareResult equal = compare_synthetic({fine, fine, 8, 24}, 5);
     EXPECT_EQ(std::count(equal.noise[0].told_apart.begin(), equal.noise[0].told_apart.end(), true), 0);
 }
 

@@ -1,20 +1,26 @@
 // Where the noise moved: log2 of the ratio of two arms' variances a tile, told apart from 1 by Welch's test of what
 // each render spreads, false discoveries controlled.
-#include <fmt/format.h>
+#include "compare/noise.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
+#include <numeric>
+#include <span>
 
-#include "compare/judge.h"
+#include "compare/compare.h"
+#include "compare/passes.h"
 #include "math/functions.h"
-#include "pages/numbers.h"
+#include "math/hypotheses.h"
+#include "output/format.h"
 
 namespace crescent::inline comparing {
 
 namespace {
 
-MeanInterval spread_of(const ArmReadings& arm, std::size_t tile) {
+MeanInterval spread_of(const ArmStats& arm, std::size_t tile) {
     const double k = static_cast<double>(arm.files.size());
     std::vector<double> each;
     for (const auto& render : arm.quantities[0].tiles) each.push_back(render[tile].spread * k / (k - 1));
@@ -22,7 +28,7 @@ MeanInterval spread_of(const ArmReadings& arm, std::size_t tile) {
 }
 
 /// Tiles of a region: those of which it holds half the pixels or more.
-std::vector<std::size_t> tiles_in(const Readings& all, const PixelSet& set) {
+std::vector<std::size_t> tiles_in(const RenderStats& all, const PixelSet& set) {
     std::vector<std::size_t> inside(all.tiles.count());
     for (const std::uint32_t i : set.pixels)
         ++inside[all.tiles.of(static_cast<int>(i) % all.width, static_cast<int>(i) / all.width)];
@@ -35,7 +41,7 @@ std::vector<std::size_t> tiles_in(const Readings& all, const PixelSet& set) {
     return out;
 }
 
-NoiseResult::Histogram histogram(const Readings& all, const PixelSet& set, const NoiseResult& noise) {
+NoiseResult::Histogram histogram(const RenderStats& all, const PixelSet& set, const NoiseResult& noise) {
     NoiseResult::Histogram out{
         set.name, std::vector<std::uint64_t>(noise_bins), std::vector<std::uint64_t>(noise_bins)};
     for (const std::size_t t : tiles_in(all, set)) {
@@ -63,7 +69,7 @@ std::string sentence(const NoiseResult& n, std::size_t tested) {
 
 }  // namespace
 
-NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_t a, std::size_t b, double alpha) {
+NoiseResult judge_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha) {
     NoiseResult out;
     out.a = plan.arms[a].name, out.b = plan.arms[b].name;
     std::vector<double> p;
@@ -77,6 +83,240 @@ NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_
     for (const PixelSet& set : all.regions) out.regions.push_back(histogram(all, set, out));
     out.sentence = sentence(
         out, static_cast<std::size_t>(std::count_if(p.begin(), p.end(), [](double x) { return !std::isnan(x); })));
+    return out;
+}
+
+// ---- Which renders of two arms were made with the same random numbers: those with the same number in their names, or
+// with correlated residuals (shared_seeds.h); and the pictures of their differences.
+
+namespace {
+
+/// Numbers of a file's name that are not the same in all files of its arm: what tells its render.
+std::vector<std::uint64_t> own_numbers(const ArmStats& arm, std::size_t file) {
+    std::vector<std::uint64_t> out;
+    const auto& own = arm.files[file].numbers;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const bool varies = std::any_of(arm.files.begin(), arm.files.end(),
+            [&](const RenderFile& f) { return f.numbers.size() != own.size() || f.numbers[i] != own[i]; });
+        if (varies) out.push_back(own[i]);
+    }
+    return out.empty() ? own : out;
+}
+
+/// a less b, channel by channel.
+Render difference(const RenderStats& all, Render a, const Render& b) {
+    for (const Render* r : {&std::as_const(a), &b})
+        if (r->width != all.width || r->height != all.height)
+            throw InputError({r->file, 0, 0},
+                fmt::format("expected {} x {} pixels as before, found {} x {}: the file has changed", all.width,
+                    all.height, r->width, r->height));
+    for (std::size_t i = 0; i < a.size(); ++i) a.r[i] -= b.r[i], a.g[i] -= b.g[i], a.b[i] -= b.b[i];
+    a.variance.clear(), a.rounding = std::max(a.rounding, b.rounding);
+    return a;
+}
+
+}  // namespace
+
+std::vector<RenderPair> pairs_of(const ArmStats& a, const ArmStats& b) {
+    std::vector<std::vector<std::uint64_t>> theirs;
+    for (std::size_t j = 0; j < b.files.size(); ++j) theirs.push_back(own_numbers(b, j));
+    std::vector<RenderPair> out;
+    for (std::size_t i = 0; i < a.files.size(); ++i) {
+        const std::vector<std::uint64_t> own = own_numbers(a, i);
+        const auto found = std::count(theirs.begin(), theirs.end(), own);
+        if (found != 1 || own.empty())
+            throw InputError({a.files[i].path, 0, 0},
+                own.empty()
+                    ? "--pair: expected a number in its name"
+                    : fmt::format(
+                          "--pair: expected one render of the other arm with the number {} in its name, found {}",
+                          fmt::join(own, ", "), found));
+        out.emplace_back(i, static_cast<std::size_t>(std::find(theirs.begin(), theirs.end(), own) - theirs.begin()));
+    }
+    if (out.size() != b.files.size())
+        throw InputError({b.files[0].path, 0, 0}, "--pair: expected as many renders of one arm as of the other");
+    return out;
+}
+
+bool all_paired(const std::vector<SeedPair>& shared, const ArmStats& a, const ArmStats& b) {
+    return !shared.empty() && shared.size() == a.files.size() && shared.size() == b.files.size();
+}
+
+bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, const ArmStats& b, double level) {
+    if (shared.size() < 3) return false;
+    const double k = static_cast<double>(shared.size()), na = static_cast<double>(a.files.size()),
+                 nb = static_cast<double>(b.files.size());
+    double left = 0;  // of the variance of a difference
+    for (const SeedPair& p : shared) left += (1 - p.correlation) / k;
+    const double paired = student_quantile(1 - level / 2, k - 1), apart = student_quantile(1 - level / 2, na + nb - 2);
+    return 2 * left / k * paired * paired < (1 / na + 1 / nb) * apart * apart;
+}
+
+PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b,
+    std::vector<RenderPair> pairs, ProgressMonitor& monitor) {
+    const bool referred = b >= all.arms.size();
+    const ArmStats &first = all.arms[a], &second = referred ? *all.reference : all.arms[b];
+    const std::string &layer = plan.arms[a].layer, &other_layer = referred ? plan.reference_layer : plan.arms[b].layer;
+    PairedRenders out{std::move(pairs), {}};
+    RenderSource source;
+    source.read = [&](const std::string& path, const std::string&) {
+        std::size_t k = 0;
+        std::from_chars(path.data(), path.data() + path.size(), k);
+        return difference(all, all.source.read(first.files[out.pairs[k].first].path, layer),
+            all.source.read(second.files[out.pairs[k].second].path, other_layer));
+    };
+    std::vector<std::string> paths;
+    for (std::size_t k = 0; k < out.pairs.size(); ++k)
+        paths.push_back(std::to_string(k)), out.differences.files.push_back({paths.back(), {}, {}, {}, {}, {}, {}, {}});
+    monitor.begin("differences of pairs", 2 * static_cast<double>(out.pairs.size()));
+    each_render(source, paths, {}, monitor, [&](const Render& render) { out.differences.film.add(render); });
+    second_pass(plan, all, source, out.differences, {}, nullptr, monitor);
+    return out;
+}
+
+// ---- Who is better, where: arms in the order of a meter, and which neighbours in that order are told apart by their
+// intervals. Ladders: one arm at several samples a pixel.
+
+namespace {
+
+struct Measure {
+    const char* meter;
+    const char* words;
+};
+/// The first that every arm of a region has is what it is ranked by.
+constexpr Measure at_equal_time[] = {{"unit_time", "at equal time"}};
+constexpr Measure at_equal_samples[] = {{"sample_var", "at equal samples"}, {"var", "render by render"}};
+
+struct Ranked {
+    std::string arm;
+    MeterValue value;
+};
+
+bool apart(const MeterValue& better, const MeterValue& worse) {
+    return better.interval && worse.interval && better.interval->second < worse.interval->first;
+}
+
+std::string told(const std::vector<Ranked>& order) {
+    std::vector<std::string> out;
+    for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+        const MeterValue &better = order[k].value, &worse = order[k + 1].value;
+        if (apart(better, worse))
+            out.push_back(fmt::format("{} before {} ({} times the variance)", order[k].arm, order[k + 1].arm,
+                figures(*worse.value / *better.value, 3)));
+        else out.push_back(fmt::format("{} and {} not told apart", order[k].arm, order[k + 1].arm));
+    }
+    return fmt::format("{}", fmt::join(out, "; "));
+}
+
+std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, const Measure& by) {
+    std::vector<Ranked> order;
+    for (const ArmResult& arm : result.arms) {
+        const MeterValue& value = arm.regions[region].meter(by.meter);
+        if (!value.value) return {};
+        order.push_back({arm.name, value});
+    }
+    std::sort(order.begin(), order.end(), [](const Ranked& a, const Ranked& b) {
+        return *a.value.value != *b.value.value ? *a.value.value < *b.value.value : a.arm < b.arm;
+    });
+    Ranking out;
+    out.region = result.arms[0].regions[region].region, out.measure = by.words;
+    for (const Ranked& r : order) out.order.push_back(r.arm);
+    out.sentence = fmt::format("In {}, {}: {}.", out.region, by.words, told(order));
+    return out;
+}
+
+}  // namespace
+
+std::vector<Ranking> rank(const CompareResult& result) {
+    std::vector<Ranking> out;
+    if (result.arms.size() < 2) return out;
+    for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r) {
+        for (const auto measures :
+            {std::span<const Measure>(at_equal_time), std::span<const Measure>(at_equal_samples)}) {
+            for (const Measure& by : measures) {
+                std::optional<Ranking> found = ranking(result, r, by);
+                if (!found) continue;
+                out.push_back(std::move(*found));
+                break;
+            }
+        }
+    }
+    return out;
+}
+
+namespace {
+
+/// "path-64" at 64 samples a pixel is a rung of "path"; "" where a name does not end with its spp.
+std::string ladder_name(const ArmResult& arm) {
+    const std::string spp = arm.spp ? fmt::format("{:.0f}", *arm.spp) : "";
+    if (spp.empty() || !arm.name.ends_with(spp)) return {};
+    const std::string rest = arm.name.substr(0, arm.name.size() - spp.size());
+    const std::size_t end = rest.find_last_not_of("-_.");
+    const bool apart = end != std::string::npos && (end + 1 < rest.size() || !(rest[end] >= '0' && rest[end] <= '9'));
+    return apart ? rest.substr(0, end + 1) : "";
+}
+
+/// Least squares of the logarithms, each rung's interval carried along: the slope of the line is a sum of weights times
+/// logarithms, whose half-widths add in squares.
+MeterValue slope_of(const CompareResult& result, const SppLadder& ladder, std::size_t region) {
+    std::vector<double> x, y, half;
+    for (const std::size_t a : ladder.arms) {
+        const RegionResult& r = result.arms[a].regions[region];
+        const MeterValue &rmse = r.meter("rmse"), &var = r.meter("var"), &meter = rmse.value ? rmse : var;
+        if (!meter.value || !(*meter.value > 0)) return {{}, {}, "a rung has no value"};
+        const double root = rmse.value ? 1 : 0.5;
+        x.push_back(math::log(*result.arms[a].spp)), y.push_back(root * math::log(*meter.value));
+        const bool known = meter.interval && meter.interval->first > 0;
+        half.push_back(known ? root * math::log(meter.interval->second / meter.interval->first) / 2 : std::nan(""));
+    }
+    const double n = static_cast<double>(x.size());
+    const double middle = std::accumulate(x.begin(), x.end(), 0.0) / n;
+    double squares = 0, slope = 0, doubt = 0;
+    for (const double v : x) squares += (v - middle) * (v - middle);
+    if (!(squares > 0)) return {{}, {}, "all rungs have the same samples a pixel"};
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double weight = (x[k] - middle) / squares;
+        slope += weight * y[k], doubt += weight * weight * half[k] * half[k];
+    }
+    MeterValue out{slope, {}, std::isnan(doubt) ? "a rung has no interval" : ""};
+    if (out.why.empty()) out.interval = {slope - std::sqrt(doubt), slope + std::sqrt(doubt)};
+    return out;
+}
+
+}  // namespace
+
+MeterValue rung_of(const RegionResult& region) {
+    const MeterValue& rmse = region.meter("rmse");
+    if (rmse.value) return rmse;
+    MeterValue out = region.meter("var");
+    const auto root = [](double v) { return std::sqrt(std::max(0.0, v)); };
+    if (out.value) out.value = root(*out.value);
+    if (out.interval) out.interval = {root(out.interval->first), root(out.interval->second)};
+    return out;
+}
+
+const char* rung_words(const RegionResult& region) {
+    return region.meter("rmse").value ? "RMSE" : "standard deviation";
+}
+
+std::vector<SppLadder> ladders_of(const CompareResult& result) {
+    std::vector<SppLadder> out;
+    for (std::size_t a = 0; a < result.arms.size(); ++a) {
+        const ArmResult& arm = result.arms[a];
+        const std::string name = ladder_name(arm);
+        if (name.empty()) continue;
+        auto at = std::find_if(out.begin(), out.end(), [&](const SppLadder& l) { return l.name == name; });
+        if (at == out.end()) at = out.insert(at, {name, {}, {}});
+        at->arms.push_back(a);
+    }
+    std::erase_if(out, [](const SppLadder& l) { return l.arms.size() < 2; });
+    for (SppLadder& l : out)
+        std::sort(l.arms.begin(), l.arms.end(), [&](std::size_t a, std::size_t b) {
+            return *result.arms[a].spp != *result.arms[b].spp ? *result.arms[a].spp < *result.arms[b].spp : a < b;
+        });
+    for (SppLadder& l : out)
+        for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r)
+            l.slopes.emplace_back(result.arms[0].regions[r].region, slope_of(result, l, r));
     return out;
 }
 

@@ -6,23 +6,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/judge.h"
-#include "compare/quantities.h"
-#include "compare/schema.h"
 #include "base/text.h"
-#include "pages/csv.h"
-#include "pages/json_number.h"
-#include "pages/junit.h"
-#include "pages/numbers.h"
+#include "compare/compare.h"
+#include "compare/metrics.h"
+#include "compare/plan.h"
+#include "output/format.h"
+#include "output/junit.h"
 
 namespace crescent::inline comparing {
 
 namespace {
 
-Json optional(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
+Json or_null(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
 
 Json measured_json(const MeterValue& m) {
-    Json out = {{"value", optional(m.value)}, {"interval", nullptr}};
+    Json out = {{"value", or_null(m.value)}, {"interval", nullptr}};
     if (m.interval) out["interval"] = Json::array({number(m.interval->first), number(m.interval->second)});
     if (!m.why.empty()) out["why"] = m.why;
     return out;
@@ -35,15 +33,15 @@ Json region_json(const RegionResult& r) {
         ? Json{{"k", number(r.tail->k)}, {"se", number(r.tail->se)}, {"exceedances", r.tail->exceedances}}
         : Json(nullptr);
     out["largest_share"] = number(r.largest_share);
-    if (r.heavy()) out["heavy_tail"] = {{"renders_needed", optional(r.renders_needed)}};
+    if (r.heavy()) out["heavy_tail"] = {{"renders_needed", or_null(r.renders_needed)}};
     if (r.told_ratio) out["told_variance_ratio"] = number(*r.told_ratio);
     out["spectrum"] = {{"power", numbers(r.power)}, {"noise", to_string(r.colour)}};
     return out;
 }
 
-Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vector<PixelSet>& sets, bool referred) {
+Json arm_json(const ArmResult& arm, const ArmStats& readings, const std::vector<PixelSet>& sets, bool referred) {
     Json out = {
-        {"arm", arm.name}, {"renders", arm.renders}, {"spp", optional(arm.spp)}, {"seconds", optional(arm.seconds)}};
+        {"arm", arm.name}, {"renders", arm.renders}, {"spp", or_null(arm.spp)}, {"seconds", or_null(arm.seconds)}};
     for (const RegionResult& r : arm.regions) out["regions"][r.region] = region_json(r);
     for (std::size_t k = 0; k < readings.files.size(); ++k) {
         const RenderFile& f = readings.files[k];
@@ -51,7 +49,7 @@ Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vect
         if (!f.variance_channels.empty()) file["variance_channels"] = f.variance_channels;
         if (!f.sample_channel.empty()) file["sample_channel"] = f.sample_channel;
         for (std::size_t r = 0; r < sets.size(); ++r) {
-            const RegionReading& read = readings.regions[k][r];
+            const RegionStats& read = readings.regions[k][r];
             Json& at = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
             if (referred)
                 at["rmse"] = number(std::sqrt(read.mse)), at["relmse"] = number(read.relmse),
@@ -181,7 +179,7 @@ const char* word_of(CompareResult::State state) {
 }  // namespace
 
 std::string compare_json(
-    const ComparePlan& plan, const Readings& all, const CompareResult& result, const Provenance& p) {
+    const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& p) {
     Json out = {{"format", "crescent comparison 1"}, {"title", plan.title}, {"width", all.width},
         {"height", all.height}, {"state", word_of(result.state)}, {"say", result.sentence},
         {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
@@ -239,7 +237,7 @@ std::string compare_junit(const ComparePlan& plan, const CompareResult& result) 
 }
 
 std::string compare_summary(
-    const ComparePlan& plan, const Readings& all, const CompareResult& result, const std::string& out_dir) {
+    const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const std::string& out_dir) {
     std::string out = plan.title + "\n";
     for (const std::string& w : result.warnings) out += "warning: " + w + "\n";
     if (!result.sentence.empty()) out += result.sentence + "\n";

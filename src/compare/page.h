@@ -9,12 +9,12 @@
 namespace crescent::inline comparing {
 
 /// The tables of the page: every meter by arm and region, with its interval.
-std::string numbers_section(const ComparePlan& plan, const Readings& all, const CompareResult& result);
+std::string numbers_section(const ComparePlan& plan, const RenderStats& all, const CompareResult& result);
 std::string rankings_section(const CompareResult& result);
 std::string means_section(const CompareResult& result);
 std::string noise_section(const CompareResult& result);
 std::string ladders_section(const CompareResult& result);
-std::string spectra_section(const Readings& all, const CompareResult& result);
-std::string files_section(const Readings& all, const CompareResult& result);
+std::string spectra_section(const RenderStats& all, const CompareResult& result);
+std::string files_section(const RenderStats& all, const CompareResult& result);
 
 }  // namespace crescent::inline comparing

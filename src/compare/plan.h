@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "experiment/assertion.h"
 #include "experiment/experiment.h"
-#include "color/theme.h"
+#include "experiment/schema.h"
+#include "output/color_map.h"
 
 namespace crescent::inline comparing {
 
@@ -74,5 +76,14 @@ std::vector<std::string> compare_arms(const std::string& file);
 /// The manual of the TOML file, and its JSON Schema.
 std::string compare_schema_text();
 std::string compare_schema_json();
+
+// ---- The keys of a compare file and the quantities of its checks: one table each.
+
+/// The table of a comparison file, as schema() is that of an experiment.
+const Section& compare_schema();
+const std::vector<QuantityWord>& compare_words();
+
+/// The region that is every pixel; a footnote, never a headline.
+inline constexpr const char* whole_frame = "frame";
 
 }  // namespace crescent::inline comparing

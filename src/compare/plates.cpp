@@ -2,20 +2,101 @@
 // and where the noise moved. Instruments read radiance; photographs have gone through the display chain.
 #include "compare/plates.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
-#include "compare/plate_parts.h"
-#include "compare/schema.h"
-#include "compare/sides.h"
-#include "color/turbo.h"
-#include "meters/meters.h"
-#include "plates/sheet.h"
-#include "plates/words.h"
-#include "pages/numbers.h"
-#include "stats/quantiles.h"
+#include "compare/compare.h"
+#include "compare/metrics.h"
+#include "compare/plan.h"
+#include "compare/wording.h"
+#include "math/functions.h"
+#include "math/statistics.h"
+#include "metrics/compute.h"
+#include "output/color_map.h"
+#include "output/format.h"
+#include "report/plates/ladder_chart.h"
+#include "report/plates/sheet.h"
+
+namespace crescent::plates {
+
+// ---- Colours in sRGB; a difference of t goes from the middle colour to an end's at |t| = 1, straight in sRGB. A block
+// that is shown smaller shows means over its pixels. Places in units of the sheet, a pixel each.
+
+void header(Canvas& c, bool instrument, const std::string& label) {
+    const Colour accent = instrument ? instrument_accent : photograph_accent;
+    c.fill({header_band.x, header_band.y + 4, 5, header_band.h - 8}, accent);
+    c.text({header_band.x + 17, header_band.y, header_band.w - 17, header_band.h},
+        (instrument ? "INSTRUMENT / " : "Khronos PBR Neutral / PHOTO-ONLY / ") + label, label_text);
+}
+
+void finish(Canvas& c, const std::string& caption, const std::string& note) {
+    c.text(caption_band, caption, with_lines(body_text, 2));
+    c.text(footer_band, note, with_px(small_text, 17));
+}
+
+Picture finished(Canvas& c, const std::string& caption, const std::string& note) {
+    finish(c, caption, note);
+    return c.picture();
+}
+
+Srgb8 diverging(double t, Theme theme) {
+    if (std::isnan(t)) return ground_pixel(theme);
+    constexpr double middles[2][3] = {{52, 55, 60}, {226, 228, 230}};
+    constexpr double lows[2][3] = {{70, 150, 240}, {20, 90, 190}}, highs[2][3] = {{250, 150, 50}, {200, 90, 0}};
+    const bool light = theme == Theme::light;
+    const double *middle = middles[light], *low = lows[light], *high = highs[light];
+    const double a = std::min(1.0, std::fabs(t));
+    Srgb8 out{};
+    for (std::size_t k = 0; k < 3; ++k)
+        out[k] = static_cast<unsigned char>(std::lround(middle[k] + a * ((t < 0 ? low : high)[k] - middle[k])));
+    return out;
+}
+
+Block nearest_block(const Box& box, const Fit& f, const std::function<Srgb8(int, int)>& colour) {
+    Block out(f.out_w, f.out_h);
+    for (int y = 0; y < f.out_h; ++y)
+        for (int x = 0; x < f.out_w; ++x)
+            out.set(x, y, colour(box.x0 + x * f.in_w / f.out_w, box.y1 - y * f.in_h / f.out_h));
+    return out;
+}
+
+Block diverging_block(const Box& box, const Fit& f, Theme theme, const std::function<double(int, int)>& value) {
+    return nearest_block(box, f, [&](int x, int y) {
+        if (!f.reduced) return diverging(value(x, y), theme);
+        const int across = std::max(1, f.in_w / f.out_w), down = std::max(1, f.in_h / f.out_h);
+        double sum = 0, count = 0;
+        for (int j = y; j > std::max(box.y0 - 1, y - down); --j)
+            for (int i = x; i < std::min(box.x1 + 1, x + across); ++i)
+                if (const double v = value(i, j); !std::isnan(v)) sum += v, count += 1;
+        return diverging(count > 0 ? sum / count : std::nan(""), theme);
+    });
+}
+
+Rect framed(Canvas& c, const Block& block, const Rect& slot) {
+    const int x = static_cast<int>(std::floor(slot.x + (slot.w - block.width) / 2)),
+              y = static_cast<int>(std::floor(slot.y));
+    c.paint(block, x, y);
+    const Rect r{double(x), double(y), double(block.width), double(block.height)};
+    c.outline(r.inset(-0.5), rule, 1);
+    return r;
+}
+
+void bar(Canvas& c, const Rect& at, const std::function<Srgb8(double)>& colour, const Ticks& ticks) {
+    Block block(static_cast<int>(at.w), static_cast<int>(at.h));
+    for (int y = 0; y < block.height; ++y)
+        for (int x = 0; x < block.width; ++x) block.set(x, y, colour(1 - (y + 0.5) / block.height));
+    framed(c, block, at);
+    for (const auto& [share, text] : ticks)
+        c.text({at.right() + 10, at.y + at.h * (1 - share) - 12, 84, 24}, text,
+            with(with(with_px(small_text, 15), bright), Vertical::middle));
+}
+
+std::function<Srgb8(double)> signed_colours(Theme theme) {
+    return [theme](double t) { return diverging(2 * t - 1, theme); };
+}
+
+}  // namespace crescent::plates
 
 namespace crescent::inline comparing {
 
@@ -25,7 +106,7 @@ using namespace plates;
 
 constexpr std::size_t most_columns = 5;
 
-Box crop_of(const Readings& all) {
+Box crop_of(const RenderStats& all) {
     for (const PixelSet& set : all.regions)
         if (set.box && set.name != whole_frame) return *set.box;
     return all.frame();
@@ -39,13 +120,13 @@ struct Column {
 struct Fits {
     Fit whole, close;
 };
-Fits fits(const Readings& all, const Rect& band, std::size_t columns) {
+Fits fits(const RenderStats& all, const Rect& band, std::size_t columns) {
     const double w = std::floor(column(band, columns, 0).w);
     const Box crop = crop_of(all);
     return {fit(all.width, all.height, w, 260), fit(crop.width(), crop.height(), w, 240)};
 }
 
-void draw(Canvas& c, const Readings& all, const Rect& band, const std::vector<Column>& columns) {
+void draw_plate(Canvas& c, const RenderStats& all, const Rect& band, const std::vector<Column>& columns) {
     const Box crop = crop_of(all);
     for (std::size_t i = 0; i < columns.size(); ++i) {
         Rect slot = column(band, columns.size(), i);
@@ -61,7 +142,7 @@ void draw(Canvas& c, const Readings& all, const Rect& band, const std::vector<Co
     }
 }
 
-std::string crop_words(const Readings& all) {
+std::string crop_words(const RenderStats& all) {
     const Box crop = crop_of(all);
     return fmt::format("crop x {}–{}, y {}–{}", crop.x0, crop.x1, crop.y0, crop.y1);
 }
@@ -81,7 +162,7 @@ double scale_of(const std::vector<Residual>& residuals) {
     return top > 0 ? top : 1;
 }
 
-Picture errors(const Readings& all, const std::vector<Residual>& residuals, const std::string& about, Theme theme) {
+Picture errors(const RenderStats& all, const std::vector<Residual>& residuals, const std::string& about, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, "|Y − " + about + "| of one render of each arm, linear, one scale");
     Rect band = content_band;
@@ -98,7 +179,7 @@ Picture errors(const Readings& all, const std::vector<Residual>& residuals, cons
         columns.push_back(
             {r.name, turbo_block(all.frame(), f.whole, value), turbo_block(crop_of(all), f.close, value)});
     }
-    draw(c, all, band, columns);
+    draw_plate(c, all, band, columns);
     bar(c, {band.right() + gap, band.y + 40, 24, 360}, [](double t) { return turbo(t); },
         {{0, "0"}, {0.5, figures(top / 2, 3)}, {1, "≥ " + figures(top, 3)}});
     return finished(c,
@@ -107,7 +188,7 @@ Picture errors(const Readings& all, const std::vector<Residual>& residuals, cons
 }
 
 /// Reads the first render of each arm, one at a time, into both sheets.
-void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::string, Picture>& out) {
+void shown_renders(const ComparePlan& plan, const RenderStats& all, std::map<std::string, Picture>& out) {
     const std::size_t arms = std::min(most_columns - (all.reference ? 1 : 0), all.arms.size());
     const Fits f = fits(all, content_band, arms + (all.reference ? 1 : 0));
     std::vector<Column> columns;
@@ -130,7 +211,7 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
     if (all.reference) add("reference", in_rec709(all, all.reference->film));
     Canvas c(sheet_width, sheet_height, ground, 1, plan.theme);
     header(c, false, "one render of each arm");
-    draw(c, all, content_band, columns);
+    draw_plate(c, all, content_band, columns);
     const char* rest = arms < all.arms.size() ? "; further arms are not shown" : "";
     out["renders"] = finished(c, "The whole frame and, below it, the first region, enlarged alike in every column.",
         fmt::format("exposure {}; {}{}", figures(plan.exposure), crop_words(all), rest));
@@ -148,14 +229,14 @@ bool shown_pair(const CompareResult& result, const std::string& a, const std::st
 }  // namespace
 
 std::map<std::string, Picture> compare_plates(
-    const ComparePlan& plan, const Readings& all, const CompareResult& result) {
+    const ComparePlan& plan, const RenderStats& all, const CompareResult& result) {
     std::map<std::string, Picture> out;
     shown_renders(plan, all, out);
     if (!result.ladders.empty()) out["ladders"] = ladders_plate(result, plan.theme);
     for (std::size_t k = 0; k < result.bias.size(); ++k) {
         const BiasResult& found = result.bias[k];
         if (!shown_pair(result, found.a, found.b)) continue;
-        const Sides sides(plan, all, result, found.arm_a, found.arm_b, found.shown());
+        const BiasPair sides(plan, all, result, found.arm_a, found.arm_b, found.shown());
         const std::string pair = fmt::format("{}-{}", found.a, sides.referred ? "reference" : found.b);
         out["difference-" + pair] = difference_plate(sides, found.a, found.b, plan.theme);
         if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, plan.theme);
@@ -163,6 +244,217 @@ std::map<std::string, Picture> compare_plates(
     for (const NoiseResult& n : result.noise)
         if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(all, n, plan.theme);
     return out;
+}
+
+// ---- The plate of ladders: arms that are one arm at several samples a pixel, RMSE (without a reference: standard
+// deviation) over samples a pixel, both logarithmic, a column each for at most three regions.
+
+using namespace plates;
+
+namespace {
+
+constexpr std::size_t most_charts = 3, most_curves = 8;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_t region) {
+    const SppLadder& l = result.ladders[ladder];
+    LadderCurve out;
+    out.name = escaped(l.name), out.ink = series[ladder % series_count];
+    for (const std::size_t a : l.arms) {
+        const MeterValue rung = rung_of(result.arms[a].regions[region]);
+        out.n.push_back(*result.arms[a].spp), out.value.push_back(rung.value.value_or(nan));
+        out.interval.push_back(rung.interval.value_or(std::pair(nan, nan)));
+        out.heavy |= result.arms[a].regions[region].heavy();
+    }
+    const MeterValue& slope = l.slopes[region].second;
+    out.slope = slope.value.value_or(nan);
+    out.low = slope.interval ? slope.interval->first : nan, out.high = slope.interval ? slope.interval->second : nan;
+    return out;
+}
+
+/// Regions first, the whole frame where there is room left for it.
+std::vector<std::size_t> columns_of(const CompareResult& result) {
+    std::vector<std::size_t> out;
+    for (std::size_t r = 0; r < result.arms[0].regions.size() && out.size() < most_charts; ++r) out.push_back(r);
+    return out;
+}
+
+void draw_plate(Canvas& c, const CompareResult& result) {
+    const char* what = rung_words(result.arms[0].regions[0]);
+    header(c, true, fmt::format("{} of one render over its samples a pixel", what));
+    const std::vector<std::size_t> columns = columns_of(result);
+    const std::size_t shown = std::min(most_curves, result.ladders.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        std::vector<LadderCurve> curves;
+        for (std::size_t l = 0; l < shown; ++l) curves.push_back(curve_of(result, l, columns[i]));
+        const std::string& region = result.arms[0].regions[columns[i]].region;
+        draw_ladder_chart(c, column(content_band, columns.size(), i),
+            fmt::format("{}<sub>{}</sub> against N", what, escaped(region)), curves);
+    }
+    const std::size_t left_out = result.ladders.size() - shown;
+    finish(c,
+        "The power of N with which each falls, and its interval. Independent samples alone fall as N<sup>−0.50</sup>; "
+        "what falls slower has a bias or a heavy tail.",
+        "bars: 95 % intervals over renders" +
+            (left_out ? fmt::format("; {} more are in the page and in metrics.json", left_out) : ""));
+}
+
+}  // namespace
+
+Picture ladders_plate(const CompareResult& result, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
+    draw_plate(c, result);
+    return c.picture();
+}
+
+std::string ladders_svg(const CompareResult& result, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme, Medium::svg);
+    draw_plate(c, result);
+    return c.svg();
+}
+
+// ---- Maps over the whole frame: how the means of two sides differ, where that is told, and where the noise moved.
+
+using namespace plates;
+
+namespace {
+
+std::size_t pixel(const RenderStats& all, int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
+}
+
+Rect titled(Canvas& c, const Rect& slot, const std::string& title) {
+    c.text({slot.x, slot.y, slot.w, 30}, title, with(with_px(title_text, 18), Align::centre));
+    return {slot.x, slot.y + 40, slot.w, slot.h - 40};
+}
+
+Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {1, "≥ " + figures(top, 2)}}; }
+
+/// What is told is never as grey as what is not.
+double visible(double t) { return std::copysign(0.2 + 0.8 * std::min(1.0, std::fabs(t)), t); }
+
+/// A value a tile, `told` ones in their colour, the others grey; in the left of two slots, or in one.
+Block tile_block(const RenderStats& all, const Fit& f, const std::vector<double>& value, const std::vector<bool>& told,
+    double top, Theme theme) {
+    return nearest_block(all.frame(), f, [&](int x, int y) {
+        const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
+        return diverging(std::isnan(value[t]) ? value[t] : told[t] ? visible(value[t] / top) : 0.0, theme);
+    });
+}
+
+/// The size below which 98 of 100 differences lie, at most a million of them being looked at.
+double scale_of(const BiasPair& s) {
+    std::vector<double> sizes;
+    const auto& pixels = s.all.regions.back().pixels;
+    const std::size_t step = pixels.size() / 1000000 + 1;
+    for (std::size_t k = 0; k < pixels.size(); k += step)
+        sizes.push_back(std::fabs(s.mean_a(pixels[k]) - s.mean_b(pixels[k])));
+    if (sizes.empty()) return 1;
+    const double top = quantile(std::move(sizes), 0.98);
+    return top > 0 ? top : 1;
+}
+
+/// Of pixels that are not finite on one side, which is a difference; others that are not are of the ground's colour.
+bool fails(const BiasResult& found, std::size_t pixel) {
+    const auto in = [&](const std::vector<std::uint32_t>& pixels) {
+        return std::binary_search(pixels.begin(), pixels.end(), static_cast<std::uint32_t>(pixel));
+    };
+    return in(found.non_finite.a.pixels) || in(found.non_finite.b.pixels);
+}
+
+std::string failing_words(const BiasResult& found) {
+    const std::size_t pixels = found.non_finite.a.pixels.size() + found.non_finite.b.pixels.size();
+    return pixels ? fmt::format(" Magenta: {} pixels are not finite on one side.", pixels) : "";
+}
+
+}  // namespace
+
+Picture difference_plate(const BiasPair& s, const std::string& a, const std::string& b, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
+    header(c, true,
+        fmt::format("mean <i>{}</i> of {} less that of {}", quantity_names[s.quantity], escaped(a), escaped(b)));
+    Rect band = content_band;
+    band.w -= bar_room;
+    const double top = scale_of(s);
+    const Fit f = fit(s.all.width, s.all.height, std::floor(band.w), std::floor(band.h));
+    const auto value = [&](int x, int y) {
+        const std::size_t i = pixel(s.all, x, y);
+        return s.all.bad[i] ? std::nan("") : (s.mean_a(i) - s.mean_b(i)) / top;
+    };
+    framed(c, diverging_block(s.all.frame(), f, theme, value), band);
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme), ends(top));
+    return finished(c,
+        fmt::format(
+            "Orange: {} is brighter. Blue: {} is brighter. Noise is in it: the bias map says what is told apart.",
+            escaped(a), escaped(b)),
+        fmt::format(
+            "means over {} and {} renders; the scale ends at the 98th percentile", s.a.files.size(), s.b.files.size()));
+}
+
+Picture bias_plate(const BiasPair& s, const BiasResult& found, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
+    const char* name = quantity_names[s.quantity];
+    header(c, true, fmt::format("where {} and {} differ: mean <i>{}</i>", escaped(found.a), escaped(found.b), name));
+    Rect band = content_band;
+    band.w -= bar_room;
+    double top = 0;
+    const std::vector<double>& tiles = found.tiles.difference[s.quantity];
+    for (std::size_t t = 0; t < tiles.size(); ++t)
+        if (found.tiles.differs[t]) top = std::max(top, std::fabs(tiles[t]));
+    for (const Found& f : found.pixels_found)
+        if (f.quantity == s.quantity) top = std::max(top, std::fabs(f.a - f.b));
+    top = top > 0 ? top : 1;
+    const bool by_pixel = !found.pixel_p.empty();
+    const Rect left = titled(
+        c, column(band, by_pixel ? 2 : 1, 0), fmt::format("{} of {} tiles", found.tiles.different, found.tiles.tested));
+    const Fit f = fit(s.all.width, s.all.height, std::floor(left.w), std::floor(left.h));
+    framed(c, tile_block(s.all, f, tiles, found.tiles.differs, top, theme), left);
+    if (by_pixel) {
+        const Rect right =
+            titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", found.pixels_different, found.pixels_tested));
+        const std::vector<std::uint32_t>& differ = found.different_pixels;
+        framed(c,
+            nearest_block(s.all.frame(), f,
+                [&](int x, int y) {
+                    const std::size_t i = pixel(s.all, x, y);
+                    if (s.all.bad[i]) return fails(found, i) ? not_a_number_colour : ground_pixel(theme);
+                    const bool differs =
+                        std::binary_search(differ.begin(), differ.end(), static_cast<std::uint32_t>(i));
+                    return diverging(differs ? visible((s.mean_a(i) - s.mean_b(i)) / top) : 0, theme);
+                }),
+            right);
+    }
+    bar(c, {band.right() + gap, band.y + 40, 24, 360}, signed_colours(theme), ends(top));
+    return finished(c,
+        fmt::format("Orange: {} is brighter{}. Blue: {} is brighter. Grey: no difference found.{}", escaped(found.a),
+            s.quantity == 0 ? "" : fmt::format(" in {}", name), escaped(found.b), failing_words(found)),
+        fmt::format("{} over renders, false discoveries controlled after {}; tiles of {} × {} pixels, {} left out",
+            found.paired ? "Student’s test of pairs" : "Welch’s test",
+            found.dependent ? "Benjamini and Yekutieli" : "Benjamini and Hochberg", s.all.tiles.size, s.all.tiles.size,
+            found.tiles.left_out));
+}
+
+Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
+    header(c, true, fmt::format("log<sub>2</sub> of the variance of {} over that of {}", escaped(n.a), escaped(n.b)));
+    Rect band = content_band;
+    band.w -= bar_room;
+    std::vector<double> sizes{1};
+    for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
+        if (n.told_apart[t]) sizes.push_back(std::fabs(n.log2_ratio[t]));
+    const double top = std::ceil(quantile(std::move(sizes), 0.95));
+    const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
+    framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top, theme), band);
+    const auto ratio = [](double log2) {
+        return log2 < 0 ? fmt::format("1/{:.0f}", math::exp2(-log2)) : fmt::format("{:.0f}", math::exp2(log2));
+    };
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme),
+        {{0, "≤ " + ratio(-top)}, {0.5, "1"}, {1, "≥ " + ratio(top)}});
+    return finished(c,
+        fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: not told apart from 1. Ground: one of them has "
+                    "no noise.",
+            escaped(n.a), escaped(n.b)),
+        fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
 }
 
 }  // namespace crescent::inline comparing

@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "color/rgb.h"
+#include "base/vec.h"
 
 namespace crescent::inline comparing {
 

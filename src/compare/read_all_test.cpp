@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "compare/memory_renders_test.h"
+#include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparing {
 namespace {
@@ -23,7 +23,7 @@ protected:
 
 TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndTold) {
     put("a0", 1), put("a1", 2).g[17] = std::nanf(""), put("b0", 3), put("b1", 4).r[18] = INFINITY;
-    const Readings all = read();
+    const RenderStats all = read();
     EXPECT_EQ(all.bad_pixels, 2u);
     EXPECT_EQ(all.regions.back().pixels.size(), 254u);
     EXPECT_THAT(all.warnings, ::testing::ElementsAre(HasSubstr("a1 (the first of 2 files): 1 pixel not finite")));
@@ -55,7 +55,7 @@ TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
         Render& r = put(name, name[0]);
         r.variance.assign(r.size(), 8), r.per_sample = true, r.variance_channels = "Variance.R";
     }
-    const Readings all = read({{{"arms", "a", "spp"}, "4", true, "--spp"}});
+    const RenderStats all = read({{{"arms", "a", "spp"}, "4", true, "--spp"}});
     EXPECT_DOUBLE_EQ(all.arms[0].film.variance(0), 2);
     EXPECT_TRUE(std::isnan(all.arms[1].film.variance(0)));
     EXPECT_THAT(all.warnings, ::testing::ElementsAre(HasSubstr("b0: Variance.R is the variance of one sample")));

@@ -13,9 +13,9 @@
 #include <cstring>
 #include <limits>
 
-#include "compare/render.h"
-#include "compare/scratch_folder_test.h"
-#include "compare/written_exr_test.h"
+#include "compare/renders.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/written_exr.h"
 
 namespace crescent::inline comparing {
 namespace {

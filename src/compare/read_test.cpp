@@ -12,9 +12,9 @@
 #include <random>
 
 #include "base/npy.h"
-#include "compare/render.h"
-#include "compare/scratch_folder_test.h"
-#include "compare/written_exr_test.h"
+#include "compare/renders.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/written_exr.h"
 
 namespace crescent::inline comparing {
 namespace {

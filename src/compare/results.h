@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "compare/non_finite.h"
+#include "compare/file_warnings.h"
 #include "compare/renders.h"
 #include "compare/shared_seeds.h"
 #include "compare/spectrum.h"
-#include "meters/metrics.h"
-#include "stats/hypotheses.h"
+#include "math/hypotheses.h"
+#include "metrics/metrics.h"
 
 namespace crescent::inline comparing {
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stats/hypotheses.h"
+#include "math/hypotheses.h"
 
 namespace crescent::inline comparing {
 
@@ -20,7 +20,7 @@ constexpr std::size_t pixels_a_block = 512;
 constexpr std::size_t blocks_least = 8;  // fewer say nothing at this level
 
 /// Up to pixels_a_block pixels of a block, as far apart as can be.
-void take_block(const Readings& all, const Box& box, SeedSamples& to) {
+void take_block(const RenderStats& all, const Box& box, SeedSamples& to) {
     const std::size_t count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
     const std::size_t taken = std::min(count, pixels_a_block);
     for (std::size_t k = 0; k < taken; ++k) {
@@ -58,7 +58,7 @@ Correlation correlation(const std::vector<float>& a, const std::vector<float>& b
 
 /// Deviations of one render of each pair from the mean of those renders, in the units of the renders, a row each.
 std::vector<std::vector<double>> deviations(
-    const ArmReadings& arm, const SeedSamples& at, const std::vector<SeedPair>& pairs, std::size_t SeedPair::* render) {
+    const ArmStats& arm, const SeedSamples& at, const std::vector<SeedPair>& pairs, std::size_t SeedPair::* render) {
     std::vector<std::vector<double>> out(pairs.size(), std::vector<double>(at.pixels.size()));
     for (std::size_t i = 0; i < at.pixels.size(); ++i) {
         const double sd = std::sqrt(arm.film.variance(at.pixels[i]));
@@ -74,8 +74,7 @@ std::vector<std::vector<double>> deviations(
 
 /// Correlations of the noise of pairs: of deviations from the mean of the paired renders alone, each pixel by its
 /// variance on both sides.
-void estimate_correlations(
-    const ArmReadings& a, const ArmReadings& b, const SeedSamples& at, std::vector<SeedPair>& pairs) {
+void estimate_correlations(const ArmStats& a, const ArmStats& b, const SeedSamples& at, std::vector<SeedPair>& pairs) {
     const auto of_a = deviations(a, at, pairs, &SeedPair::a), of_b = deviations(b, at, pairs, &SeedPair::b);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         double product = 0, squares_a = 0, squares_b = 0;
@@ -91,7 +90,7 @@ void estimate_correlations(
 
 }  // namespace
 
-SeedSamples seed_samples(const Readings& all) {
+SeedSamples seed_samples(const RenderStats& all) {
     const double side = std::sqrt(static_cast<double>(all.width) * all.height / blocks_wanted);
     const int size = std::max(2, static_cast<int>(side));
     SeedSamples out;
@@ -111,7 +110,7 @@ std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, 
     return out;
 }
 
-std::vector<SeedPair> shared_seeds(const Readings& all, const ArmReadings& a, const ArmReadings& b) {
+std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b) {
     if (a.files.size() < 2 || b.files.size() < 2) return {};
     const SeedSamples at = seed_samples(all);
     const double level = shared_seed_level / static_cast<double>(a.files.size() * b.files.size());

@@ -14,7 +14,7 @@ struct SeedSamples {
     std::vector<std::uint32_t> pixels;  // those of one block after those of another
     std::vector<std::size_t> ends;      // of each block in `pixels`
 };
-SeedSamples seed_samples(const Readings& all);
+SeedSamples seed_samples(const RenderStats& all);
 
 /// Residuals of one render at those pixels over their standard deviation; 0 where there is none.
 std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& at);
@@ -31,6 +31,6 @@ inline constexpr double shared_seed_level = 1e-3;
 /// Renders of the two sides with correlated residuals, by the t-test over blocks of the mean product of residuals at
 /// shared_seed_level over all pairs of renders; of these the pairs of which each has no other partner and at least half
 /// of the largest correlation. Empty where some side has one render.
-std::vector<SeedPair> shared_seeds(const Readings& all, const ArmReadings& a, const ArmReadings& b);
+std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b);
 
 }  // namespace crescent::inline comparing

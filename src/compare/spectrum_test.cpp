@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "compare/made.h"
+#include "compare/synthetic.h"
 
 namespace crescent::inline comparing {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 TEST(Spectrum, TellsFilteredNoiseFromWhite) {
     std::vector<double> white, filtered;
     const auto noise = [](int x, int y) {
-        return made_pixel({MadeNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x), 65) - 1;
+        return made_pixel({SyntheticNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x), 65) - 1;
     };
     const Box box{0, 0, 63, 63};
     add_spectrum(white, box, noise);

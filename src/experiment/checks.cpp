@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "arms/info.h"
-#include "experiment/parse_context.h"
-#include "experiment/names.h"
+#include "experiment/parser.h"
+#include "experiment/queries.h"
+#include "samplers/info.h"
 
 namespace crescent::inline experiment {
 

@@ -3,22 +3,97 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
-#include "color/theme.h"
 #include "base/errors.h"
 #include "base/vec.h"
-#include "experiment/comparison.h"
-#include "experiment/plate_kinds.h"
-#include "experiment/published.h"
+#include "experiment/assertion.h"
+#include "output/color_map.h"
 #include "scene/scene_data.h"
 
 namespace crescent::inline experiment {
+
+// ---- Figures that someone published for an experiment, to stand beside the measured ones. JSON:
+//   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces":
+//   {"NAME": 0.29}}
+// Meters are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
+
+/// Figures that were published for an experiment, by arm, sample count, exponent and metric.
+class Published {
+public:
+    std::string source;
+    std::optional<std::uint32_t> seed;  // of the published run, where it is known
+
+    /// Empty where none was published.
+    std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& meter) const;
+    /// Of the furnace of this name; empty where none was published.
+    std::optional<double> furnace(const std::string& name) const;
+
+    std::map<std::tuple<std::string, std::uint64_t, double, std::string>, double> runs;  // arm, n, s, meter
+    std::map<std::string, double> furnaces;
+};
+
+/// Nothing where `path` is empty; throws InputError where the file cannot be read or is not of the form above.
+std::optional<Published> load_published(const std::string& path);
+/// The same from text, `name` standing for the file in messages.
+Published parse_published(std::string_view text, const std::string& name);
+
+/// A whole text file of at most 4 MiB; `what` names it in the InputError where it cannot be read.
+std::string read_text(const std::string& path, std::string_view what);
+
+}  // namespace crescent::inline experiment
+
+// ---- The one list of plates: the pictures that an experiment can ask for. A new one is a file of plates/ with its
+// painter, draw_PAINTER(Sheet&), and one line here; the list feeds the keys of experiments and their schema, `crescent
+// list plates`, the painters, the report and the tests.
+//
+// plate(name, painter, fewest runs, most runs, look, what it shows)
+
+// clang-format off: one a line
+#define CRESCENT_PLATES(plate) \
+    plate(hero, still, 1, 1, photograph, "one run, one to one where it fits") \
+    plate(gallery, still, 0, 1, photograph, "the converged reference") \
+    plate(columns, strip, 1, 4, photograph, "runs side by side, each with a part enlarged") \
+    plate(ladder, strip, 1, 64, photograph, "the rungs of arms side by side, each with a part enlarged") \
+    plate(exponent, strip, 1, 4, photograph, "the runs of the exponent control, each with a part enlarged") \
+    plate(surround, strip, 1, 4, photograph, "a part of runs enlarged, side by side") \
+    plate(reference, reference, 0, 1, instrument, "the reference with the regions, and their means") \
+    plate(heat, heat, 1, 4, instrument, "where runs differ from the reference, on one scale") \
+    plate(rose, rose, 1, 4, instrument, "densities in the plane of the normal and R, and over the hemisphere") \
+    plate(meters, meters, 0, 64, drawing, "the table of what was measured, and RMSE against N")
+// clang-format on
+
+namespace crescent::inline experiment {
+
+#define CRESCENT_NAME(name, ...) name,
+/// One of the plates, by its word in an experiment.
+enum class PlateKind { CRESCENT_PLATES(CRESCENT_NAME) };
+#undef CRESCENT_NAME
+
+/// A photograph goes through the display chain and no number stands on it; an instrument reads the float films; a
+/// drawing is an instrument of lines and text alone, which is written as SVG too.
+enum class PlateLook { photograph, instrument, drawing };
+
+/// What the lists of plates state of one.
+struct PlateInfo {
+    std::string_view name;
+    std::size_t least, most;  // runs that it shows
+    PlateLook look;
+    std::string_view shows;
+};
+
+/// By PlateKind.
+#define CRESCENT_INFO(name, painter, least, most, look, shows) PlateInfo{#name, least, most, PlateLook::look, shows},
+inline constexpr std::array plate_infos = {CRESCENT_PLATES(CRESCENT_INFO)};
+#undef CRESCENT_INFO
+constexpr const PlateInfo& plate_info(PlateKind kind) { return plate_infos[static_cast<std::size_t>(kind)]; }
 
 /// One sampler with its ladder: rungs are prefixes of one stream.
 struct ArmPlan {

@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/experiment.h"
-#include "experiment/names.h"
-#include "experiment/published.h"
+#include "experiment/queries.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {

@@ -3,9 +3,9 @@
 // hangs on several values (names that must exist, unit vectors, boxes inside the image) is for the reader to check.
 #include <nlohmann/json.hpp>
 
-#include "arms/info.h"
-#include "experiment/quantity_text.h"
+#include "experiment/assertion.h"
 #include "experiment/schema.h"
+#include "samplers/info.h"
 
 namespace crescent::inline experiment {
 
@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$";  // names become file names
-constexpr int longest_text = 4096, longest_list = 64, longest_title = 200;
+constexpr int most_schema_characters = 4096, most_schema_items = 64, longest_title = 200;
 
 /// A number of the key's range; box coordinates and counts are whole.
 Json number(const Key& key, bool whole) {
@@ -32,7 +32,7 @@ Json list(const Json& item, int count) {
 
 /// An ascending list, or a bare number for a list of one.
 Json one_or_more(const Json& item) {
-    Json many = {{"type", "array"}, {"items", item}, {"minItems", 1}, {"maxItems", longest_list}};
+    Json many = {{"type", "array"}, {"items", item}, {"minItems", 1}, {"maxItems", most_schema_items}};
     many["uniqueItems"] = true;
     return {{"anyOf", {item, many}}};
 }
@@ -42,8 +42,8 @@ Json type_of(const Key& key) {
         case Type::text:
         case Type::check:
         case Type::arm:
-        case Type::shape: return {{"type", "string"}, {"maxLength", longest_text}};
-        case Type::texts: return one_or_more({{"type", "string"}, {"maxLength", longest_text}});
+        case Type::shape: return {{"type", "string"}, {"maxLength", most_schema_characters}};
+        case Type::texts: return one_or_more({{"type", "string"}, {"maxLength", most_schema_characters}});
         case Type::word: return {{"type", "string"}, {"enum", key.words}};
         case Type::sampler: return {{"type", "string"}, {"enum", sampler_names()}};
         case Type::flag: return {{"type", "boolean"}};

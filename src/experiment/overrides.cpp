@@ -1,12 +1,11 @@
 // --set path=value: the tree is changed before it is read, so that an override meets the same checks as the file.
 // A path is a full one (shapes.sphere.s) or starts at a name (sphere.s); list items are .0 or [0].
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 
 #include "experiment/override_text.h"
-#include "experiment/parse_context.h"
+#include "experiment/parser.h"
 
 namespace crescent::inline experiment {
 

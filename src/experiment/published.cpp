@@ -1,5 +1,5 @@
 // Published figures from JSON. A place in the file is known for wrong syntax; elsewhere a JSON pointer stands for it.
-#include "experiment/published.h"
+#include "experiment/experiment.h"
 
 #include <fmt/format.h>
 

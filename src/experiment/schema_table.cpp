@@ -1,13 +1,12 @@
 // The table itself. Lengths in scene units (m), y up; radiance in W/(sr m^2) as linear Rec.709; angles in degrees.
 #include "experiment/schema.h"
-#include "experiment/schema_kinds.h"
 
 namespace crescent::inline experiment {
 
 namespace {
 
 constexpr Range free_range{-1e6, 1e6};  // coordinates: float kernels keep sub-millimetre steps well inside
-constexpr Range length{1e-6, 1e6};
+constexpr Range length_range{1e-6, 1e6};
 constexpr Range unit_range{0, 1};  // albedos
 constexpr Range exponent_range{0, 1e6, true};
 constexpr Range radiance_range{0, 1e9};       // its square and a thousandfold weight still fit a float
@@ -81,7 +80,7 @@ Section disks() {
         "Disks that shine; sampled rays meet them, the camera does not see them.", in<&Experiment::disks, Experiment>,
         {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
             {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
-            {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
+            {"radius", Type::number, length_range, "m", required, "", "Radius.", to<&DiskLight::radius>},
             {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.",
                 to<&DiskLight::radiance>},
             {"two_sided", Type::flag, none, "", defaulted, "false", "Emits from both sides.",

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/hint.h"
-#include "experiment/parse_context.h"
+#include "base/text.h"
+#include "experiment/parser.h"
 #include "math/functions.h"
 
 namespace crescent::inline experiment {

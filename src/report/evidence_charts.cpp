@@ -2,7 +2,7 @@
 // light stands beside (1 - cos theta_R)/2 with bars of two standard errors, rejections with their intervals.
 #include "report/evidence_charts.h"
 
-#include "report/arm_words.h"
+#include "report/wording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +37,9 @@ std::vector<Series> series_of(const Evidence& evidence) {
     return all;
 }
 
-const FurnaceMeter* combined_furnace(const Page& page) {
+const FurnaceResult* combined_furnace(const Page& page) {
     const ArmPlan* arm = arm_about_mirror(page.in.experiment);
-    for (const FurnaceMeter& f : page.in.metrics.furnaces)
+    for (const FurnaceResult& f : page.in.metrics.furnaces)
         if (arm && f.arm == arm->name && f.part == "combined") return &f;
     return nullptr;
 }
@@ -82,7 +82,7 @@ std::string panel(const Page& page, const Series& s) {
     chart.rule(evidence.expected, "strong", "expected");
     if (const auto cap = cap_of(evidence, s.u_bits))
         chart.rule(*cap, "dashed c0", fmt::format("limit of {} bits", s.u_bits));
-    if (const FurnaceMeter* f = combined_furnace(page); f && f->published)
+    if (const FurnaceResult* f = combined_furnace(page); f && f->published)
         chart.diamonds({{static_cast<double>(f->n), *f->published}}, "pub");
     return "<div class=\"panel\">" + html::element("p", "class=\"panel-title\"", escape(s.name())) + chart.str() +
         "</div>";
@@ -138,7 +138,7 @@ std::string furnace_sentence(const Page& page) {
         return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits);
     });
     if (coarse == fine || evidence.expected <= 0) return {};
-    const FurnaceMeter* run = combined_furnace(page);
+    const FurnaceResult* run = combined_furnace(page);
     const double n = run ? static_cast<double>(run->n) : static_cast<double>(fine->rungs.front()->n);
     const FurnaceQuantiles *low = nearest_rung(*coarse, n), *high = nearest_rung(*fine, n);
     const double short_low = 1 - low->median / evidence.expected, short_high = 1 - high->median / evidence.expected;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "meters/meters.h"
+#include "metrics/compute.h"
 
 namespace crescent::inline report {
 
@@ -49,38 +49,38 @@ std::uint64_t Findings::headline_n() const {
     return all.empty() || all.front()->n.empty() ? 0 : all.front()->n.back();
 }
 
-const RunMeter* Findings::run(const std::string& arm, std::uint64_t n, std::optional<double> s) const {
+const RunMetrics* Findings::run(const std::string& arm, std::uint64_t n, std::optional<double> s) const {
     return runs_.find({arm, n, s.value_or(this->s()), in_.experiment.seed});
 }
 
-const BandMeter* Findings::band(
+const SeedSpread* Findings::band(
     const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s) const {
     const double exponent = s.value_or(this->s());
-    for (const BandMeter& b : in_.metrics.bands)
+    for (const SeedSpread& b : in_.metrics.bands)
         if (b.meter == meter && b.key.arm == arm && b.key.n == n && b.key.s == exponent) return &b;
     return nullptr;
 }
 
 std::optional<double> Findings::rmse(const std::string& arm, std::uint64_t n, const std::string& region) const {
-    const RunMeter* found = run(arm, n);
-    const RegionMeter* meter = found ? found->region(region) : nullptr;
+    const RunMetrics* found = run(arm, n);
+    const RegionMetrics* meter = found ? found->region(region) : nullptr;
     return meter ? std::optional(meter->rmse) : std::nullopt;
 }
 
-std::optional<Tail> Findings::tail(const BandMeter& band) const {
+std::optional<Tail> Findings::tail(const SeedSpread& band) const {
     const auto dot = band.meter.find('.');
-    const RunMeter* found = dot == std::string::npos ? nullptr : run(band.key.arm, band.key.n, band.key.s);
-    const RegionMeter* meter = found ? found->region(band.meter.substr(dot + 1)) : nullptr;
+    const RunMetrics* found = dot == std::string::npos ? nullptr : run(band.key.arm, band.key.n, band.key.s);
+    const RegionMetrics* meter = found ? found->region(band.meter.substr(dot + 1)) : nullptr;
     return meter ? meter->tail : std::nullopt;
 }
 
 SeedCount Findings::seeds_above(
     const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const {
     SeedCount count;
-    for (const RunMeter& a : in_.metrics.runs) {
+    for (const RunMetrics& a : in_.metrics.runs) {
         if (a.key.arm != arm_a || a.key.n != n || a.key.s != s()) continue;
-        const RunMeter* b = runs_.find({arm_b, n, s(), a.key.seed});
-        const RegionMeter *in_a = a.region(region), *in_b = b ? b->region(region) : nullptr;
+        const RunMetrics* b = runs_.find({arm_b, n, s(), a.key.seed});
+        const RegionMetrics *in_a = a.region(region), *in_b = b ? b->region(region) : nullptr;
         if (!in_a || !in_b) continue;
         ++count.of;
         if (in_a->rmse > in_b->rmse) ++count.held;
@@ -111,8 +111,8 @@ bool Findings::anything_published() const {
 
 std::uint64_t Findings::bad_samples() const {
     std::uint64_t bad = 0;
-    for (const RunMeter& run : in_.metrics.runs) bad += run.bad;
-    for (const FurnaceMeter& furnace : in_.metrics.furnaces) bad += furnace.bad;
+    for (const RunMetrics& run : in_.metrics.runs) bad += run.bad;
+    for (const FurnaceResult& furnace : in_.metrics.furnaces) bad += furnace.bad;
     return bad;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "meters/run_index.h"
+#include "metrics/metrics.h"
 #include "report/report.h"
 
 namespace crescent::inline report {
@@ -42,15 +42,15 @@ public:
     std::uint64_t headline_n() const;
 
     /// At the published seed and the experiment's own s unless given.
-    const RunMeter* run(const std::string& arm, std::uint64_t n, std::optional<double> s = {}) const;
+    const RunMetrics* run(const std::string& arm, std::uint64_t n, std::optional<double> s = {}) const;
     /// Null where there is no such run.
-    const RunMeter* run(const RunKey& key) const { return runs_.find(key); }
-    const BandMeter* band(
+    const RunMetrics* run(const RunKey& key) const { return runs_.find(key); }
+    const SeedSpread* band(
         const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s = {}) const;
     /// RMSE in a region at the published seed.
     std::optional<double> rmse(const std::string& arm, std::uint64_t n, const std::string& region) const;
     /// Tail of the region that a meter such as "rmse.H" names; empty for whole-frame meters.
-    std::optional<Tail> tail(const BandMeter& band) const;
+    std::optional<Tail> tail(const SeedSpread& band) const;
     SeedCount seeds_above(
         const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const;
 

@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pages/charts.h"
+#include "output/charts.h"
 #include "report/findings.h"
-#include "report/sample_test.h"
-#include "report/wellformed_test.h"
+#include "tests/support/sample_report.h"
+#include "tests/support/wellformed.h"
 
 namespace crescent::testing {
 namespace {
@@ -31,9 +31,9 @@ TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     s.metrics.assertions[0].name = s.metrics.assertions[0].text = s.provenance.command = s.provenance.experiment_file =
         bad;
     s.metrics.furnaces[0].name = s.metrics.references[0].region = s.evidence.furnace[0].arithmetic = bad;
-    for (RunMeter& run : s.metrics.runs)
+    for (RunMetrics& run : s.metrics.runs)
         run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
-    for (BandMeter& b : s.metrics.bands)
+    for (SeedSpread& b : s.metrics.bands)
         b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
     EXPECT_EQ(xml_error(s.html()), "");
@@ -65,8 +65,8 @@ TEST(ReportHtml, SectionsVanishWithoutTheirData) {
     s.metrics.references.clear();
     s.metrics.assertions.clear();
     s.evidence = {};
-    for (BandMeter& b : s.metrics.bands) b.published.reset();
-    for (RunMeter& r : s.metrics.runs) r.regions.clear();
+    for (SeedSpread& b : s.metrics.bands) b.published.reset();
+    for (RunMetrics& r : s.metrics.runs) r.regions.clear();
     const std::string html = s.html();
     EXPECT_EQ(xml_error(html), "");
     for (const char* id : {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong",
@@ -212,7 +212,7 @@ TEST(ReportHtml, MarksAssertionsThatCannotFailAndThoseThatWereSkipped) {
 
 TEST(ReportHtml, OverlappingBandsAreNotRanked) {
     Sample s;
-    for (BandMeter& b : s.metrics.bands) b.band.seeds = 4;
+    for (SeedSpread& b : s.metrics.bands) b.band.seeds = 4;
     EXPECT_THAT(s.html(), Not(HasSubstr("so the two are not ranked")));
     s.band("phong", "rmse.H").band.q95 = 7;
     EXPECT_THAT(s.html(), HasSubstr("bands overlap, so the two are not ranked"));
@@ -238,8 +238,8 @@ TEST(ReportHtml, HeavyTailReplacesTheInterval) {
 TEST(ReportHtml, NumbersThatAreNoneDoNotBreakThePage) {
     Sample s;
     const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-    for (RunMeter& run : s.metrics.runs) run.regions[0].rmse = nan, run.regions[1].rmse = inf, run.bad = 5;
-    for (BandMeter& b : s.metrics.bands) b.measured = nan, b.band.median = inf;
+    for (RunMetrics& run : s.metrics.runs) run.regions[0].rmse = nan, run.regions[1].rmse = inf, run.bad = 5;
+    for (SeedSpread& b : s.metrics.bands) b.measured = nan, b.band.median = inf;
     for (Ladder& l : s.metrics.ladders) l.rmse = {nan, 0}, l.slope = nan;
     const std::string html = s.html();
     EXPECT_EQ(xml_error(html), "");

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "experiment/published.h"
-#include "pages/json_number.h"
+#include "experiment/experiment.h"
+#include "output/format.h"
 #include "report/report.h"
 
 namespace crescent::inline report {
@@ -41,17 +41,17 @@ template <class T, class F> std::vector<T> list_of(const Json& json, F one) {
     return out;
 }
 
-RunMeter run_of(const Json& json) {
-    RunMeter run;
+RunMetrics run_of(const Json& json) {
+    RunMetrics run;
     run.key = {json.at("arm").get<std::string>(), json.at("n").get<std::uint64_t>(), number_of(json.at("s")),
         json.at("seed").get<std::uint32_t>()};
 #define CRESCENT_READ(name, Type) read(json.at(#name), to.name);
-    const auto frame = [&](RunMeter& to) { CRESCENT_FRAME_METERS(CRESCENT_READ) };
+    const auto frame = [&](RunMetrics& to) { CRESCENT_FRAME_METRICS(CRESCENT_READ) };
     frame(run);
     for (const auto& [name, region] : json.at("regions").items()) {
-        RegionMeter m;
+        RegionMetrics m;
         m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
-        const auto meters = [](const Json& json, RegionMeter& to) { CRESCENT_REGION_METERS(CRESCENT_READ) };
+        const auto meters = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
         meters(region, m);
         run.regions.push_back(std::move(m));
     }
@@ -59,8 +59,8 @@ RunMeter run_of(const Json& json) {
     return run;
 }
 
-FurnaceMeter furnace_of(const Json& json) {
-    FurnaceMeter out;
+FurnaceResult furnace_of(const Json& json) {
+    FurnaceResult out;
     out.name = json.at("name").get<std::string>(), out.arm = json.at("arm").get<std::string>();
     out.part = json.at("part").get<std::string>(), out.n = json.at("n").get<std::uint64_t>();
     out.measured = number_of(json.at("measured")), out.expected = number_of(json.at("expected"));
@@ -70,7 +70,7 @@ FurnaceMeter furnace_of(const Json& json) {
     return out;
 }
 
-ReferenceMeter reference_of(const Json& json) {
+ReferenceQuality reference_of(const Json& json) {
     return {number_of(json.at("s")), json.at("region").get<std::string>(), optional_of(json.at("rms_difference")),
         optional_of(json.at("rms_standard_error")), number_of(json.at("quadrature_error")),
         optional_of(json.at("rmse_unlike")), number_of(json.at("error_share"))};
@@ -147,9 +147,9 @@ MetricsFile file_of(const Json& json, const std::string& name) {
     out.provenance = provenance_of(json.at("provenance"));
     out.experiment = experiment_of(out.provenance, json.at("provenance").at("experiment"), name);
     Metrics& m = out.metrics;
-    m.runs = list_of<RunMeter>(json.at("runs"), run_of);
-    m.furnaces = list_of<FurnaceMeter>(json.at("furnace"), furnace_of);
-    m.references = list_of<ReferenceMeter>(json.at("references"), reference_of);
+    m.runs = list_of<RunMetrics>(json.at("runs"), run_of);
+    m.furnaces = list_of<FurnaceResult>(json.at("furnace"), furnace_of);
+    m.references = list_of<ReferenceQuality>(json.at("references"), reference_of);
     m.assertions = list_of<AssertionResult>(json.at("assertions"), assertion_of);
     m.shape_pixels = json.at("shape_pixels").get<std::map<std::string, std::uint64_t>>();
     m.film_hashes = json.at("films").get<std::map<std::string, std::string>>();

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
-#include "pages/json_number.h"
-#include "report/sample_test.h"
-#include "report/wellformed_test.h"
+#include "output/format.h"
+#include "tests/support/sample_report.h"
+#include "tests/support/wellformed.h"
 
 namespace crescent::testing {
 namespace {
@@ -19,7 +19,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::nume
 
 nlohmann::json parsed(const Sample& s) { return nlohmann::json::parse(metrics_json(s.inputs())); }
 
-/// Kept for laws/scripts/schema.sh, which holds them against docs/metrics.schema.json: what fits it, and what breaks
+/// Kept for tests/system/schema.sh, which holds them against docs/metrics.schema.json: what fits it, and what breaks
 /// it.
 void keep(const std::string& name, const nlohmann::json& json, bool fits) {
     if (const char* folder = std::getenv("CRESCENT_METRICS_SAMPLES"))

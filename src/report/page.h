@@ -7,12 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "pages/charts.h"
+#include "output/charts.h"
+#include "output/format.h"
+#include "output/html.h"
 #include "report/findings.h"
-#include "pages/html.h"
 #include "report/mathml.h"
-#include "pages/numbers.h"
-#include "pages/page.h"
 #include "report/report.h"
 
 namespace crescent::inline report {
@@ -55,7 +54,7 @@ struct Page {
 
 // Theory.
 PageSection question(Page& page);
-PageSection estimator(Page& page);
+PageSection estimator_equation(Page& page);
 PageSection scene(Page& page);
 PageSection densities(Page& page);
 // What was measured.

@@ -1,7 +1,7 @@
 // Where an output came from, as the JSON files of a run state it.
 #pragma once
 
-#include "pages/json_number.h"
+#include "output/format.h"
 #include "report/report.h"
 
 namespace crescent::inline report {

@@ -1,4 +1,5 @@
-// Numbers and plates -> metrics.json, metrics.csv, junit.xml, timing.json, report.html and the summary on the terminal.
+// Numbers and plates -> metrics.json, metrics.csv, junit.xml, timing.json, report.html and the summary on the
+// terminal.
 #pragma once
 
 #include <map>
@@ -6,8 +7,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "studies/evidence.h"
-#include "meters/metrics.h"
+#include "metrics/article_checks.h"
+#include "metrics/metrics.h"
 
 namespace crescent::inline report {
 

@@ -5,10 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "experiment/arm_facts.h"
-#include "experiment/warnings.h"
+#include "experiment/queries.h"
+#include "output/format.h"
 #include "report/findings.h"
-#include "pages/numbers.h"
 #include "report/report.h"
 
 namespace crescent::inline report {
@@ -63,7 +62,7 @@ std::string verdict(const std::vector<AssertionResult>& given, const Paint& pain
     return out;
 }
 
-std::string table_row(const BandMeter& b, bool published) {
+std::string table_row(const SeedSpread& b, bool published) {
     const std::string name = fmt::format("{} {}", b.meter, b.key.arm);
     std::string row = fmt::format("  {}", left(name, published ? 23 : 34));
     if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.meter, *b.published) : "-", 10));
@@ -82,7 +81,7 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     int seeds = 1;
     for (const std::string& meter : headline_meters(in.experiment))
         for (const ArmPlan& arm : in.experiment.arms)
-            if (const BandMeter* band = find.band(arm.name, n, meter)) {
+            if (const SeedSpread* band = find.band(arm.name, n, meter)) {
                 rows += table_row(*band, published) + "\n";
                 seeds = std::max(seeds, band->band.seeds);
             }
@@ -98,7 +97,7 @@ std::string table(const ReportInputs& in, const Paint& paint) {
 /// The hashes of the films; a film's name without s where s says nothing of its arm.
 std::map<std::string, std::string> hashes_shown(const ReportInputs& in) {
     std::map<std::string, std::string> out = in.metrics.film_hashes;
-    for (const RunMeter& run : in.metrics.runs) {
+    for (const RunMetrics& run : in.metrics.runs) {
         if (tells_s(run.key.arm, run.key.s, in.experiment)) continue;
         if (auto film = out.extract(to_string(run.key)); film) {
             film.key() = fmt::format("{} n={}", run.key.arm, run.key.n);

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pages/numbers.h"
-#include "report/sample_test.h"
+#include "output/format.h"
+#include "tests/support/sample_report.h"
 
 namespace crescent::testing {
 namespace {
@@ -35,8 +35,8 @@ TEST(Summary, StaysWithinEightyColumnsWhateverTheNames) {
     const std::string name =
         "Äöüß: ein sehr langer Name, der mit Umlauten beginnt und nirgends auf der Welt in eine Zeile passt";
     for (ArmPlan& arm : s.experiment.arms) arm.name += name;
-    for (BandMeter& b : s.metrics.bands) b.key.arm += name, b.band.q05 = -1.2345678e-123, b.band.q95 = 9.87e200;
-    for (RunMeter& r : s.metrics.runs) r.key.arm += name, r.bad = 1'000'000'000'000;
+    for (SeedSpread& b : s.metrics.bands) b.key.arm += name, b.band.q05 = -1.2345678e-123, b.band.q95 = 9.87e200;
+    for (RunMetrics& r : s.metrics.runs) r.key.arm += name, r.bad = 1'000'000'000'000;
     for (AssertionResult& a : s.metrics.assertions) a.name = name + a.name, a.pass = false, a.bound = -1.2345e-300;
     s.metrics.film_hashes[name] = name;
     s.timing.isa = name;
@@ -80,7 +80,7 @@ TEST(Summary, IsColouredOnlyWhereAsked) {
     EXPECT_NE(summary(Sample(), "out", true).find("\x1b[32m"), std::string::npos);
 }
 
-TEST(Numbers, ReadableFiguresKeepFourPlaces) {
+TEST(PrimarySample, ReadableFiguresKeepFourPlaces) {
     EXPECT_EQ(figures(7.75694), "7.757");
     EXPECT_EQ(figures(0.1332529), "0.1333");
     EXPECT_EQ(figures(21358), "21358");
@@ -94,7 +94,7 @@ TEST(Numbers, ReadableFiguresKeepFourPlaces) {
     EXPECT_EQ(figures_of("fireflies", 21358), "21358");
 }
 
-TEST(Numbers, AreClippedByCodePointsInTheMiddle) {
+TEST(PrimarySample, AreClippedByCodePointsInTheMiddle) {
     EXPECT_EQ(width("äöü"), 3u);
     EXPECT_EQ(clip("äöüäöü", 5), "äö…öü");
     EXPECT_EQ(clip("short", 5), "short");

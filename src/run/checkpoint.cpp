@@ -16,15 +16,15 @@
 #include <xxhash.h>
 
 #include "base/machine.h"
-#include "run/outside.h"
+#include "run/external_samplers.h"
 #include "run/version.h"
 
 namespace crescent::inline runs {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunKey, arm, n, s, seed)
 #define CRESCENT_FIELD(name, Type) , name
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeter, region, pixels CRESCENT_REGION_METERS(CRESCENT_FIELD))
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMeter, key, regions CRESCENT_FRAME_METERS(CRESCENT_FIELD))
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMetrics, region, pixels CRESCENT_REGION_METRICS(CRESCENT_FIELD))
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMetrics, key, regions CRESCENT_FRAME_METRICS(CRESCENT_FIELD))
 #undef CRESCENT_FIELD
 
 namespace {
@@ -50,16 +50,16 @@ std::string build_mark() {
 
 /// CBOR, which holds every double as it is, NaN and infinities too.
 /// None where the record is something else.
-std::vector<RunMeter> meters_of(Journal::Bytes record) {
+std::vector<RunMetrics> meters_of(Journal::Bytes record) {
     const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
     try {
-        return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMeter>>();
+        return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMetrics>>();
     } catch (const nlohmann::json::exception&) { return {}; }
 }
 
-bool are_of(const Experiment& experiment, const std::vector<RegionMeter>& meters) {
+bool are_of(const Experiment& experiment, const std::vector<RegionMetrics>& meters) {
     return std::equal(meters.begin(), meters.end(), experiment.regions.begin(), experiment.regions.end(),
-        [](const RegionMeter& m, const Region& region) { return m.region == region.name; });
+        [](const RegionMetrics& m, const Region& region) { return m.region == region.name; });
 }
 
 std::string key_of(const Experiment& experiment, const std::string& work) {
@@ -93,7 +93,7 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& work, co
             throw OutputError(
                 fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder));
     journal_.read([&](Journal::Bytes record) {
-        for (RunMeter& meter : meters_of(record))
+        for (RunMetrics& meter : meters_of(record))
             if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
     });
     written_ = meters_.size();
@@ -116,22 +116,22 @@ TileCheckpoint Checkpoint::tiles(const std::string& name) {
     return {folder_ + "/" + name, key_ + " " + name, checkpoint_after_s_, monitor_};
 }
 
-std::vector<RunMeter> Checkpoint::meters(const Job& job) const {
-    std::vector<RunMeter> out;
+std::vector<RunMetrics> Checkpoint::meters(const Job& job) const {
+    std::vector<RunMetrics> out;
     for (const std::uint64_t n : job.n) {
         const RunKey key{job.arm, n, job.s, job.seed};
         const auto meter =
-            std::find_if(meters_.begin(), meters_.end(), [&](const RunMeter& m) { return m.key == key; });
+            std::find_if(meters_.begin(), meters_.end(), [&](const RunMetrics& m) { return m.key == key; });
         if (meter == meters_.end()) return {};
         out.push_back(*meter);
     }
     return out;
 }
 
-void Checkpoint::add(const std::vector<RunMeter>& meters) {
+void Checkpoint::add(const std::vector<RunMetrics>& meters) {
     meters_.insert(meters_.end(), meters.begin(), meters.end());
     if (start_.seconds() < checkpoint_after_s_) return;
-    const std::vector<RunMeter> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
+    const std::vector<RunMetrics> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
     const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
     journal_.append({std::as_bytes(std::span(record))});
     written_ = meters_.size();

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "base/journal.h"
-#include "base/stopwatch.h"
-#include "base/progress_monitor.h"
-#include "estimator/tile_checkpoint.h"
+#include "base/progress.h"
+#include "metrics/metrics.h"
+#include "render/tiles.h"
 #include "run/plan.h"
-#include "meters/metrics.h"
 
 namespace crescent::inline runs {
 
@@ -31,8 +30,8 @@ public:
     TileCheckpoint tiles(const std::string& name);
     TileCheckpoint tiles(const Job& job);
     /// The meters of a finished pass, one a rung; none where it is not finished.
-    std::vector<RunMeter> meters(const Job& job) const;
-    void add(const std::vector<RunMeter>& meters);
+    std::vector<RunMetrics> meters(const Job& job) const;
+    void add(const std::vector<RunMetrics>& meters);
     /// The outputs stand: nothing of this run is needed any more. What another run kept stays, and is told of.
     void discard();
 
@@ -42,7 +41,7 @@ private:
     ProgressMonitor& monitor_;
     Stopwatch start_;
     Journal journal_;
-    std::vector<RunMeter> meters_;
+    std::vector<RunMetrics> meters_;
     std::size_t written_ = 0;  // of meters_
 };
 

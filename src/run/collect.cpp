@@ -8,15 +8,14 @@
 #include <functional>
 
 #include "base/parallel.h"
-#include "base/stopwatch.h"
-#include "estimator/estimator.h"
-#include "meters/meters.h"
-#include "meters/quantity.h"
-#include "run/stopping.h"
+#include "base/progress.h"
+#include "metrics/article_checks.h"
+#include "metrics/assertions.h"
+#include "metrics/compute.h"
+#include "metrics/furnace.h"
+#include "render/estimator.h"
+#include "run/resources.h"
 #include "run/version.h"
-#include "studies/evidence_measure.h"
-#include "studies/furnace.h"
-#include "studies/region_tail.h"
 
 namespace crescent::inline runs {
 
@@ -63,7 +62,7 @@ void add_tails(
     });
     for (std::size_t k = 0; k < tails.size(); ++k) {
         const Job& job = jobs[k / regions.size()];
-        for (RunMeter& run : metrics.runs)
+        for (RunMetrics& run : metrics.runs)
             if (run.key.seed == plan.seeds.front() && run.key.arm == job.arm && run.key.s == job.s)
                 run.regions[k % regions.size()].tail = tails[k];
     }
@@ -111,7 +110,7 @@ const ReferenceFilm* Measured::reference(double s) const {
 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor) {
-    return region_tail(scene, ArmInUse{job.sampler, job.outside.get()}, job.seed, box, isa, monitor);
+    return region_tail(scene, SamplerRef{job.sampler, job.outside.get()}, job.seed, box, isa, monitor);
 }
 
 void add_spreads(Measured& out) {

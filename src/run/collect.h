@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "arms/outside.h"
-#include "studies/evidence.h"
-#include "meters/metrics.h"
+#include "metrics/article_checks.h"
+#include "metrics/metrics.h"
 #include "report/report.h"
 #include "run/execute.h"
+#include "samplers/external_sampler.h"
 
 namespace crescent::inline runs {
 

@@ -8,26 +8,25 @@
 #include "base/errors.h"
 #include "base/machine.h"
 #include "base/parallel.h"
-#include "base/stopwatch.h"
-#include "estimator/estimator.h"
-#include "estimator/kernel.h"
-#include "meters/meters.h"
-#include "reference/reference.h"
+#include "base/progress.h"
+#include "metrics/compute.h"
+#include "metrics/monte_carlo_reference.h"
+#include "render/estimator.h"
+#include "render/kernel.h"
+#include "render/reference/reference.h"
 #include "run/checkpoint.h"
-#include "run/needs.h"
-#include "run/outside.h"
-#include "run/stopping.h"
-#include "studies/monte_carlo_reference.h"
+#include "run/external_samplers.h"
+#include "run/resources.h"
 
 namespace crescent::inline runs {
 
 namespace {
 
-std::vector<RunMeter> meters_of(
+std::vector<RunMetrics> meters_of(
     const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
     const ReferenceFilm* reference = reference_of(plan.experiment, prepared.quadrature, prepared.monte_carlo, job.s);
     ensure(reference != nullptr, "references are made before the jobs that are measured against them");
-    std::vector<RunMeter> out(films.size());
+    std::vector<RunMetrics> out(films.size());
     parallel_for(std::size_t{0}, films.size(), [&](std::size_t r) {
         out[r] =
             measure(plan.experiment, {job.arm, films[r].n, job.s, job.seed}, films[r], *reference, prepared.shapes);

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "base/progress_monitor.h"
-#include "estimator/tiled_scene.h"
-#include "films/film.h"
-#include "meters/metrics.h"
-#include "run/instruments.h"
+#include "base/progress.h"
+#include "metrics/metrics.h"
+#include "render/film.h"
+#include "render/tiles.h"
+#include "run/backend.h"
 #include "run/plan.h"
 #include "scene/scene.h"
 
@@ -58,9 +58,9 @@ Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& mon
 
 struct JobResult {
     Job job;
-    std::vector<RunMeter> meters;  // one a rung; tails come with collect()
-    std::vector<Film> films;       // one a rung; none where they were not asked for
-    double samples = 0;            // that were drawn now
+    std::vector<RunMetrics> meters;  // one a rung; tails come with collect()
+    std::vector<Film> films;         // one a rung; none where they were not asked for
+    double samples = 0;              // that were drawn now
     double seconds = 0;
     bool stopped = false;
 };

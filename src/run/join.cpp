@@ -16,7 +16,7 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "experiment/experiment.h"
-#include "pages/json_number.h"
+#include "output/format.h"
 #include "run/plan.h"
 
 namespace crescent::inline runs {
@@ -96,7 +96,7 @@ Json of_no_film(Json references) {
 /// Hashes of references: their names are those of no run.
 Json reference_hashes(const Part& part) {
     Json out = part.json.at("films");
-    for (const RunMeter& run : part.file.metrics.runs) out.erase(to_string(run.key));
+    for (const RunMetrics& run : part.file.metrics.runs) out.erase(to_string(run.key));
     return out;
 }
 
@@ -128,9 +128,9 @@ public:
         const Json& rows = part.json.at("runs");
         std::set<std::uint32_t> fresh;
         for (std::size_t k = 0; k < rows.size(); ++k) {
-            RunMeter run = part.file.metrics.runs[k];
+            RunMetrics run = part.file.metrics.runs[k];
             Json row = rows[k];
-            for (RegionMeter& region : run.regions) {
+            for (RegionMetrics& region : run.regions) {
                 Json& at = row.at("regions").at(region.region);
                 if (region.tail) add_tail(part, run, region, at);
                 at.erase("tail"), region.tail.reset();
@@ -146,13 +146,13 @@ public:
         }
     }
 
-    const std::vector<RunMeter>* of(std::uint32_t seed) const {
+    const std::vector<RunMetrics>* of(std::uint32_t seed) const {
         const auto at = by_seed_.find(seed);
         return at == by_seed_.end() ? nullptr : &at->second;
     }
 
-    void give_tails(RunMeter& run) const {
-        for (RegionMeter& region : run.regions)
+    void give_tails(RunMetrics& run) const {
+        for (RegionMetrics& region : run.regions)
             if (const auto at = tails_.find({run.key.arm, run.key.s, region.region}); at != tails_.end())
                 region.tail = at->second.tail;
     }
@@ -163,7 +163,7 @@ private:
         std::string text;
     };
 
-    void add_tail(const Part& part, const RunMeter& run, const RegionMeter& region, const Json& at) {
+    void add_tail(const Part& part, const RunMetrics& run, const RegionMetrics& region, const Json& at) {
         const std::string text = at.at("tail").dump();
         const auto [known, is_new] =
             tails_.try_emplace({run.key.arm, run.key.s, region.region}, KnownTail{region.tail, text});
@@ -175,7 +175,7 @@ private:
     }
 
     std::map<std::tuple<std::string, std::uint64_t, double, std::uint32_t>, std::pair<std::string, std::string>> text_;
-    std::map<std::uint32_t, std::vector<RunMeter>> by_seed_;
+    std::map<std::uint32_t, std::vector<RunMetrics>> by_seed_;
     std::map<TailKey, KnownTail> tails_;
 };
 
@@ -212,11 +212,11 @@ Measured join(const std::vector<std::string>& given, const std::string& command)
     Experiment whole = parse(out.provenance.experiment_text, "experiment");
     out.metrics.series = seeds_of(whole);
     for (std::size_t k = 0; k < out.metrics.series.size(); ++k) {
-        const std::vector<RunMeter>* runs = rows.of(out.metrics.series[k]);
+        const std::vector<RunMetrics>* runs = rows.of(out.metrics.series[k]);
         if (!runs) continue;
         out.provenance.seeds.push_back(out.metrics.series[k]);
         out.provenance.places.push_back(static_cast<int>(k) + 1);
-        for (RunMeter run : *runs) {
+        for (RunMetrics run : *runs) {
             if (out.provenance.seeds.size() == 1) rows.give_tails(run);
             out.metrics.runs.push_back(std::move(run));
         }

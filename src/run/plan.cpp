@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
-#include "simd/random.h"
+#include "math/simd/random.h"
 
 namespace crescent::inline runs {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "arms/outside.h"
 #include "experiment/experiment.h"
+#include "samplers/external_sampler.h"
 
 namespace crescent::inline runs {
 
@@ -18,7 +18,7 @@ struct Job {
     std::vector<std::uint64_t> n;  // ascending
     double s = 0;
     std::uint32_t seed = 0;
-    std::shared_ptr<const OutsideSampler> outside = {};  // set by execute() where the arm is not built in
+    std::shared_ptr<const ExternalSampler> outside = {};  // set by execute() where the arm is not built in
 };
 
 /// A part of an experiment's series of seeds, counted from 1, both ends included; last = 0: to the end of the series.

@@ -1,9 +1,9 @@
 // The steps of a run without its jobs: what the camera sees, the reference, one plate.
 #include "run/preview.h"
 
-#include "plates/plates.h"
+#include "report/plates/plates.h"
 #include "run/collect.h"
-#include "run/needs.h"
+#include "run/resources.h"
 
 namespace crescent::inline runs {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 #include "run/execute.h"
 
 namespace crescent::inline runs {

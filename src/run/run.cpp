@@ -10,11 +10,10 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "run/checkpoint.h"
-#include "run/needs.h"
-#include "run/stopping.h"
-#include "run/outside.h"
+#include "run/external_samplers.h"
+#include "run/resources.h"
 
 namespace crescent::inline runs {
 

@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 #include "experiment/experiment.h"
+#include "run/backend.h"
 #include "run/collect.h"
 #include "run/execute.h"
-#include "run/instruments.h"
 #include "run/plan.h"
 #include "run/write.h"
 

@@ -1,9 +1,9 @@
 # Version, commit and compiler, as cmake/provenance.cmake has them; files that run once.
-crescent_unoptimised(${PROJECT_SOURCE_DIR}/src/run/checkpoint.cpp ${PROJECT_SOURCE_DIR}/src/run/join.cpp)
+crescent_low_optimization(${PROJECT_SOURCE_DIR}/src/run/checkpoint.cpp ${PROJECT_SOURCE_DIR}/src/run/join.cpp)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/version.cpp PROPERTIES
   COMPILE_DEFINITIONS "${crescent_provenance}" INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/provenance)
 add_dependencies(crescent_run crescent_commit)
-if(NOT CRESCENT_PLATES)  # what writes plates stays out; films and metrics in memory do without
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/needs_font.cpp ${PROJECT_SOURCE_DIR}/src/run/preview.cpp
+if(NOT CRESCENT_PLATES)  # files that need Cairo; films and metrics in memory do without
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/resources_font.cpp ${PROJECT_SOURCE_DIR}/src/run/preview.cpp
     ${PROJECT_SOURCE_DIR}/src/run/write.cpp PROPERTIES HEADER_FILE_ONLY ON)
 endif()

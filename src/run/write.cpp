@@ -9,14 +9,14 @@
 
 #include "base/errors.h"
 #include "base/files.h"
-#include "base/hint.h"
 #include "base/machine.h"
 #include "base/parallel.h"
-#include "base/stopwatch.h"
-#include "experiment/names.h"
-#include "meters/quantity.h"
-#include "plates/plates.h"
-#include "run/stopping.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "experiment/queries.h"
+#include "metrics/assertions.h"
+#include "report/plates/plates.h"
+#include "run/resources.h"
 #include "run/version.h"
 
 namespace crescent::inline runs {

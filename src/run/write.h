@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/progress_monitor.h"
-#include "films/exr.h"
+#include "base/progress.h"
+#include "render/exr.h"
 #include "run/collect.h"
 
 namespace crescent::inline base {

@@ -5,17 +5,17 @@
 #include <array>
 #include <cmath>
 
-#include "scene/shape.h"
-#include "simd/frame.h"
-#include "simd/random.h"
+#include "math/simd/frame.h"
+#include "math/simd/random.h"
+#include "scene/scene_data.h"
 
 namespace crescent::inline scene {
 namespace {
 
 /// Numbers in [-1, 1], one after another.
-class Numbers {
+class PrimarySample {
 public:
-    explicit Numbers(std::uint32_t seed) : seed_(seed) {}
+    explicit PrimarySample(std::uint32_t seed) : seed_(seed) {}
     double operator()() { return 2.0 * static_cast<double>(draw(seed_, 0, k_++).x) - 1; }
     Vec3d vec(double scale = 1) { return {scale * (*this)(), scale * (*this)(), scale * (*this)()}; }
 
@@ -53,7 +53,7 @@ Vec3d quad_normal(const Sample& q) { return normalize(cross(q.edge_u, q.edge_v))
 constexpr std::array kinds = {
     ShapeKind::sphere, ShapeKind::box, ShapeKind::quad, ShapeKind::disk, ShapeKind::plane, ShapeKind::panel};
 
-Sample some_shape(ShapeKind kind, Numbers& next) {
+Sample some_shape(ShapeKind kind, PrimarySample& next) {
     Sample q;
     q.kind = kind;
     q.center = next.vec(), q.point = next.vec(), q.corner = next.vec(), q.min = next.vec();
@@ -122,7 +122,7 @@ bool normal_fits(const Sample& q, Vec3d p, const Intersection& c) {
 }
 
 template <class Visit> void for_each_ray(ShapeKind kind, Visit&& visit) {
-    Numbers next(7 + static_cast<std::uint32_t>(kind));
+    PrimarySample next(7 + static_cast<std::uint32_t>(kind));
     for (int k = 0; k < 20'000; ++k) {
         const Sample q = some_shape(kind, next);
         const Vec3d x = next.vec(3), towards = next.vec(1.2) - x;
@@ -171,7 +171,7 @@ TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
 }
 
 TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
-    Numbers next(11);
+    PrimarySample next(11);
     for (const double far : {1e2, 1e4, 1e5})
         for (int k = 0; k < 300; ++k) {
             const double radius = 1e-8 * far, off = std::fabs(next());
@@ -185,7 +185,7 @@ TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
 }
 
 TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
-    Numbers next(3);
+    PrimarySample next(3);
     for (int k = 0; k < 2000; ++k) {
         const Sample ball = some_shape(ShapeKind::sphere, next), box = some_shape(ShapeKind::box, next);
         const Vec3d d = normalize(next.vec());
@@ -198,7 +198,7 @@ TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
 }
 
 TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
-    Numbers next(5);
+    PrimarySample next(5);
     int reveals = 0;
     for (int k = 0; k < 20'000; ++k) {
         const Sample q = some_shape(ShapeKind::panel, next);

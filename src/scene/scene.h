@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "math/simd/frame.h"
 #include "scene/scene_data.h"
-#include "simd/frame.h"
 
 namespace crescent::inline scene {
 

@@ -2,8 +2,78 @@
 #include "scene/scene_data.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace crescent::inline scene {
+
+// ---- rho_s is the luminance of a coloured lobe and its tint the colour over that, so that grey lobes keep their bits.
+// alpha is sqrt(2 / (s + 2)) where it is not given (Walter et al. 2007).
+
+void Material::set_specular(const Rgb& color) {
+    const double y = luminance(color);
+    const bool grey = color[0] == color[1] && color[1] == color[2];
+    rho_s = grey ? color[0] : y;
+    specular = grey ? std::nullopt : std::optional<Rgb>(color);
+}
+
+Surface surface_of(const Material& m, double common_s) {
+    const double s = m.s.value_or(common_s);
+    Surface out = {m.rho_d, m.rho_s, m.brdf, s, m.alpha.value_or(std::sqrt(2 / (s + 2)))};
+    for (std::size_t c = 0; m.specular && m.rho_s > 0 && c < 3; ++c) out.tint[c] = (*m.specular)[c] / m.rho_s;
+    return out;
+}
+
+// ---- Each kind of shape answers for itself. A shape that is not one body, such as a panel, adds the bodies it
+// consists of.
+
+Intersection intersect(const Shape& shape, Vec3d x, Vec3d d) {
+    return std::visit([&](const auto& form) { return form.intersect(x, d); }, shape.form);
+}
+
+void add_occluders(const Shape& shape, int index, std::vector<Occluder>& out) {
+    std::visit(
+        [&](const auto& form) {
+            if constexpr (Body<std::remove_cvref_t<decltype(form)>>) out.push_back({form, index});
+            else
+                for (const auto& body : form.bodies()) out.push_back({body, index});
+        },
+        shape.form);
+}
+
+std::optional<Rgb> albedo_of_reveal(const Shape& shape) {
+    return std::visit(
+        [](const auto& form) -> std::optional<Rgb> {
+            if constexpr (requires { form.reveal_rho_d; }) return form.reveal_rho_d;
+            else return {};
+        },
+        shape.form);
+}
+
+// ---- Where a plane through the viewpoint, with normal k, cuts a disk or a quad: both ends of the segment. Positions
+// in m from the viewpoint.
+
+std::optional<Line> cut(const shapes::Disk& disk, Vec3d center, Vec3d k) {
+    const Vec3d across = k - dot(k, disk.normal) * disk.normal;
+    const double size2 = dot(across, across), off = dot(k, center);
+    if (!(size2 * sqr(disk.radius) > sqr(off))) return {};
+    const double half = std::sqrt(sqr(disk.radius) - sqr(off) / size2);
+    const Vec3d foot = center - (off / size2) * across, along = (half / std::sqrt(size2)) * cross(disk.normal, across);
+    return Line{foot - along, foot + along};
+}
+
+std::optional<Line> cut(const shapes::Quad& quad, Vec3d corner, Vec3d k) {
+    const std::array corners = {corner, corner + quad.edge_u, corner + quad.edge_u + quad.edge_v, corner + quad.edge_v};
+    std::array<Vec3d, 2> ends{};
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3d p = corners[i], q = corners[(i + 1) % 4];
+        const double hp = dot(k, p), hq = dot(k, q);
+        if ((hp >= 0) == (hq >= 0) || found == 2) continue;
+        ends[found++] = p + (hp / (hp - hq)) * (q - p);
+    }
+    if (found < 2) return {};
+    return Line{ends[0], ends[1]};
+}
 
 const Shape* SceneData::shape_of_s() const {
     const auto first = [&](auto holds) {

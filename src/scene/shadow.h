@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-#include "scene/chord.h"
+#include "scene/body.h"
 #include "scene/scene.h"
 
 namespace crescent::inline scene {

@@ -5,16 +5,16 @@
 
 #include <algorithm>
 
-#include "simd/frame.h"
-#include "simd/random.h"
+#include "math/simd/frame.h"
+#include "math/simd/random.h"
 
 namespace crescent::inline scene {
 namespace {
 
 /// Numbers in [-1, 1], one after another.
-class Numbers {
+class PrimarySample {
 public:
-    explicit Numbers(std::uint32_t seed) : seed_(seed) {}
+    explicit PrimarySample(std::uint32_t seed) : seed_(seed) {}
     double operator()() { return 2.0 * static_cast<double>(draw(seed_, 0, 2 * k_++).x) - 1; }
     Vec3d vec(double scale = 1) { return {scale * (*this)(), scale * (*this)(), scale * (*this)()}; }
 
@@ -25,7 +25,7 @@ private:
 
 enum class Kind { sphere, box, quad, disk, plane };
 
-Occluder some_body(Kind kind, Vec3d about, Numbers& next) {
+Occluder some_body(Kind kind, Vec3d about, PrimarySample& next) {
     const Vec3d a = about + next.vec(0.8);
     const double radius = 0.3 * std::fabs(next());
     const Vec3d size = next.vec(0.5);
@@ -45,7 +45,7 @@ struct Obstacle {
     DiskLight disk;
 };
 
-Obstacle some_obstacle(Kind kind, Numbers& next) {
+Obstacle some_obstacle(Kind kind, PrimarySample& next) {
     Obstacle s;
     const Vec3d half = next.vec(0.2);
     s.from = {next.vec(1.5), {std::fabs(half.x), std::fabs(half.y), std::fabs(half.z)}};
@@ -57,7 +57,7 @@ Obstacle some_obstacle(Kind kind, Numbers& next) {
 }
 
 /// Of random segments from the points to the disk, those that the body crosses.
-int hidden_segments(const Obstacle& s, Numbers& next, int segments) {
+int hidden_segments(const Obstacle& s, PrimarySample& next, int segments) {
     const Frame<double> frame = frame_about(s.disk.normal);
     int hidden_ones = 0;
     for (int k = 0; k < segments; ++k) {
@@ -72,7 +72,7 @@ int hidden_segments(const Obstacle& s, Numbers& next, int segments) {
 
 TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
-        Numbers next(7 + static_cast<std::uint32_t>(kind));
+        PrimarySample next(7 + static_cast<std::uint32_t>(kind));
         int clear = 0, unclear = 0, in_the_way = 0;
         for (int trial = 0; trial < 1000; ++trial) {
             const Obstacle s = some_obstacle(kind, next);
@@ -91,7 +91,7 @@ TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
 
 TEST(PassesBy, IsNeverSaidOfABodyThatHidesSome) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
-        Numbers next(17 + static_cast<std::uint32_t>(kind));
+        PrimarySample next(17 + static_cast<std::uint32_t>(kind));
         int clear = 0, in_the_way = 0;
         for (int trial = 0; trial < 1000; ++trial) {
             Obstacle s = some_obstacle(kind, next);

@@ -23,12 +23,12 @@ template <class F, int n> struct AsStructWithF : AsStruct<F, n> {
 };
 
 template <class F, int n>
-std::shared_ptr<const JudgedSampler> adapted(const std::string& name, const Functions<F>& s, const Traits& known) {
-    if (s.f) return std::make_shared<UserSubject<AsStructWithF<F, n>>>(name, AsStructWithF<F, n>{{s, known}});
-    return std::make_shared<UserSubject<AsStruct<F, n>>>(name, AsStruct<F, n>{s, known});
+std::shared_ptr<const SamplerAdapter> adapted(const std::string& name, const Functions<F>& s, const Traits& known) {
+    if (s.f) return std::make_shared<UserSampler<AsStructWithF<F, n>>>(name, AsStructWithF<F, n>{{s, known}});
+    return std::make_shared<UserSampler<AsStruct<F, n>>>(name, AsStruct<F, n>{s, known});
 }
 
-template <class F> std::shared_ptr<const JudgedSampler> with_numbers(
+template <class F> std::shared_ptr<const SamplerAdapter> with_numbers(
     int n, const std::string& name, const Functions<F>& s, const Traits& known) {
     switch (n) {
         case 2: return adapted<F, 2>(name, s, known);
@@ -41,7 +41,7 @@ template <class F> std::shared_ptr<const JudgedSampler> with_numbers(
 
 }  // namespace
 
-std::shared_ptr<const JudgedSampler> subject_of(const Sampler& s) {
+std::shared_ptr<const SamplerAdapter> subject_of(const Sampler& s) {
     Traits known;
     known.wo = s.wo;
     known.reciprocal = s.reciprocal;
@@ -57,8 +57,8 @@ Functions<float> rounded(Functions<double> exact) {
     out.pdf = [exact](Vec3f wo, Vec3f wi) { return static_cast<float>(exact.pdf(widened(wo), widened(wi))); };
     if (exact.f) out.f = [exact](Vec3f wo, Vec3f wi) { return static_cast<float>(exact.f(widened(wo), widened(wi))); };
     out.sample = [exact, round](Vec3f wo, const float* u) {
-        double wide[Numbers::most] = {};
-        for (int k = 0; k < Numbers::most; ++k) wide[k] = static_cast<double>(u[k]);
+        double wide[PrimarySample::most] = {};
+        for (int k = 0; k < PrimarySample::most; ++k) wide[k] = static_cast<double>(u[k]);
         const Drawn<double> d = exact.sample(widened(wo), wide);
         const Vec3f wi = round(d.wi);
         return Drawn<float>{wi, d.pdf > 0 ? static_cast<float>(exact.pdf(widened(wo), widened(wi))) : 0.0f};

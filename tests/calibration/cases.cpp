@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "base/hint.h"
+#include "base/text.h"
 
 namespace crescent::calibration {
 
 namespace {
 
-Dice dice_for(const CaseKey& key, std::string_view purpose) { return dice_of({key.set, key.seed, key.index, purpose}); }
+Rng dice_for(const CaseKey& key, std::string_view purpose) { return dice_of({key.set, key.seed, key.index, purpose}); }
 
 bool of_held_out_set(const CaseKey& key) { return key.set.ends_with("-held-out"); }
 
@@ -34,17 +34,17 @@ const std::vector<const Family*>& twelve() {
     return all;
 }
 
-Real real_of(Dice& d) { return d.whole(0, 1) ? Real::f32 : Real::f64; }
+Real real_of(Rng& d) { return d.whole(0, 1) ? Real::f32 : Real::f64; }
 
 std::vector<std::pair<double, double>> grid_of(const CaseKey& key, Traits::Asked asked) {
-    Dice d = dice_for(key, "w_o");
+    Rng d = dice_for(key, "w_o");
     return random_grid(d, asked, key.wo);
 }
 
 /// The w_o of the trials, without the samplers beside them.
-std::vector<Vec3d> directions_of(const std::vector<Trial>& trials) {
+std::vector<Vec3d> directions_of(const std::vector<CheckCase>& trials) {
     std::vector<Vec3d> out;
-    for (const Trial& t : trials)
+    for (const CheckCase& t : trials)
         if (!t.baseline) out.push_back(t.wo);
     return out;
 }
@@ -64,7 +64,7 @@ Case make_right(const CaseKey& key) {
     static const std::vector<const Family*> sets[] = {families_of(false), families_of(true)};
     const auto& all = sets[of_held_out_set(key)];
     const Family& family = *all[key.index % all.size()];
-    Dice d = dice_for(key, "parameters");
+    Rng d = dice_for(key, "parameters");
     const Member member = family.member(d);
     const Real real = key.index / all.size() % 2 ? Real::f32 : Real::f64;
     Case c = case_of(sampler_of(family, member, real), key, State::right, "right");
@@ -78,7 +78,7 @@ Case make_power(const CaseKey& key) {
     const std::uint64_t cell = key.index % 20;
     static const std::vector<const Family*> held_out = families_of(true);
     const auto& all = of_held_out_set(key) ? held_out : twelve();
-    Dice d = dice_for(key, "parameters");
+    Rng d = dice_for(key, "parameters");
     const Family& family = *all[static_cast<std::size_t>(d.whole(0, static_cast<int>(all.size()) - 1))];
     const Real real = real_of(d);
     const Member member = family.member(d);
@@ -129,7 +129,7 @@ const std::vector<Choice>& other_kinds() {
 Case make_choice(const CaseKey& key, const std::vector<Choice>& all) {
     static const std::vector<const Family*> tuning = families_of(false);
     const Choice& choice = all[key.index % all.size()];
-    Dice d = dice_for(key, "parameters");
+    Rng d = dice_for(key, "parameters");
     const auto any = [&](std::size_t n) { return static_cast<std::size_t>(d.whole(0, static_cast<int>(n) - 1)); };
     const Family& family =
         choice.of.empty() ? *tuning[any(tuning.size())] : family_named(choice.of[any(choice.of.size())]);
@@ -143,7 +143,7 @@ Case make_stated(const CaseKey& key) { return stated_right(stated_case(key), key
 
 }  // namespace
 
-std::vector<std::pair<double, double>> random_grid(Dice& d, Traits::Asked asked, int count) {
+std::vector<std::pair<double, double>> random_grid(Rng& d, Traits::Asked asked, int count) {
     std::vector<std::pair<double, double>> out;
     if (asked == Traits::Asked::none) return out;
     for (int k = 0; k < count; ++k) {
@@ -164,7 +164,7 @@ Case case_of(const Sampler& sampler, const CaseKey& key, State expected, std::st
     c.real = sampler.real();
     c.sampler = sampler;
     c.grid = grid_of(key, sampler.wo);
-    c.trials = trials_of_subject(subject_of(sampler), key.full, c.grid);
+    c.trials = make_user_cases(subject_of(sampler), key.full, c.grid);
     return c;
 }
 
@@ -182,7 +182,7 @@ StatedCase stated_case(const CaseKey& key) {
                                                          : true;
         if (can && f.held_out == of_held_out_set(key)) all.push_back(&f);
     }
-    Dice d = dice_for(key, "parameters");
+    Rng d = dice_for(key, "parameters");
     out.family = all[static_cast<std::size_t>(d.whole(0, static_cast<int>(all.size()) - 1))];
     out.real = real_of(d);
     out.member = out.family->member(d);
@@ -207,7 +207,8 @@ const std::vector<CaseSet>& case_sets() {
         {"power-held-out", "the same in the held-out families", 0, 0, make_power},
         {"stated", "faults of the size that a right verdict says could be hidden", 0, 1, make_stated},
         {"stated-held-out", "the same in the held-out families", 0, 1, make_stated},
-        {"known", "planted faults of laws/planted, those held out included", count_known(), 0, make_known},
+        {"known", "planted faults of tests/known_samplers/faulty, those held out included", count_known(), 0,
+            make_known},
         {"causes", "faults whose cause can be named", 0, 0, make_causes},
         {"kinds", "faults of all other kinds: caps, NaN, negative, boundaries, lobes", 0, 0, make_kinds},
         {"faults", "faults that users reported with their corrected samplers, and right ones called wrong",

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "judgements/verdict.h"
-#include "subjects/subject.h"
+#include "check/sources/sampler_adapter.h"
+#include "check/verdict.h"
 
 namespace crescent::calibration {
 
@@ -38,7 +38,7 @@ public:
     virtual ~Engine() = default;
     virtual std::string_view name() const = 0;
     /// Fills all but cpu_seconds, evaluations and wo, which are measured by measured().
-    virtual Result run(std::span<const Trial> trials, const Request& request) const = 0;
+    virtual Result run(std::span<const CheckCase> trials, const Request& request) const = 0;
 };
 
 /// The engines, in the order of the list.
@@ -47,6 +47,6 @@ const std::vector<std::unique_ptr<Engine>>& engines();
 const Engine& engine_named(std::string_view name);
 
 /// Runs it on what `trials` makes, with CPU time and evaluations counted; programs behind pipes end before that.
-Result measured(const Engine& engine, const std::function<std::vector<Trial>()>& trials, const Request& request);
+Result measured(const Engine& engine, const std::function<std::vector<CheckCase>()>& trials, const Request& request);
 
 }  // namespace crescent::calibration

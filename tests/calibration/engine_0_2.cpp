@@ -19,10 +19,10 @@ void take_most(std::map<std::string, double>& to, const char* name, const std::o
 class Engine02 : public Engine {
 public:
     std::string_view name() const override { return "0.2"; }
-    Result run(std::span<const Trial> trials, const Request& request) const override {
+    Result run(std::span<const CheckCase> trials, const Request& request) const override {
         check::CheckSettings settings;
         if (request.full) settings.budget = check::CheckBudget::thorough();
-        if (std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); }))
+        if (std::ranges::any_of(trials, [](const CheckCase& t) { return t.subject->serial(); }))
             settings.budget = check::CheckBudget::limited();
         settings.seed = request.seed;
         ProgressMonitor monitor;

@@ -5,8 +5,8 @@
 #include <sys/time.h>
 
 #include "base/errors.h"
-#include "base/hint.h"
-#include "subjects/forwarded.h"
+#include "base/text.h"
+#include "check/sources/sampler_adapter.h"
 #include "tests/calibration/engine.h"
 
 #define CRESCENT_ENGINES(engine) engine(engine_0_2)
@@ -19,12 +19,12 @@ CRESCENT_ENGINES(CRESCENT_DECLARED)
 
 namespace {
 
-class Counted : public ForwardedSampler {
+class Counted : public ForwardingAdapter {
 public:
     using Count = std::shared_ptr<std::atomic<std::uint64_t>>;
-    Counted(std::shared_ptr<const JudgedSampler> inner, Count count)
-        : ForwardedSampler(std::move(inner)), count_(std::move(count)) {}
-    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+    Counted(std::shared_ptr<const SamplerAdapter> inner, Count count)
+        : ForwardingAdapter(std::move(inner)), count_(std::move(count)) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         *count_ += u.size();
         inner().sample(t, wo, u, out);
     }
@@ -82,15 +82,15 @@ const Engine& engine_named(std::string_view name) {
     throw InputError({"--engine", 0, 0}, fmt::format("no engine '{}'{}", name, did_you_mean(name, names)));
 }
 
-Result measured(const Engine& engine, const std::function<std::vector<Trial>()>& trials, const Request& request) {
+Result measured(const Engine& engine, const std::function<std::vector<CheckCase>()>& trials, const Request& request) {
     const auto count = std::make_shared<std::atomic<std::uint64_t>>(0);
     const double start = cpu_seconds();
     Result out;
     int wo = 0;
     {
-        std::vector<Trial> all = trials();
-        std::map<const JudgedSampler*, std::shared_ptr<const JudgedSampler>> counted;
-        for (Trial& t : all) {
+        std::vector<CheckCase> all = trials();
+        std::map<const SamplerAdapter*, std::shared_ptr<const SamplerAdapter>> counted;
+        for (CheckCase& t : all) {
             if (t.baseline) continue;  // it asks for f alone, of a sampler whose calls are counted elsewhere
             ++wo;
             auto& one = counted[t.subject.get()];

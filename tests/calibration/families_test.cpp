@@ -17,7 +17,7 @@ protected:
     Real real = std::get<1>(GetParam()) ? Real::f32 : Real::f64;
     std::uint64_t seed = std::get<0>(GetParam()) * 2 + static_cast<std::uint64_t>(std::get<1>(GetParam()));
     Sampler sampler = [&] {
-        Dice d = dice_of({"families_test", seed, 0, "parameters"});
+        Rng d = dice_of({"families_test", seed, 0, "parameters"});
         return sampler_of(family, family.member(d), real);
     }();
     Vec3d wo = family.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
@@ -44,7 +44,7 @@ TEST(Families, SinglePrecisionKeepsTheIntegralBelowTheDetectionFloor) {
     for (const Family& f : families()) {
         const Vec3d wo = f.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
         for (std::uint64_t k = 0; k < 3; ++k) {
-            Dice d = dice_of({"families_test", 100 + k, 0, f.name});
+            Rng d = dice_of({"families_test", 100 + k, 0, f.name});
             const Member member = f.member(d);
             const Sampler in_double = sampler_of(f, member, Real::f64), in_float = sampler_of(f, member, Real::f32);
             const Draws draws = draws_of(in_double, wo, 1 << 13, k);

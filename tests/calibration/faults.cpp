@@ -24,7 +24,7 @@ const PlaceOfFault& nearest(const std::vector<PlaceOfFault>& all, Vec3d wo) {
 }
 
 /// Other numbers, a function of these and of the attempt: splitmix64 over their bits, 24 bits each.
-template <class F> std::array<F, Numbers::most> others(const F* u, std::uint64_t attempt) {
+template <class F> std::array<F, PrimarySample::most> others(const F* u, std::uint64_t attempt) {
     std::uint64_t h = attempt;
     const auto mixed = [](std::uint64_t x) {
         x += 0x9e3779b97f4a7c15u;
@@ -32,13 +32,13 @@ template <class F> std::array<F, Numbers::most> others(const F* u, std::uint64_t
         x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
         return x ^ (x >> 31);
     };
-    for (int k = 0; k < Numbers::most; ++k) {
+    for (int k = 0; k < PrimarySample::most; ++k) {
         const double v = static_cast<double>(u[k]);
         std::uint64_t bits = 0;
         std::memcpy(&bits, &v, sizeof v);
         h = mixed(h ^ bits);
     }
-    std::array<F, Numbers::most> out{};
+    std::array<F, PrimarySample::most> out{};
     for (F& v : out) h = mixed(h), v = F(h >> 40) * F(0x1p-24);
     return out;
 }
@@ -74,7 +74,7 @@ bool needs_number(FaultKind kind) {
         kind == FaultKind::length;
 }
 
-template <class F> struct Bend {
+template <class F> struct FaultInjection {
     Functions<F> draws, claims;  // those with the changed parameter, and those that pdf has
     Fault fault;
     std::vector<PlaceOfFault> places;
@@ -95,7 +95,7 @@ template <class F> struct Bend {
             (fault.kind == FaultKind::nan_at_zero && u[0] == 0);
     }
     /// The direction; pdf 0 where nothing is drawn.
-    Drawn<F> direction(Vec3<F> wo, std::array<F, Numbers::most> u) const {
+    Drawn<F> direction(Vec3<F> wo, std::array<F, PrimarySample::most> u) const {
         if (fault.kind == FaultKind::one_number) u[1] = u[0];
         if (fault.kind == FaultKind::no_azimuth) u[1] = F(0.3125);
         if (fault.kind == FaultKind::leak && u[std::size_t(numbers)] < F(fault.size))
@@ -121,7 +121,7 @@ template <class F> struct Bend {
         return d;
     }
     Drawn<F> sample(Vec3<F> wo, const F* u) const {
-        std::array<F, Numbers::most> v;
+        std::array<F, PrimarySample::most> v;
         std::copy_n(u, v.size(), v.begin());
         Drawn<F> d = direction(wo, v);
         constexpr F nan = std::numeric_limits<F>::quiet_NaN();
@@ -134,19 +134,19 @@ template <class F> struct Bend {
     }
 };
 
-template <class F> Functions<F> bent(Bend<F> bend) {
+template <class F> Functions<F> bent(FaultInjection<F> bend) {
     Functions<F> out;
     out.f = bend.claims.f;
-    const auto all = std::make_shared<const Bend<F>>(std::move(bend));
+    const auto all = std::make_shared<const FaultInjection<F>>(std::move(bend));
     out.pdf = [all](Vec3<F> wo, Vec3<F> wi) { return all->pdf(wo, wi); };
     out.sample = [all](Vec3<F> wo, const F* u) { return all->sample(wo, u); };
     return out;
 }
 
-template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Dice& dice, int count) {
+template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Rng& dice, int count) {
     std::vector<Vec3d> out;
     for (int k = 0; k < count; ++k) {
-        F u[Numbers::most];
+        F u[PrimarySample::most];
         for (F& v : u) v = F(std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24);
         const Drawn<F> d = s.sample(cast<F>(wo), u);
         if (d.pdf > 0) out.push_back(unit(widened(d.wi)));
@@ -154,7 +154,7 @@ template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, 
     return out;
 }
 
-PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Dice& dice) {
+PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Rng& dice) {
     const Vec3d any = dice.direction(-1, 1);
     PlaceOfFault at{wo, any, {0, 0, 1}};
     if (draws.empty()) return at;
@@ -178,7 +178,7 @@ std::vector<PlaceOfFault> places_of(
     const bool capped = fault.kind == FaultKind::hole || fault.kind == FaultKind::blind;
     const bool tempered = fault.kind == FaultKind::exponent;
     if (!capped && !tempered && fault.kind != FaultKind::rotation) return {};
-    Dice dice = dice_of(key);
+    Rng dice = dice_of(key);
     std::vector<PlaceOfFault> out;
     const std::vector<Vec3d> only = {{0, 0, 1}};
     for (Vec3d o : right.wo == Traits::Asked::none ? std::span<const Vec3d>(only) : wo) {
@@ -206,8 +206,8 @@ Sampler faulty(const Family& family, const Member& member, Real real, const Faul
     const std::vector<PlaceOfFault> places = places_of(right, fault, wo, key);
     std::visit(
         [&]<class F>(const Functions<F>& draws) {
-            right.functions = bent(
-                Bend<F>{draws, std::get<Functions<F>>(claims.functions), fault, places, family.domain, family.numbers});
+            right.functions = bent(FaultInjection<F>{
+                draws, std::get<Functions<F>>(claims.functions), fault, places, family.domain, family.numbers});
         },
         other.functions);
     if (needs_number(fault.kind)) ++right.numbers;

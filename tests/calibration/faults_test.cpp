@@ -25,7 +25,7 @@ struct Twins {
     std::vector<PlaceOfFault> places;
     Twins(std::string_view family, Fault fault, Real real = Real::f64) {
         const Family& f = family_named(family);
-        Dice d = dice_of({"faults_test", 7, 0, "parameters"});
+        Rng d = dice_of({"faults_test", 7, 0, "parameters"});
         const Member member = f.member(d);
         const StreamKey key{"faults_test", 7, 0, "fault"};
         right = sampler_of(f, member, real);
@@ -51,12 +51,12 @@ TEST_P(EveryPowerFamily, ALeakMovesItsShareOfTheDraws) {
     const Twins t(GetParam(), {FaultKind::leak, 0.1});
     EXPECT_EQ(t.wrong.numbers, t.right.numbers + 1);
     // The same numbers go to both: what differs was leaked.
-    Dice dice = dice_of({"faults_test", 1, 0, "numbers"});
+    Rng dice = dice_of({"faults_test", 1, 0, "numbers"});
     const auto& a = std::get<Functions<double>>(t.right.functions);
     const auto& b = std::get<Functions<double>>(t.wrong.functions);
     int differ = 0;
     for (int k = 0; k < draws / 8; ++k) {
-        double u[Numbers::most];
+        double u[PrimarySample::most];
         for (double& v : u) v = dice.uniform(0, 1);
         const Drawn<double> x = a.sample(wo, u), y = b.sample(wo, u);
         differ += x.pdf > 0 && !(y.pdf > 0 && versine(x.wi, y.wi) < 1e-20);
@@ -116,10 +116,10 @@ TEST(Faults, SharesOfBadValuesAreTheirSize) {
     for (const FaultKind kind : {FaultKind::nan, FaultKind::negative, FaultKind::length}) {
         const Twins t("Phong", {kind, 0.01}, Real::f32);
         const auto subject = subject_of(t.wrong);
-        Dice dice = dice_of({"faults_test", 3, 0, "numbers"});
+        Rng dice = dice_of({"faults_test", 3, 0, "numbers"});
         int bad = 0;
         for (int k = 0; k < 1 << 16; ++k) {
-            Numbers u;
+            PrimarySample u;
             for (int i = 0; i < t.wrong.numbers; ++i) u[i] = std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24;
             Draw d;
             subject->sample(0, wo, {&u, 1}, {&d, 1});
@@ -146,7 +146,7 @@ TEST(Faults, FactorsOfThePdf) {
 TEST(Faults, EveryBrokenFamilyClaimsAnotherDensity) {
     for (const Family& f : families())
         for (const Broken b : f.breaks) {
-            Dice d = dice_of({"faults_test", 5, 0, f.name});
+            Rng d = dice_of({"faults_test", 5, 0, f.name});
             const Member member = f.member(d);
             const Sampler right = sampler_of(f, member, Real::f64);
             const Sampler wrong =
@@ -165,7 +165,7 @@ TEST(Streams, TwoKeysShareNoNumbers) {
         for (std::uint64_t seed : {1, 2})
             for (std::uint64_t index : {0, 1, 2, 17})
                 for (const std::string_view purpose : {"parameters", "w_o", "fault"}) {
-                    Dice d = dice_of({set, seed, index, purpose});
+                    Rng d = dice_of({set, seed, index, purpose});
                     for (int k = 0; k < 4096; ++k, ++count)
                         seen.insert(static_cast<std::uint64_t>(d.uniform(0, 0x1p53)));
                 }

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/vec.h"
-#include "simd/frame.h"
-#include "simd/scalar.h"
+#include "math/simd/frame.h"
+#include "math/simd/scalar.h"
 
 namespace crescent::calibration {
 

@@ -25,18 +25,18 @@ Sampler without_wo(
     return s;
 }
 /// +z, -z or any direction.
-Vec3d some_axis(Dice& d) {
+Vec3d some_axis(Rng& d) {
     const int k = d.whole(0, 3);
     return k == 0 ? Vec3d{0, 0, 1} : k == 1 ? Vec3d{0, 0, -1} : d.direction(-1, 1);
 }
-Sampler lobe(Dice& d, std::string name, std::string text, Profiled profile) {
+Sampler lobe(Rng& d, std::string name, std::string text, Profiled profile) {
     const Vec3d axis = some_axis(d);
     return without_wo(std::move(name), text + fmt::format(", axis z {:.3f}", axis.z), 2,
         single<double>(fixed<double>(axis), profile));
 }
 
 /// p ~ t^-e, integrable at the axis.
-Sampler pole_of_density(Dice& d) {
+Sampler pole_of_density(Rng& d) {
     const double e = d.uniform(0.4, 0.9);
     return lobe(d, "t^-e", fmt::format("e {:.3f}", e),
         {[e](double u) { return 2 * std::pow(u, 1 / (1 - e)); },
@@ -45,12 +45,12 @@ Sampler pole_of_density(Dice& d) {
             }});
 }
 /// Uniform in theta.
-Sampler uniform_theta(Dice& d) {
+Sampler uniform_theta(Rng& d) {
     return lobe(d, "uniform in theta", "-",
         {[](double u) { return 2 * sqr(std::sin(pi_of<double> * u / 2)); },
             [](double t) { return 1 / (2 * sqr(pi_of<double>) * std::sqrt(std::max(t * (2 - t), 1e-300))); }});
 }
-Sampler thin_ring(Dice& d) {
+Sampler thin_ring(Rng& d) {
     const double low = d.uniform(0.1, 0.8), wide = d.log(3e-5, 1e-3);
     return lobe(d, "thin ring", fmt::format("width {:.2g}", wide),
         {[=](double u) { return low + wide * u; },
@@ -58,23 +58,23 @@ Sampler thin_ring(Dice& d) {
                 return t >= low - 1e-14 && t <= low + wide + 1e-14 ? 1 / (2 * pi_of<double> * wide) : 0.0;
             }});
 }
-Sampler needle(Dice& d) {
+Sampler needle(Rng& d) {
     const double gap = d.log(1e-8, 1e-5);
     return lobe(d, "needle", fmt::format("1 - cos {:.2g}", gap), cone_profile<double>(gap));
 }
 /// (1 + t / b)^-g, whose second moment does not exist.
-Sampler heavy_tail(Dice& d) {
+Sampler heavy_tail(Rng& d) {
     const double g = d.uniform(1.05, 1.5), b = d.log(1e-7, 1e-4), whole = -std::expm1((1 - g) * std::log1p(2 / b));
     return lobe(d, "heavy tail", fmt::format("power {:.3f}, scale {:.2g}", g, b),
         {[=](double u) { return std::min(2.0, b * std::expm1(std::log1p(-u * whole) / (1 - g))); },
             [=](double t) { return (g - 1) / b * std::pow(1 + t / b, -g) / whole / (2 * pi_of<double>); }});
 }
-Sampler forward_scattering(Dice& d) {
+Sampler forward_scattering(Rng& d) {
     const double g = 1 - d.log(1e-3, 2e-2);
     return lobe(d, "forward scattering", fmt::format("g {:.5f}", g), greenstein_profile<double>(g));
 }
 /// A great circle's neighbourhood: a normal distribution of the height above a tilted plane, cut at 1.
-Sampler band(Dice& d) {
+Sampler band(Rng& d) {
     const double sd = d.log(1e-4, 1e-2);
     const Vec3d axis = d.direction(-1, 1);
     const Frame<double> frame = frame_about(axis);
@@ -91,14 +91,14 @@ Sampler band(Dice& d) {
     };
     return without_wo("band", fmt::format("sd {:.2g}", sd), 3, f);
 }
-Sampler rare_spike(Dice& d) {
+Sampler rare_spike(Rng& d) {
     const double share = d.log(1e-4, 1e-2), k = d.log(1e6, 1e8);
     return without_wo("rare spike", fmt::format("share {:.2g}, kappa {:.2g}", share, k), 3,
         mixture<double>({{1 - share, fixed<double>({0, 0, 1}), power_profile<double>(1)},
                             {share, fixed<double>(d.direction(0, 1)), fisher_profile<double>(k)}},
             Broken::none));
 }
-Sampler many_disks(Dice& d) {
+Sampler many_disks(Rng& d) {
     struct One {
         Vec3d axis;
         double gap;
@@ -148,15 +148,15 @@ Sampler cells(std::string name, int columns, int rows, const std::function<doubl
     };
     return without_wo(std::move(name), fmt::format("{} x {} cells", columns, rows), 2, f);
 }
-Sampler chequers(Dice& d) {
+Sampler chequers(Rng& d) {
     const int columns = d.whole(60, 140);
     return cells("chequers", columns, columns * 37 / 100, [](int x, int y) { return (x + y) % 2 ? 1.9 : 0.1; });
 }
-Sampler fine_chequers(Dice& d) {
+Sampler fine_chequers(Rng& d) {
     const int columns = d.whole(800, 1200);
     return cells("fine chequers", columns, columns * 37 / 100, [](int x, int y) { return (x + y) % 2 ? 1.9 : 0.1; });
 }
-Sampler lognormal(Dice& d) {
+Sampler lognormal(Rng& d) {
     const double sigma = d.uniform(2, 3);
     return cells("lognormal cells", d.whole(60, 300), d.whole(60, 200), [&](int, int) {
         double sum = -2;
@@ -164,7 +164,7 @@ Sampler lognormal(Dice& d) {
         return std::exp(sigma * std::sqrt(3.0) * sum);
     });
 }
-Sampler cascade(Dice&) {
+Sampler cascade(Rng&) {
     return cells("cascade", 243, 243, [](int x, int y) {
         constexpr double weight[3] = {0.2, 1.7, 1.1};
         double m = 1;
@@ -173,7 +173,7 @@ Sampler cascade(Dice&) {
     });
 }
 /// Most draws are nothing: a cosine lobe that is drawn once in a thousand.
-Sampler mostly_nothing(Dice& d) {
+Sampler mostly_nothing(Rng& d) {
     const double share = d.log(1e-3, 1e-2);
     Functions<double> f;
     f.pdf = [share](Vec3d, Vec3d w) { return share * std::max(w.z, 0.0) / pi_of<double>; };
@@ -184,26 +184,26 @@ Sampler mostly_nothing(Dice& d) {
     };
     return without_wo("mostly nothing", fmt::format("share {:.2g}", share), 3, f);
 }
-Sampler many_lobes(Dice& d) {
+Sampler many_lobes(Rng& d) {
     std::vector<Lobe<double>> lobes;
     const double k = d.whole(0, 1) ? 5e3 : 2e5;
     for (int i = 0; i < 300; ++i) lobes.push_back({1, fixed<double>(d.direction(-1, 1)), fisher_profile<double>(k)});
     return without_wo("300 lobes", fmt::format("kappa {:.2g}", k), 3, mixture<double>(std::move(lobes), Broken::none));
 }
 
-Sampler sharp_ggx(Dice& d) {
+Sampler sharp_ggx(Rng& d) {
     const float alpha = static_cast<float>(d.log(1e-3, 0.02));
     Sampler s = without_wo("sharp GGX", fmt::format("alpha {:.4g}", alpha), 2, Ggx2<float>{alpha, alpha}.visible());
     s.wo = Wo::upper;
     return s;
 }
-Sampler ggx_003(Dice&) {
+Sampler ggx_003(Rng&) {
     Sampler s = without_wo("sharp GGX", "alpha 0.003", 2, Ggx2<float>{0.003f, 0.003f}.visible());
     s.wo = Wo::upper;
     return s;
 }
 /// A lobe about the far pole in single precision.
-Sampler far_pole(Dice& d) {
+Sampler far_pole(Rng& d) {
     const double k = d.log(100, 1e5);
     const bool cone = d.whole(0, 1) == 1;
     const auto axis = fixed<float>({0, 0, -1});
@@ -211,7 +211,7 @@ Sampler far_pole(Dice& d) {
         single<float>(axis, cone ? cone_profile<float>(float(1 / k)) : fisher_profile<float>(float(k))));
 }
 /// A sphere light in single precision: whether w meets it is asked of the rounded direction, without a margin.
-Sampler sphere_rim(Dice& d) {
+Sampler sphere_rim(Rng& d) {
     const float ratio = static_cast<float>(d.log(0.02, 0.9)), s2 = ratio * ratio;
     const float gap = s2 / (1 + std::sqrt(1 - s2)), density = 1 / (2 * pi_of<float> * gap);
     Functions<float> f = single<float>(fixed<float>(d.direction(-1, 1)),
@@ -221,7 +221,7 @@ Sampler sphere_rim(Dice& d) {
 }
 
 /// 2048 x 1024 texels in single precision, with a sun of 5 x 5 texels 20,000 times as bright.
-Sampler large_sky(Dice& d, bool noise, bool alias) {
+Sampler large_sky(Rng& d, bool noise, bool alias) {
     constexpr int rows = 1024, columns = 2048;
     std::vector<double> radiance;
     const int sun_row = d.whole(100, 900), sun_column = d.whole(0, columns - 6);
@@ -237,10 +237,10 @@ Sampler large_sky(Dice& d, bool noise, bool alias) {
     return sky_sampler(fmt::format("large sky{}{}", noise ? ", noise" : "", alias ? ", alias table" : ""), rows,
         columns, radiance, alias, Real::f32);
 }
-template <bool noise, bool alias> Sampler sky(Dice& d) { return large_sky(d, noise, alias); }
+template <bool noise, bool alias> Sampler sky(Rng& d) { return large_sky(d, noise, alias); }
 
 /// p linear in theta between 181 rows, drawn by the exact CDF.
-Sampler rows_181(Dice& d) {
+Sampler rows_181(Rng& d) {
     auto value = std::make_shared<std::vector<double>>(), sums = std::make_shared<std::vector<double>>(1, 0.0);
     constexpr double h = pi_of<double> / 180;
     for (int i = 0; i <= 181; ++i) value->push_back(0.2 + std::exp(-sqr((i - 35) / 14.0)) + 0.3 * d.uniform(0, 1));
@@ -273,7 +273,7 @@ Sampler rows_181(Dice& d) {
     return without_wo("181 rows", "linear in theta", 2, f);
 }
 
-constexpr Sampler (*makers[])(Dice&) = {pole_of_density, uniform_theta, thin_ring, needle, heavy_tail,
+constexpr Sampler (*makers[])(Rng&) = {pole_of_density, uniform_theta, thin_ring, needle, heavy_tail,
     forward_scattering, band, rare_spike, many_disks, chequers, fine_chequers, lognormal, cascade, mostly_nothing,
     many_lobes, sharp_ggx, ggx_003, far_pole, sphere_rim, sky<false, false>, sky<true, false>, sky<false, true>,
     sky<true, true>, rows_181};
@@ -284,7 +284,7 @@ constexpr std::uint64_t variants = 3;
 std::uint64_t count_hard() { return variants * std::size(makers); }
 
 Case make_hard(const CaseKey& key) {
-    Dice d = dice_of({key.set, key.seed, key.index, "parameters"});
+    Rng d = dice_of({key.set, key.seed, key.index, "parameters"});
     return case_of(makers[key.index % std::size(makers)](d), key, State::right, "right");
 }
 

@@ -18,7 +18,7 @@ struct StudentSlopes {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     double alpha, gamma;
-    static StudentSlopes drawn(Dice& d) { return {d.log(0.05, 0.7), d.uniform(1.6, 6)}; }
+    static StudentSlopes drawn(Rng& d) { return {d.log(0.05, 0.7), d.uniform(1.6, 6)}; }
     std::string text() const { return fmt::format("alpha {:.4g}, gamma {:.3f}", alpha, gamma); }
     StudentSlopes stretched(double by) const { return {alpha * by, gamma}; }
     template <class F> Functions<F> in(Broken) const {
@@ -42,7 +42,7 @@ struct TransformedCosine {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::sphere;
     double xx, yy, xz, zx;  // M = [xx 0 xz; 0 yy 0; zx 0 1]
-    static TransformedCosine drawn(Dice& d) {
+    static TransformedCosine drawn(Rng& d) {
         const double xx = d.log(0.05, 1.5), yy = d.log(0.05, 1.5), xz = d.uniform(-0.8, 0.8);
         return {xx, yy, xz, xx * d.uniform(-0.5, 0.5)};  // so that the determinant stays positive
     }
@@ -72,7 +72,7 @@ struct SphericalCaps {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     double ax, ay;
-    static SphericalCaps drawn(Dice& d) { return {d.log(0.04, 1), d.log(0.04, 1)}; }
+    static SphericalCaps drawn(Rng& d) { return {d.log(0.04, 1), d.log(0.04, 1)}; }
     std::string text() const { return fmt::format("alpha {:.4g} / {:.4g}", ax, ay); }
     SphericalCaps stretched(double by) const { return {ax * by, ay * by}; }
     template <class F> Functions<F> in(Broken) const {
@@ -96,7 +96,7 @@ struct ProjectedRectangle {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::hemisphere;
     double x0, x1, y0, y1;  // over its height
-    static ProjectedRectangle drawn(Dice& d) {
+    static ProjectedRectangle drawn(Rng& d) {
         const double x = d.uniform(-2, 1), y = d.uniform(-2, 1), wide = d.log(0.2, 2);
         return {x, x + wide, y, y + d.log(0.2, 2)};
     }
@@ -155,7 +155,7 @@ struct Legendre {
     static constexpr Wo wo = Wo::both;
     static constexpr Domain domain = Domain::sphere;
     double a, b;
-    static Legendre drawn(Dice& d) { return {d.uniform(0.02, 0.18), d.uniform(0.01, 0.05)}; }
+    static Legendre drawn(Rng& d) { return {d.uniform(0.02, 0.18), d.uniform(0.01, 0.05)}; }
     std::string text() const { return fmt::format("{:.3f}, {:.3f}", a, b); }
     Legendre stretched(double by) const { return {a * by, b * by}; }
     template <class F> Functions<F> in(Broken) const {
@@ -185,7 +185,7 @@ struct QuadTree {
     static constexpr Domain domain = Domain::sphere;
     int levels;
     std::vector<double> value;  // of cells, row by row
-    static QuadTree drawn(Dice& d) {
+    static QuadTree drawn(Rng& d) {
         QuadTree q{d.whole(2, 6), {}};
         const double contrast = d.log(2, 100);
         for (int k = 0; k < 1 << (2 * q.levels); ++k) q.value.push_back(d.log(1, contrast));
@@ -253,7 +253,7 @@ struct Stereographic {
     static constexpr Domain domain = Domain::sphere;
     double sx, sy;
     Vec3d axis;
-    static Stereographic drawn(Dice& d) {
+    static Stereographic drawn(Rng& d) {
         const double sx = d.log(0.02, 2), sy = d.log(0.02, 2);
         return {sx, sy, d.direction(-1, 1)};
     }
@@ -286,7 +286,7 @@ struct Sheen {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     double alpha;
-    static Sheen drawn(Dice& d) { return {d.uniform(0.15, 1)}; }
+    static Sheen drawn(Rng& d) { return {d.uniform(0.15, 1)}; }
     std::string text() const { return fmt::format("alpha {:.3f}", alpha); }
     Sheen stretched(double by) const { return {alpha * by}; }
     template <class F> Functions<F> in(Broken) const {

@@ -1,6 +1,6 @@
-// Planted faults whose verdict is known: all of laws/planted, those held out included.
-#include "laws/planted/planted.h"
+// Planted faults whose verdict is known: all of tests/known_samplers/faulty, those held out included.
 #include "tests/calibration/cases.h"
+#include "tests/known_samplers/faulty/planted.h"
 
 namespace crescent::calibration {
 

@@ -14,7 +14,7 @@ using Wo = Traits::Asked;
 struct Plane {
     Vec3d centre, a, b;  // a and b: half sides or edges
     double area;
-    static Plane rectangle(Dice& d) {
+    static Plane rectangle(Rng& d) {
         const Vec3d n = d.direction(-1, 1), c = d.direction(-0.3, 1) * d.log(0.4, 3);
         const Frame<double> f = frame_about(n);
         Plane p{c, f.t * d.log(0.05, 1.5), f.b * d.log(0.05, 1.5), 0};
@@ -84,7 +84,7 @@ struct Rectangle {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::sphere;
     Plane plane;
-    static Rectangle drawn(Dice& d) { return {Plane::rectangle(d)}; }
+    static Rectangle drawn(Rng& d) { return {Plane::rectangle(d)}; }
     std::string text() const {
         return fmt::format("{:.3f} x {:.3f} at {:.3f} m", 2 * std::sqrt(dot(plane.a, plane.a)),
             2 * std::sqrt(dot(plane.b, plane.b)), std::sqrt(dot(plane.centre, plane.centre)));
@@ -102,7 +102,7 @@ struct Disk {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::sphere;
     Plane plane;
-    static Disk drawn(Dice& d) {
+    static Disk drawn(Rng& d) {
         Plane p = Plane::rectangle(d);
         p.b = p.b * std::sqrt(dot(p.a, p.a) / dot(p.b, p.b));
         return {p};
@@ -125,7 +125,7 @@ struct Triangle {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::sphere;
     Plane plane;
-    static Triangle drawn(Dice& d) { return {Plane::rectangle(d)}; }
+    static Triangle drawn(Rng& d) { return {Plane::rectangle(d)}; }
     std::string text() const {
         return fmt::format("edges {:.3f}, {:.3f}", std::sqrt(dot(plane.a, plane.a)), std::sqrt(dot(plane.b, plane.b)));
     }
@@ -147,7 +147,7 @@ struct SphereByAngle {
     static constexpr Domain domain = Domain::sphere;
     Vec3d axis;
     double ratio;  // radius over distance
-    static SphereByAngle drawn(Dice& d) {
+    static SphereByAngle drawn(Rng& d) {
         const Vec3d axis = d.direction(-0.3, 1);
         return {axis, d.log(0.02, 0.95)};
     }
@@ -166,7 +166,7 @@ struct SphereByArea {
     static constexpr Domain domain = Domain::sphere;
     Vec3d centre;
     double radius;
-    static SphereByArea drawn(Dice& d) {
+    static SphereByArea drawn(Rng& d) {
         const Vec3d c = d.direction(-0.3, 1) * d.log(0.5, 3);
         return {c, std::sqrt(dot(c, c)) * d.uniform(0.05, 0.8)};
     }
@@ -199,7 +199,7 @@ struct TriangleByAngle {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::sphere;
     Vec3d centre, a, b;
-    static TriangleByAngle drawn(Dice& d) {
+    static TriangleByAngle drawn(Rng& d) {
         const Plane p = Plane::rectangle(d);
         return {p.centre, p.a, p.b};
     }

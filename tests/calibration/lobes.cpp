@@ -14,7 +14,7 @@ struct UniformSphere {
     static constexpr auto name = "uniform sphere", parameter = "";
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::sphere;
-    static UniformSphere drawn(Dice&) { return {}; }
+    static UniformSphere drawn(Rng&) { return {}; }
     std::string text() const { return "-"; }
     UniformSphere stretched(double) const { return *this; }
     template <class F> Functions<F> in(Broken) const { return single<F>(fixed<F>({0, 0, 1}), cone_profile<F>(2)); }
@@ -24,7 +24,7 @@ struct UniformHemisphere {
     static constexpr auto name = "uniform hemisphere", parameter = "";
     static constexpr Wo wo = Wo::upper;
     static constexpr Domain domain = Domain::hemisphere;
-    static UniformHemisphere drawn(Dice&) { return {}; }
+    static UniformHemisphere drawn(Rng&) { return {}; }
     std::string text() const { return "-"; }
     UniformHemisphere stretched(double) const { return *this; }
     template <class F> Functions<F> in(Broken) const {
@@ -39,7 +39,7 @@ struct Lambert {
     static constexpr Wo wo = Wo::upper;
     static constexpr Domain domain = Domain::hemisphere;
     double albedo;
-    static Lambert drawn(Dice& d) { return {d.uniform(0.1, 0.95)}; }
+    static Lambert drawn(Rng& d) { return {d.uniform(0.1, 0.95)}; }
     std::string text() const { return fmt::format("albedo {:.3f}", albedo); }
     Lambert stretched(double) const { return *this; }
     template <class F> Functions<F> in(Broken) const {
@@ -61,7 +61,7 @@ struct TwoSided {
     static constexpr Domain domain = Domain::sphere;
     static constexpr int numbers = 3;
     double albedo, through;
-    static TwoSided drawn(Dice& d) { return {d.uniform(0.1, 0.95), d.uniform(0.05, 0.6)}; }
+    static TwoSided drawn(Rng& d) { return {d.uniform(0.1, 0.95), d.uniform(0.05, 0.6)}; }
     std::string text() const { return fmt::format("albedo {:.3f}, through {:.3f}", albedo, through); }
     TwoSided stretched(double by) const { return {albedo, through * by}; }
     template <class F> Functions<F> in(Broken) const {
@@ -84,7 +84,7 @@ struct PowerCosine {
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::hemisphere;
     double s;
-    static PowerCosine drawn(Dice& d) { return {d.log(0.2, 500)}; }
+    static PowerCosine drawn(Rng& d) { return {d.log(0.2, 500)}; }
     std::string text() const { return fmt::format("s {:.4g}", s); }
     PowerCosine stretched(double by) const { return {s * by}; }
     template <class F> Functions<F> in(Broken) const { return single<F>(fixed<F>({0, 0, 1}), power_profile<F>(F(s))); }
@@ -96,7 +96,7 @@ struct Phong {
     static constexpr Wo wo = Wo::upper;
     static constexpr Domain domain = Domain::sphere;
     double s, rho;
-    static Phong drawn(Dice& d) { return {d.log(1, 2000), d.uniform(0.1, 0.9)}; }
+    static Phong drawn(Rng& d) { return {d.log(1, 2000), d.uniform(0.1, 0.9)}; }
     std::string text() const { return fmt::format("s {:.4g}", s); }
     Phong stretched(double by) const { return {s * by, rho}; }
     template <class F> Functions<F> in(Broken) const {
@@ -115,7 +115,7 @@ struct Cone {
     static constexpr Domain domain = Domain::sphere;
     double gap;
     Vec3d axis;
-    static Cone drawn(Dice& d) { return {d.log(1e-4, 1), d.direction(-1, 1)}; }
+    static Cone drawn(Rng& d) { return {d.log(1e-4, 1), d.direction(-1, 1)}; }
     std::string text() const { return fmt::format("1 - cos {:.4g}, axis z {:.3f}", gap, axis.z); }
     Cone stretched(double by) const { return {gap * by, axis}; }
     template <class F> Functions<F> in(Broken) const { return single<F>(fixed<F>(axis), cone_profile<F>(F(gap))); }
@@ -128,7 +128,7 @@ struct Ring {
     static constexpr Domain domain = Domain::sphere;
     double low, width;  // of t = 1 - cos
     Vec3d axis;
-    static Ring drawn(Dice& d) { return {d.uniform(0.05, 1.2), d.log(0.02, 0.4), d.direction(-1, 1)}; }
+    static Ring drawn(Rng& d) { return {d.uniform(0.05, 1.2), d.log(0.02, 0.4), d.direction(-1, 1)}; }
     std::string text() const { return fmt::format("1 - cos {:.3f}, width {:.4g}", low, width); }
     Ring stretched(double by) const { return {low, width * by, axis}; }
     template <class F> Functions<F> in(Broken) const {
@@ -145,7 +145,7 @@ struct Fisher {
     static constexpr Domain domain = Domain::sphere;
     double k;
     Vec3d axis;
-    static Fisher drawn(Dice& d) { return {d.log(0.5, 5000), d.direction(-1, 1)}; }
+    static Fisher drawn(Rng& d) { return {d.log(0.5, 5000), d.direction(-1, 1)}; }
     std::string text() const { return fmt::format("kappa {:.4g}, axis z {:.3f}", k, axis.z); }
     Fisher stretched(double by) const { return {k * by, axis}; }
     template <class F> Functions<F> in(Broken) const { return single<F>(fixed<F>(axis), fisher_profile<F>(F(k))); }
@@ -164,7 +164,7 @@ struct FisherMixture {
         Vec3d axis;
     };
     std::vector<One> all;
-    static FisherMixture drawn(Dice& d) {
+    static FisherMixture drawn(Rng& d) {
         FisherMixture m;
         for (int n = d.whole(2, 5); n > 0; --n) {
             const double weight = d.log(0.1, 1), k = d.log(1, 3000);
@@ -193,7 +193,7 @@ struct FixedLobes {
     static constexpr int numbers = 3;
     static constexpr const auto& breaks = of_mixtures;
     FisherMixture at;
-    static FixedLobes drawn(Dice& d) { return {FisherMixture::drawn(d)}; }
+    static FixedLobes drawn(Rng& d) { return {FisherMixture::drawn(d)}; }
     std::string text() const { return fmt::format("{} lobes, first exponent {:.4g}", at.all.size(), at.all[0].k); }
     FixedLobes stretched(double by) const { return {at.stretched(by)}; }
     template <class F> Functions<F> in(Broken b) const {
@@ -211,7 +211,7 @@ struct Plastic {
     static constexpr int numbers = 3;
     static constexpr const auto& breaks = of_mixtures;
     double s, share;
-    static Plastic drawn(Dice& d) { return {d.log(5, 2000), d.uniform(0.2, 0.8)}; }
+    static Plastic drawn(Rng& d) { return {d.log(5, 2000), d.uniform(0.2, 0.8)}; }
     std::string text() const { return fmt::format("s {:.4g}, share of Lambert {:.3f}", s, share); }
     Plastic stretched(double by) const { return {s * by, share}; }
     template <class F> Functions<F> in(Broken b) const {

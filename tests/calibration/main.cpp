@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "base/errors.h"
-#include "subjects/faults.h"
-#include "subjects/pipe.h"
+#include "check/sources/pipe.h"
+#include "check/sources/sampler_adapter.h"
 #include "tests/calibration/records.h"
 #include "tests/calibration/serve.h"
 #include "tests/calibration/table.h"
@@ -48,18 +48,18 @@ std::pair<std::uint64_t, std::uint64_t> range_of(const std::string& text, const 
 }
 
 /// The program itself, as the sampler of a case.
-std::vector<Trial> piped(const CaseKey& key, const Case& c) {
+std::vector<CheckCase> piped(const CaseKey& key, const Case& c) {
     const std::string self = std::filesystem::read_symlink("/proc/self/exe");
     const std::string command = fmt::format("exec '{}' --serve {} {} {} --wo {} --mode {}", self, key.set, key.seed,
         key.index, key.wo, key.full ? "full" : "quick");
-    return trials_of_subject(start_pipe(command), key.full, c.grid);
+    return make_user_cases(start_pipe(command), key.full, c.grid);
 }
 
 Result run_case(const Engine& engine, const CaseKey& key, const Case& c, const Request& request, bool pipe) {
     try {
         if (pipe && !c.sampler) throw std::invalid_argument("this case has no sampler that can be served");
         return measured(engine, [&] { return pipe ? piped(key, c) : c.trials; }, request);
-    } catch (const SubjectFault& fault) {
+    } catch (const SamplerError& fault) {
         Result broken;
         broken.state = State::error;
         broken.say = fault.what();

@@ -69,7 +69,7 @@ std::vector<Cell> cells_about(const std::vector<Place>& draws, std::size_t count
 
 /// Integral of p over a cell by n x n strata with two points in each, and its variance: of the pairs, and of one point
 /// of the largest p that the points or the first draws met, for an edge of p that no pair met.
-std::pair<double, double> integral_of(const Sampler& s, Vec3d wo, const Cell& c, int n, Dice& dice) {
+std::pair<double, double> integral_of(const Sampler& s, Vec3d wo, const Cell& c, int n, Rng& dice) {
     double sum = 0, variance = 0, largest = 0;
     for (const Place& draw : c.inside) largest = std::max(largest, draw.p);
     for (int k = 0; k < n * n; ++k) {
@@ -94,12 +94,12 @@ double pdf_at(const Sampler& s, Vec3d wo, Vec3d wi) {
 }
 
 Draws draws_of(const Sampler& s, Vec3d wo, int count, std::uint64_t seed) {
-    Dice dice = dice_of({"measures", seed, 0, "draws"});
+    Rng dice = dice_of({"measures", seed, 0, "draws"});
     Draws out;
     for (int k = 0; k < count; ++k)
         std::visit(
             [&]<class F>(const Functions<F>& f) {
-                F u[Numbers::most];
+                F u[PrimarySample::most];
                 for (F& v : u) v = F(std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24);
                 const Drawn<F> d = f.sample(cast<F>(wo), u);
                 out.wi.push_back(d.pdf > 0 ? widened(d.wi) : Vec3d{0, 0, 0});
@@ -133,7 +133,7 @@ Fit fit_of(const Sampler& s, Vec3d wo, int count, std::uint64_t seed) {
         for (std::size_t k = 0; k < cells.size(); ++k)
             if (p.t >= cells[k].t0 && p.t < cells[k].t1 && p.turns >= cells[k].f0 && p.turns < cells[k].f1) ++seen[k];
     }
-    Dice dice = dice_of({"measures", seed, 0, "points"});
+    Rng dice = dice_of({"measures", seed, 0, "points"});
     Fit fit;
     double variance = 0;
     const int n = static_cast<int>(std::sqrt(double(1 << 19) / static_cast<double>(cells.size())));

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "laws/right/renderers.h"
+#include "tests/known_samplers/correct/renderers.h"
 
 namespace crescent::calibration {
 
@@ -18,7 +18,7 @@ struct GgxVisible {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     double ax, ay;
-    static GgxVisible drawn(Dice& d) {
+    static GgxVisible drawn(Rng& d) {
         const double ax = d.log(0.03, 1);
         return {ax, d.whole(0, 1) ? ax : d.log(0.03, 1)};
     }
@@ -33,7 +33,7 @@ struct GgxNormals {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     GgxVisible at;
-    static GgxNormals drawn(Dice& d) { return {GgxVisible::drawn(d)}; }
+    static GgxNormals drawn(Rng& d) { return {GgxVisible::drawn(d)}; }
     std::string text() const { return at.text(); }
     GgxNormals stretched(double by) const { return {at.stretched(by)}; }
     template <class F> Functions<F> in(Broken) const {
@@ -55,7 +55,7 @@ struct Beckmann {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     double ax, ay;
-    static Beckmann drawn(Dice& d) {
+    static Beckmann drawn(Rng& d) {
         const double ax = d.log(0.04, 0.7);
         return {ax, d.whole(0, 1) ? ax : d.log(0.04, 0.7)};
     }
@@ -82,7 +82,7 @@ struct Blinn {
     static constexpr Domain domain = Domain::sphere;
     static constexpr bool halfway = true;
     double s;
-    static Blinn drawn(Dice& d) { return {d.log(3, 2000)}; }
+    static Blinn drawn(Rng& d) { return {d.log(3, 2000)}; }
     std::string text() const { return fmt::format("s {:.4g}", s); }
     Blinn stretched(double by) const { return {s * by}; }
     template <class F> Functions<F> in(Broken) const {
@@ -103,7 +103,7 @@ struct RoughDielectric {
     static constexpr int numbers = 3;
     double alpha, eta;
     bool visible;
-    static RoughDielectric drawn(Dice& d) {
+    static RoughDielectric drawn(Rng& d) {
         const double alpha = d.log(0.05, 0.8), eta = d.uniform(1.15, 2.2);
         return {alpha, eta, d.whole(0, 1) == 1};
     }
@@ -117,7 +117,7 @@ struct RoughDielectric {
         out.pdf = [g](Vec3d o, Vec3d i) { return g.pdf(o, i); };
         out.f = [g](Vec3d o, Vec3d i) { return g.f(o, i); };
         out.sample = [g](Vec3d o, const double* u) {
-            Numbers v(u[0], u[1]);
+            PrimarySample v(u[0], u[1]);
             v[2] = u[2];
             const Draw d = g.sample(o, v);
             return Drawn<double>{d.wi, d.pdf};
@@ -135,7 +135,7 @@ struct Layered {
     static constexpr int numbers = 3;
     static constexpr Broken breaks[] = {Broken::lobe_pdf, Broken::equal_weights, Broken::no_weights};
     double alpha, f0, albedo;
-    static Layered drawn(Dice& d) {
+    static Layered drawn(Rng& d) {
         const double alpha = d.log(0.05, 0.8), f0 = d.uniform(0.04, 0.5);
         return {alpha, f0, d.uniform(0.1, 0.9)};
     }

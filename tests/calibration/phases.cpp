@@ -14,7 +14,7 @@ struct Greenstein {
     static constexpr Wo wo = Wo::both;
     static constexpr Domain domain = Domain::sphere;
     double g;
-    static Greenstein drawn(Dice& d) {
+    static Greenstein drawn(Rng& d) {
         const double g = d.uniform(0.05, 0.95);
         return {d.whole(0, 2) == 0 ? -g : g};
     }
@@ -30,7 +30,7 @@ struct TwoGreensteins {
     static constexpr int numbers = 3;
     static constexpr Broken breaks[] = {Broken::lobe_pdf, Broken::equal_weights, Broken::no_weights};
     double g1, g2, share;
-    static TwoGreensteins drawn(Dice& d) { return {d.uniform(0.4, 0.95), -d.uniform(0.1, 0.6), d.uniform(0.55, 0.9)}; }
+    static TwoGreensteins drawn(Rng& d) { return {d.uniform(0.4, 0.95), -d.uniform(0.1, 0.6), d.uniform(0.55, 0.9)}; }
     std::string text() const { return fmt::format("g {:.3f} and {:.3f}, share {:.3f}", g1, g2, share); }
     TwoGreensteins stretched(double by) const { return {std::min(g1 * by, 0.999), std::max(g2 * by, -0.999), share}; }
     template <class F> Functions<F> in(Broken b) const {
@@ -45,7 +45,7 @@ struct Rayleigh {
     static constexpr auto name = "Rayleigh", parameter = "";
     static constexpr Wo wo = Wo::both;
     static constexpr Domain domain = Domain::sphere;
-    static Rayleigh drawn(Dice&) { return {}; }
+    static Rayleigh drawn(Rng&) { return {}; }
     std::string text() const { return "-"; }
     Rayleigh stretched(double) const { return *this; }
     template <class F> Functions<F> in(Broken) const {
@@ -66,7 +66,7 @@ struct Tabulated {
     static constexpr Domain domain = Domain::sphere;
     static constexpr Broken breaks[] = {Broken::shifted_table, Broken::mirrored_table};
     std::vector<double> value;
-    static Tabulated drawn(Dice& d) {
+    static Tabulated drawn(Rng& d) {
         Tabulated t;
         const double contrast = d.log(2, 200);
         const int bins = d.whole(8, 180);
@@ -127,7 +127,7 @@ struct Fibre {
     static constexpr Wo wo = Wo::both;
     static constexpr Domain domain = Domain::sphere;
     double along, across;
-    static Fibre drawn(Dice& d) { return {d.log(0.02, 0.3), d.log(0.1, 1)}; }
+    static Fibre drawn(Rng& d) { return {d.log(0.02, 0.3), d.log(0.1, 1)}; }
     std::string text() const { return fmt::format("widths {:.3f}, {:.3f}", along, across); }
     Fibre stretched(double by) const { return {along * by, across * by}; }
     template <class F> Functions<F> in(Broken) const {

@@ -1,10 +1,10 @@
 // Faults that users reported, each with its corrected sampler, and right samplers that were called wrong.
 #include <fmt/format.h>
 
-#include "laws/right/renderers.h"
 #include "tests/calibration/axial.h"
 #include "tests/calibration/cases.h"
 #include "tests/calibration/skies.h"
+#include "tests/known_samplers/correct/renderers.h"
 
 namespace crescent::calibration {
 
@@ -129,7 +129,7 @@ Sampler azimuth(bool faulty) {
     f.f = f.pdf;
     if (faulty)
         f.sample = [sample = f.sample](Vec3d o, const double* u) {
-            const double v[Numbers::most] = {u[0], 0.3 / (2 * pi_of<double>)};
+            const double v[PrimarySample::most] = {u[0], 0.3 / (2 * pi_of<double>)};
             return sample(o, v);
         };
     return sampler(2, Wo::both, f);
@@ -152,7 +152,7 @@ Sampler rough_glass(bool) {
     f.pdf = [g](Vec3d o, Vec3d i) { return g.pdf(o, i); };
     f.f = [g](Vec3d o, Vec3d i) { return g.f(o, i); };
     f.sample = [g](Vec3d o, const double* u) {
-        Numbers v(u[0], u[1]);
+        PrimarySample v(u[0], u[1]);
         v[2] = u[2];
         const Draw d = g.sample(o, v);
         return Drawn<double>{d.wi, d.pdf};

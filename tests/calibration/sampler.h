@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "laws/right/right.h"
+#include "tests/known_samplers/correct/right.h"
 
 namespace crescent::calibration {
 
@@ -69,7 +69,7 @@ struct Family {
     std::vector<Broken> breaks;
     bool halfway = false;  // drawn through a half vector, with the Jacobian 1 / (4 w_o.m)
     bool reciprocal = true;
-    Member (*member)(Dice&) = nullptr;
+    Member (*member)(Rng&) = nullptr;
 };
 
 /// The families, in a fixed order; those for tuning first.
@@ -82,11 +82,11 @@ Sampler sampler_of(const Family& family, const Member& member, Real real, double
 /// The same functions with inputs, directions and densities rounded to single precision.
 Functions<float> rounded(Functions<double> exact);
 
-/// As a user's struct is taken: through UserSubject, with as many numbers, f where there is one.
-std::shared_ptr<const JudgedSampler> subject_of(const Sampler& sampler);
+/// As a user's struct is taken: through UserSampler, with as many numbers, f where there is one.
+std::shared_ptr<const SamplerAdapter> subject_of(const Sampler& sampler);
 
 /// What a family's struct says of itself. `drawn` chooses the parameters, `stretched` multiplies the named one.
-template <class T> Member member_of(Dice& dice) {
+template <class T> Member member_of(Rng& dice) {
     const T chosen = T::drawn(dice);
     Member m;
     m.text = chosen.text();

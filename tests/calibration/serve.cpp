@@ -26,11 +26,11 @@ struct Request {
     std::uint32_t rows;
 };
 
-void answer_samples(const JudgedSampler& s, int numbers, const std::vector<double>& in, std::vector<double>& out) {
+void answer_samples(const SamplerAdapter& s, int numbers, const std::vector<double>& in, std::vector<double>& out) {
     const std::size_t width = 3 + static_cast<std::size_t>(numbers);
     for (std::size_t r = 0; r < in.size() / width; ++r) {
         const double* row = &in[r * width];
-        Numbers u;
+        PrimarySample u;
         for (int k = 0; k < numbers; ++k) u[k] = row[3 + k];
         Draw d;
         s.sample(0, {row[0], row[1], row[2]}, {&u, 1}, {&d, 1});
@@ -38,7 +38,7 @@ void answer_samples(const JudgedSampler& s, int numbers, const std::vector<doubl
     }
 }
 
-void answer_values(const JudgedSampler& s, bool pdf, const std::vector<double>& in, std::vector<double>& out) {
+void answer_values(const SamplerAdapter& s, bool pdf, const std::vector<double>& in, std::vector<double>& out) {
     std::vector<Pair> at;
     for (std::size_t r = 0; r < in.size() / 6; ++r) {
         const double* row = &in[r * 6];
@@ -52,7 +52,7 @@ void answer_values(const JudgedSampler& s, bool pdf, const std::vector<double>& 
 }  // namespace
 
 bool serve(const Sampler& sampler, std::FILE* in, std::FILE* out) {
-    const std::shared_ptr<const JudgedSampler> subject = subject_of(sampler);
+    const std::shared_ptr<const SamplerAdapter> subject = subject_of(sampler);
     char line[4096];
     if (!std::fgets(line, sizeof line, in)) return false;
     const std::string hello = greeting(sampler);

@@ -2,9 +2,9 @@
 // table; uniform in theta and phi within a texel, p = mass * rows * columns / (2 pi^2 sin theta).
 #pragma once
 
-#include "laws/right/renderers.h"
 #include "tests/calibration/geometry.h"
 #include "tests/calibration/sampler.h"
+#include "tests/known_samplers/correct/renderers.h"
 
 namespace crescent::calibration {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "laws/right/right.h"
+#include "tests/known_samplers/correct/right.h"
 
 namespace crescent::calibration {
 
@@ -19,6 +19,6 @@ struct StreamKey {
 /// xxHash (XXH3, 64 bits) of all four parts.
 std::uint64_t hash_of(const StreamKey& key);
 /// Seeded with the whole hash: the Mersenne twister's own seeding spreads it over its 19,968 bits of state.
-Dice dice_of(const StreamKey& key);
+Rng dice_of(const StreamKey& key);
 
 }  // namespace crescent::calibration

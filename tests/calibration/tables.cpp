@@ -1,4 +1,4 @@
-// Skies by texels, portals, textured disk lights, and the tables of laws/right.
+// Skies by texels, portals, textured disk lights, and the tables of tests/known_samplers/correct.
 #include <fmt/format.h>
 
 #include "tests/calibration/skies.h"
@@ -15,7 +15,7 @@ struct Radiance {
     int rows, columns;
     std::vector<double> value;
     double sun;
-    static Radiance drawn(Dice& d) {
+    static Radiance drawn(Rng& d) {
         Radiance r;
         r.rows = d.whole(8, 96), r.columns = 2 * r.rows;
         const double noise = d.log(1.05, 8), gradient = d.uniform(0, 2), phase = d.uniform(0, 1);
@@ -47,7 +47,7 @@ struct SkyByCdf {
     static constexpr Domain domain = Domain::sphere;
     static constexpr const auto& breaks = of_tables;
     Radiance sky;
-    static SkyByCdf drawn(Dice& d) { return {Radiance::drawn(d)}; }
+    static SkyByCdf drawn(Rng& d) { return {Radiance::drawn(d)}; }
     std::string text() const { return sky.text(); }
     SkyByCdf stretched(double by) const { return {sky.stretched(by)}; }
     template <class F> Functions<F> in(Broken b) const { return sky_by_cdf<F>(sky.rows, sky.columns, sky.value, b); }
@@ -61,7 +61,7 @@ struct SkyByAlias {
     static constexpr int numbers = 4;
     static constexpr const auto& breaks = of_tables;
     Radiance sky;
-    static SkyByAlias drawn(Dice& d) { return {Radiance::drawn(d)}; }
+    static SkyByAlias drawn(Rng& d) { return {Radiance::drawn(d)}; }
     std::string text() const { return sky.text(); }
     SkyByAlias stretched(double by) const { return {sky.stretched(by)}; }
     template <class F> Functions<F> in(Broken b) const { return sky_by_alias<F>(sky.rows, sky.columns, sky.value, b); }
@@ -75,7 +75,7 @@ struct Portal {
     static constexpr Domain domain = Domain::sphere;
     double a, b, da, db;
     Vec3d normal;
-    static Portal drawn(Dice& d) {
+    static Portal drawn(Rng& d) {
         const double a = d.uniform(-1.2, 0.6), b = d.uniform(-1.2, 0.6), da = d.uniform(0.1, 0.7);
         const double db = d.uniform(0.1, 0.7);
         return {a, b, da, db, d.direction(-1, 1)};
@@ -113,7 +113,7 @@ struct TexturedDisk {
     int side;
     double height;
     std::vector<double> value;
-    static TexturedDisk drawn(Dice& d) {
+    static TexturedDisk drawn(Rng& d) {
         TexturedDisk t{d.whole(4, 32), d.log(0.3, 4), {}};
         const double contrast = d.log(2, 50);
         for (int k = 0; k < sqr(t.side); ++k) t.value.push_back(d.log(1, contrast));
@@ -159,20 +159,21 @@ struct TexturedDisk {
     }
 };
 
-/// One of the families of laws/right that no struct here repeats; it has no parameter to be multiplied.
+/// One of the families of tests/known_samplers/correct that no struct here repeats; it has no parameter to be
+/// multiplied.
 template <int index> struct OfTable {
     static constexpr auto name = index == 0 ? "cells" : index == 1 ? "even texels" : "bilinear", parameter = "";
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = index == 3 ? Domain::hemisphere : Domain::sphere;
-    Recipe recipe;
-    static OfTable drawn(Dice& d) { return {crescent::table_families()[index](d)}; }
+    SyntheticSampler recipe;
+    static OfTable drawn(Rng& d) { return {crescent::table_families()[index](d)}; }
     std::string text() const { return recipe.parameters; }
     OfTable stretched(double) const { return *this; }
     template <class F> Functions<F> in(Broken) const {
         Functions<double> out;
         out.pdf = recipe.pdf;
         out.sample = [draw = recipe.sample](Vec3d o, const double* u) {
-            const Draw d = draw(o, Numbers(u[0], u[1]));
+            const Draw d = draw(o, PrimarySample(u[0], u[1]));
             return Drawn<double>{d.wi, d.pdf};
         };
         if constexpr (sizeof(F) == 8) return out;

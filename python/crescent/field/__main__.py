@@ -1,4 +1,4 @@
-"""``python -m crescent.field``: checks what ships in Mitsuba 3 and the faults of laws/field, and writes docs/field.md.
+"""``python -m crescent.field``: checks what ships in Mitsuba 3 and the faults of tests/field, and writes docs/field.md.
 
     python -m crescent.field [--faults FOLDER] [--out FILE] [--only PLUGIN ...]
 
@@ -40,7 +40,7 @@ class Finding:
         return self.note.kind if self.note else "open"
 
 
-def judged(it: Shipped) -> crescent.Judgement:
+def judged(it: Shipped) -> crescent.CheckResult:
     """One plugin over the field's w_o."""
     if it.kind == "emitter":
         return crescent.check(mitsuba_emitter(it.built(), **it.known))
@@ -48,7 +48,7 @@ def judged(it: Shipped) -> crescent.Judgement:
     return crescent.check(sampler, wo_deg=ABOVE + (BELOW if sampler.wo == "both" else []))
 
 
-def findings(it: Shipped, judgement: crescent.Judgement) -> list[Finding]:
+def findings(it: Shipped, judgement: crescent.CheckResult) -> list[Finding]:
     """What is not right, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
     groups: dict[tuple[str, str], list[crescent.Verdict]] = {}
     notes: dict[tuple[str, str], Note | None] = {}
@@ -115,7 +115,7 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
 def _faults_text(faults: list[Fault]) -> Iterator[str]:
     yield "## Faults of public projects, reimplemented"
     yield (
-        "Each is a sampler of a few lines in `laws/field/`, written from the public description behind its link, "
+        "Each is a sampler of a few lines in `tests/field/`, written from the public description behind its link, "
         "together with the corrected sampler. The tests check that the named verdicts find the fault and that the "
         "corrected sampler is right."
     )
@@ -145,12 +145,12 @@ def _before_the_work(out: Path, only: list[str]) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m crescent.field", description=(__doc__ or "").partition("\n\n")[0])
-    parser.add_argument("--faults", metavar="FOLDER", help="laws/field where it is there")
+    parser.add_argument("--faults", metavar="FOLDER", help="tests/field where it is there")
     parser.add_argument("--out", metavar="FILE", help="docs/field.md, or field.md where there is no docs")
     parser.add_argument("--only", nargs="*", default=[], metavar="PLUGIN", help="these plugins alone")
     args = parser.parse_args(argv)
     out = Path(args.out or ("docs/field.md" if Path("docs").is_dir() else "field.md"))
-    faults = args.faults or ("laws/field" if Path("laws/field").is_dir() else None)
+    faults = args.faults or ("tests/field" if Path("tests/field").is_dir() else None)
     try:
         _before_the_work(out, args.only)
         known = faults_in(faults) if faults else []

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._check import check
-from .._judgement import Judgement
+from .._judgement import CheckResult
 from .._sampler import Sampler
 
 
@@ -24,7 +24,7 @@ class Fault:
     sampler: Sampler
     mended: Sampler
 
-    def judged(self, mended: bool = False) -> Judgement:
+    def judged(self, mended: bool = False) -> CheckResult:
         """The judgement of the fault, or of what it became."""
         return check(self.mended if mended else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
 
@@ -33,7 +33,7 @@ W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: where each is looked at, in
 
 
 def faults_in(folder: str | Path) -> list[Fault]:
-    """FAULTS of every file of a folder, laws/field of the repository, in the order of their names."""
+    """FAULTS of every file of a folder, tests/field of the repository, in the order of their names."""
     path = Path(folder).resolve()
     if not path.is_dir():
         raise ValueError(f"{folder}: no such folder")

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "check/constants.h"
 #include "check/decide/delta_directions.h"
 #include "check/estimate/both_ways.h"
@@ -68,7 +68,7 @@ Answer put_again(const Evidence& e, const Answer& first) {
 
 class Check {
 public:
-    Check(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
+    Check(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
         std::uint32_t seed)
         : source_(subject, technique, wo, data.light), budget_(budget), levels_(data.levels) {
         key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
@@ -230,7 +230,7 @@ private:
 
 double CheckAt::most_ratio() const { return scatter.pdf() ? inconclusive_of_estimates : inconclusive_at; }
 
-CheckAt check_sampler_at(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data,
+CheckAt check_sampler_at(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseData& data,
     const CheckBudget& budget, std::uint32_t seed) {
     return Check(subject, technique, wo, data, budget, seed).run();
 }

@@ -15,7 +15,7 @@ namespace crescent::check {
 
 /// What surrounds a sampler at one w_o.
 struct CaseData {
-    TrialLight light{};
+    CaseLighting light{};
     std::uint16_t place = 0;  // number of the case in its call: names its random streams
     Levels levels{};
 };
@@ -36,7 +36,7 @@ struct CheckAt {
     std::vector<Answer> answers;    // by family, the least p times the number of members, at the last look
     Sizes sizes;
     bool inconclusive = false;
-    Scatter scatter;  // of pdf(w) and f(w), where they are random estimates
+    EvaluationNoise scatter;  // of pdf(w) and f(w), where they are random estimates
     int looks = 0;
     std::uint64_t evaluations = 0;
     double seconds = 0;
@@ -48,7 +48,7 @@ struct CheckAt {
     bool wrong() const { return !findings.empty() || !small.empty(); }
 };
 
-CheckAt check_sampler_at(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data,
+CheckAt check_sampler_at(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseData& data,
     const CheckBudget& budget, std::uint32_t seed);
 
 }  // namespace crescent::check

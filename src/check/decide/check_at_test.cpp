@@ -9,7 +9,7 @@ namespace crescent::check {
 namespace {
 
 /// A cosine sampler that can be broken in one way.
-struct Cosine : JudgedSampler {
+struct Cosine : SamplerAdapter {
     double factor = 1, leak = 0, hole = 0;  // of pdf; share of draws that are uniform; mass of a cap never drawn
     bool nothing = false, elsewhere = false;
     std::string name() const override { return "cosine"; }
@@ -18,7 +18,7 @@ struct Cosine : JudgedSampler {
         t.numbers = 3;
         return t;
     }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const bool leaks = u[i][2] < leak;
             const double z = leaks ? u[i].x : std::sqrt(u[i].x), r = std::sqrt(1 - z * z);
@@ -91,7 +91,7 @@ TEST(CheckAtOneWo, FindsWhatARightVerdictSaysItWouldHaveFound) {
 }
 
 /// Counts every call. p: a noisy sky, a spike of 1/10 of the draws in a cosine, or a cosine; f = p pi where it has one.
-struct Counted : JudgedSampler {
+struct Counted : SamplerAdapter {
     enum Shape { cosine, noise, spike } shape;
     bool with_f, leaks;
     mutable std::uint64_t calls = 0;
@@ -107,7 +107,7 @@ struct Counted : JudgedSampler {
         constexpr double area = two_pi * 1e-7;
         return 0.9 * even + (0.6 * w.x + 0.8 * w.z > 1 - 1e-7 ? 0.1 / area : 0);
     }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         calls += u.size();
         for (std::size_t i = 0; i < u.size(); ++i) {
             Vec3d w = from_chart({1 - std::sqrt(u[i].x), two_pi * u[i].y});
@@ -145,7 +145,7 @@ TEST(CheckAtOneWo, EvaluatesNoMoreThanItsBudget) {
 
 TEST(CheckAtOneWo, FindsNaNAtACornerOfU) {
     struct AtZero : Cosine {
-        void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
             Cosine::sample(t, wo, u, out);
             for (std::size_t i = 0; i < u.size(); ++i)
                 if (u[i].y == 0) out[i].wi.x = std::numeric_limits<double>::quiet_NaN();

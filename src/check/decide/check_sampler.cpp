@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "check/constants.h"
 #include "check/decide/whole_sampler.h"
-#include "subjects/faults.h"
+#include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {
 
@@ -23,12 +23,12 @@ bool CheckOutcome::wrong() const {
 
 namespace {
 
-std::vector<CheckOutcome> grouped(std::span<const Trial> trials) {
+std::vector<CheckOutcome> grouped(std::span<const CheckCase> trials) {
     std::vector<CheckOutcome> out;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;
         const auto same = [&](const CheckOutcome& o) {
-            const Trial& t = trials[o.trials[0]];
+            const CheckCase& t = trials[o.trials[0]];
             return t.arm == trials[i].arm && t.brdf == trials[i].brdf && t.parameters == trials[i].parameters &&
                 t.lighting == trials[i].lighting;
         };
@@ -40,13 +40,13 @@ std::vector<CheckOutcome> grouped(std::span<const Trial> trials) {
 }
 
 /// Built-in arms are made for one w_o each, under one light: special w_o are for subjects that take any.
-bool takes_any_wo(std::span<const Trial> trials, const CheckOutcome& o) {
+bool takes_any_wo(std::span<const CheckCase> trials, const CheckOutcome& o) {
     return std::ranges::all_of(
         o.trials, [&](std::size_t i) { return trials[i].subject == trials[o.trials[0]].subject; });
 }
 
 /// An estimate of f is not reciprocal. Of a sampler that is checked in turn, no w_o has been looked at yet.
-bool estimates_f(const Trial& trial, const CheckOutcome& o, const StreamKey& key) {
+bool estimates_f(const CheckCase& trial, const CheckOutcome& o, const StreamKey& key) {
     if (std::ranges::all_of(o.at, [](const auto& at) { return at.empty(); })) {
         Source source(*trial.subject, 0, trial.wo, trial.light);
         return look_for_scatter(source, key).f();
@@ -55,8 +55,8 @@ bool estimates_f(const Trial& trial, const CheckOutcome& o, const StreamKey& key
     return std::ranges::any_of(o.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); });
 }
 
-void look_at_whole(std::span<const Trial> trials, const CheckSettings& settings, CheckOutcome& out) {
-    const JudgedSampler& subject = *trials[out.trials[0]].subject;
+void look_at_whole(std::span<const CheckCase> trials, const CheckSettings& settings, CheckOutcome& out) {
+    const SamplerAdapter& subject = *trials[out.trials[0]].subject;
     StreamKey key{settings.seed, static_cast<std::uint16_t>(out.trials[0]), 0, 1, Purpose::light, 0};
     const auto add = [&](std::optional<SmallFault> fault) {
         if (fault) out.small.push_back(*fault);
@@ -86,19 +86,19 @@ struct Job {
 template <class Work> std::optional<Cut> cut_of(const Work& work) {
     try {
         work();
-    } catch (const SubjectTooSlow& fault) {
+    } catch (const SamplerTimeout& fault) {
         return Cut{Cut::Why::too_slow, fault.what(), false};
-    } catch (const SubjectGone& fault) {
+    } catch (const SamplerExited& fault) {
         return Cut{Cut::Why::gone, fault.what(), false};
-    } catch (const SubjectFault& fault) { return Cut{Cut::Why::fault, fault.what(), false}; }
+    } catch (const SamplerError& fault) { return Cut{Cut::Why::fault, fault.what(), false}; }
     return {};
 }
 
 /// Numbers that cannot be used among a few draws.
-std::optional<SmallFault> look_first(const Trial& trial, const StreamKey& key) {
+std::optional<SmallFault> look_first(const CheckCase& trial, const StreamKey& key) {
     constexpr std::uint32_t few = 256;  // a program of 10 answers/s gives them at 12 w_o within five minutes
     SmallFault out{Family::values};
-    const std::vector<Numbers> u = first_numbers(key, few, trial.subject->traits());
+    const std::vector<PrimarySample> u = first_numbers(key, few, trial.subject->traits());
     std::vector<Draw> draws(u.size());
     for (int t = 0; t < trial.subject->techniques(); ++t) {
         trial.subject->sample(t, trial.wo, u, draws);
@@ -112,7 +112,7 @@ std::optional<SmallFault> look_first(const Trial& trial, const StreamKey& key) {
 
 class Call {
 public:
-    Call(std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor)
+    Call(std::span<const CheckCase> trials, const CheckSettings& settings, ProgressMonitor& monitor)
         : trials_(trials), settings_(settings), monitor_(monitor), outcomes_(grouped(trials)) {
         for (CheckOutcome& o : outcomes_) {
             o.at.resize(o.trials.size()), o.cut.resize(o.trials.size()), o.tails.resize(o.trials.size());
@@ -123,7 +123,7 @@ public:
     }
 
     std::vector<CheckOutcome> run() {
-        if (std::ranges::any_of(trials_, [](const Trial& t) { return t.subject->serial(); })) {
+        if (std::ranges::any_of(trials_, [](const CheckCase& t) { return t.subject->serial(); })) {
             in_turn();
         } else {
             parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
@@ -137,7 +137,7 @@ public:
     }
 
 private:
-    std::span<const Trial> trials_;
+    std::span<const CheckCase> trials_;
     const CheckSettings& settings_;
     ProgressMonitor& monitor_;
     std::vector<CheckOutcome> outcomes_;
@@ -145,11 +145,11 @@ private:
     Levels levels_;
 
     std::size_t index_of(const Job& job) const { return job.outcome->trials[job.index]; }
-    const Trial& trial_of(const Job& job) const { return trials_[index_of(job)]; }
+    const CheckCase& trial_of(const Job& job) const { return trials_[index_of(job)]; }
 
     void check(const Job& job) {
         monitor_.check();
-        const Trial& trial = trial_of(job);
+        const CheckCase& trial = trial_of(job);
         CheckBudget budget = trial.subject->limited() && settings_.limited ? *settings_.limited : settings_.budget;
         if (trial.theory.wrong) budget.stop_when_conclusive = false;  // a fault that is known is looked for
         std::vector<CheckAt>& at = job.outcome->at[job.index];
@@ -205,7 +205,7 @@ private:
     }
 
     bool affords(const Job& job, std::uint64_t dearest) const {
-        const Spending now = trial_of(job).subject->spending();
+        const QueryUsage now = trial_of(job).subject->spending();
         if (now.allowed <= 0 || dearest == 0) return true;
         const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
         return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
@@ -218,10 +218,10 @@ private:
         std::vector<std::optional<SmallFault>> looks(jobs_.size());
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             monitor_.check();
-            const Trial& trial = trial_of(jobs_[j]);
+            const CheckCase& trial = trial_of(jobs_[j]);
             const StreamKey key{
                 settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
-            if (trial.subject->draws_at_will())
+            if (trial.subject->can_draw())
                 jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(trial, key); });
         }
         check_whole();
@@ -244,7 +244,7 @@ private:
 }  // namespace
 
 std::vector<CheckOutcome> check_samplers(
-    std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor) {
+    std::span<const CheckCase> trials, const CheckSettings& settings, ProgressMonitor& monitor) {
     return Call(trials, settings, monitor).run();
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 #include "check/decide/check_at.h"
 #include "check/decide/tail.h"
 
@@ -46,9 +46,9 @@ struct CheckOutcome {
     bool wrong() const;
 };
 
-/// Trials of one or of several samplers; those of one name and subject belong together. Baselines are left out. Faults
-/// of a sampler from outside (subjects/faults.h) are kept with the w_o at which they occurred.
+/// CheckCases of one or of several samplers; those of one name and subject belong together. Baselines are left out.
+/// Faults of a sampler from outside (subjects/faults.h) are kept with the w_o at which they occurred.
 std::vector<CheckOutcome> check_samplers(
-    std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor);
+    std::span<const CheckCase> trials, const CheckSettings& settings, ProgressMonitor& monitor);
 
 }  // namespace crescent::check

@@ -9,7 +9,7 @@ namespace crescent::check {
 namespace {
 
 /// A mirroring coat that is chosen with probability q over Lambert of albedo `base`.
-struct Coat : JudgedSampler {
+struct Coat : SamplerAdapter {
     double q = 0.3, chosen = 0.3, base = 0.5, mirrored_share = 0.2;
     double of_other_draws = 1;  // factor on the weight of every second draw of the part
     Vec3d turned{-1, -1, 1};    // where it mirrors to, times w_o
@@ -19,7 +19,7 @@ struct Coat : JudgedSampler {
         t.numbers = 3, t.delta = true;
         return t;
     }
-    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = {};
             if (u[i][2] < chosen) {
@@ -44,7 +44,7 @@ struct Coat : JudgedSampler {
     }
 };
 
-CheckAt checked_delta(const JudgedSampler& s, Vec3d wo = tilt(40, 30)) {
+CheckAt checked_delta(const SamplerAdapter& s, Vec3d wo = tilt(40, 30)) {
     return check_sampler_at(s, 0, wo, {}, CheckBudget::limited(), 1);
 }
 bool names(const CheckAt& c, std::string_view verdict) {
@@ -86,7 +86,7 @@ TEST(DeltaPartsOfASampler, GoBackTheWayTheyCame) {
     flipped.turned = {-1, 1, 1};
     EXPECT_FALSE(checked_delta(flipped).wrong());  // an odd mirror, and its own inverse
     struct OneWay : Coat {
-        void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
             Coat::sample(t, wo, u, out);
             for (Draw& d : out)
                 if (d.delta > 0 && wo.x > 0) d.wi.y = -d.wi.y;
@@ -96,7 +96,7 @@ TEST(DeltaPartsOfASampler, GoBackTheWayTheyCame) {
 }
 
 /// Smooth glass that reflects 0.1, bent by `drawn` where 1.5 is stated.
-struct Boundary : JudgedSampler {
+struct Boundary : SamplerAdapter {
     double drawn = 1.5;
     std::string name() const override { return "boundary"; }
     Traits traits() const override {
@@ -104,7 +104,7 @@ struct Boundary : JudgedSampler {
         t.numbers = 3, t.delta = true, t.eta = 1.5, t.wo = Traits::Asked::both;
         return t;
     }
-    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = {{-wo.x, -wo.y, wo.z}, 0, 1.0, {}};
             const double e = wo.z > 0 ? drawn : 1 / drawn, scale = wo.z > 0 ? 1 / 2.25 : 2.25,

@@ -11,8 +11,8 @@
 #include "check/constants.h"
 #include "check/decide/tail.h"
 #include "check/estimate/weights.h"
+#include "check/sources/sampler_adapter.h"
 #include "math/functions.h"
-#include "subjects/faults.h"
 
 namespace crescent::check {
 
@@ -24,7 +24,7 @@ namespace {
 /// Draws of a baseline. Of a program each costs an evaluation of f, and a variance to 3 % ranks well enough.
 constexpr std::uint32_t baseline_draws = 1u << 15, baseline_draws_of_program = 1u << 12;
 
-std::vector<double> baseline_weights(const Trial& trial, const StreamKey& key) {
+std::vector<double> baseline_weights(const CheckCase& trial, const StreamKey& key) {
     std::vector<double> out;
     const std::uint32_t n = trial.subject->limited() ? baseline_draws_of_program : baseline_draws;
     for (int t = 0; t < trial.subject->techniques(); ++t) {
@@ -32,7 +32,7 @@ std::vector<double> baseline_weights(const Trial& trial, const StreamKey& key) {
         StreamKey draws = key;
         draws.technique = static_cast<std::uint8_t>(t);
         std::vector<double> x;
-        std::vector<Numbers> u;
+        std::vector<PrimarySample> u;
         for (std::uint32_t from = 0; from < n; from += batch_size) {
             u.resize(std::min(batch_size, n - from));
             for (std::uint32_t i = 0; i < u.size(); ++i)
@@ -61,19 +61,19 @@ void note_variance(const WeightTail& t, Efficiency& e) {
     e.heavy = t.heavy() || t.open() || t.has_unseen();
 }
 
-Efficiency variance_of_baseline(const Trial& trial, std::size_t index, const StreamKey& key) {
+Efficiency variance_of_baseline(const CheckCase& trial, std::size_t index, const StreamKey& key) {
     Efficiency e;
     e.trial = index;
     try {
         note_variance(tail_of_weights(baseline_weights(trial, key)), e);
-    } catch (const SubjectTooSlow&) {
-    } catch (const SubjectFault& fault) { e.fault = fault.what(); }
+    } catch (const SamplerTimeout&) {
+    } catch (const SamplerError& fault) { e.fault = fault.what(); }
     return e;
 }
 
 }  // namespace
 
-std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes,
+std::vector<Efficiency> variances_of(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
     const CheckSettings& settings, const ProgressMonitor& monitor) {
     std::vector<Efficiency> out(trials.size());
     std::vector<std::size_t> baselines;
@@ -91,7 +91,7 @@ std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<co
         const StreamKey key{settings.seed, static_cast<std::uint16_t>(i), 0, 1, Purpose::light, 3};
         out[i] = variance_of_baseline(trials[i], i, key);
     };
-    const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
+    const bool serial = std::ranges::any_of(trials, [](const CheckCase& t) { return t.subject->serial(); });
     for_each_index(serial, baselines.size(), run);
     return out;
 }
@@ -100,33 +100,33 @@ namespace {
 
 /// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
 std::optional<double> time_once(
-    const Trial& trial, std::span<const Numbers> u, std::vector<Draw>& draws, Efficiency& e) {
+    const CheckCase& trial, std::span<const PrimarySample> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
         const auto start = std::chrono::steady_clock::now();
         for (int t = 0; t < trial.subject->techniques(); ++t)
             trial.subject->sample(t, trial.wo, u, std::span(draws).first(u.size()));
         return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() /
             static_cast<double>(u.size());
-    } catch (const SubjectTooSlow&) {
-    } catch (const SubjectFault& fault) { e.fault = fault.what(); }
+    } catch (const SamplerTimeout&) {
+    } catch (const SamplerError& fault) { e.fault = fault.what(); }
     return {};
 }
 
 }  // namespace
 
 void measure_costs(
-    std::span<const Trial> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor) {
+    std::span<const CheckCase> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor) {
     constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
-    std::vector<Numbers> u(most);
+    std::vector<PrimarySample> u(most);
     const StreamKey key{seed, 0, 0, 1, Purpose::light, 4};
-    for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, Numbers::most, true);
+    for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, PrimarySample::most, true);
     std::vector<std::vector<double>> times(all.size());
     std::vector<Draw> draws(most);
     for (std::size_t turn = 0; turn < turns; ++turn)
         for (std::size_t i = 0; i < all.size(); ++i) {
             monitor.check();
-            const Trial& trial = trials[all[i].trial];
-            if (!all[i].weighed || times[i].size() < turn || !trial.subject->draws_at_will()) continue;
+            const CheckCase& trial = trials[all[i].trial];
+            if (!all[i].weighed || times[i].size() < turn || !trial.subject->can_draw()) continue;
             const std::size_t n = trial.subject->limited() ? of_a_program : most;
             if (const std::optional<double> ns = time_once(trial, std::span(u).first(n), draws, all[i]))
                 times[i].push_back(*ns);
@@ -142,7 +142,7 @@ void measure_costs(
 namespace {
 
 /// What samplers that are ranked beside each other have in common.
-std::string company_of(const Trial& t) {
+std::string company_of(const CheckCase& t) {
     std::string key = fmt::format("{:g} {:g} {} {}", t.theta_deg, t.azimuth_deg, t.brdf, t.lighting);
     for (const auto& [name, value] : t.parameters) key += fmt::format(" {}={:g}", name, value);
     return key;
@@ -153,7 +153,7 @@ struct Ranks {
     std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
 };
 
-Ranks ranks_of(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency* const> company) {
+Ranks ranks_of(const Efficiency& e, std::span<const CheckCase> trials, std::span<const Efficiency* const> company) {
     Ranks out;
     for (const Efficiency* o : company) {
         if (o->trial == e.trial || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
@@ -175,7 +175,7 @@ std::string say_ranks(const Efficiency& e, const Ranks& ranks) {
 }
 
 void judge_one_efficiency(
-    const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency* const> company, Verdict& v) {
+    const Efficiency& e, std::span<const CheckCase> trials, std::span<const Efficiency* const> company, Verdict& v) {
     if (!e.fault.empty()) {
         v.state = State::error;
         v.evidence["first_fault"] = e.fault;
@@ -198,7 +198,7 @@ void judge_one_efficiency(
 
 }  // namespace
 
-std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all) {
+std::vector<Verdict> judge_efficiency(std::span<const CheckCase> trials, std::span<const Efficiency> all) {
     std::vector<Verdict> out(trials.size());
     std::map<std::string, std::vector<const Efficiency*>> companies;
     for (const Efficiency& e : all)

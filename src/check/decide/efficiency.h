@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/progress_monitor.h"
+#include "base/progress.h"
 #include "check/decide/check_sampler.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 
@@ -27,12 +27,12 @@ struct Efficiency {
 };
 
 /// Variances of all trials: of what the check has drawn, or, of a baseline, of a few draws of its own.
-std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes,
+std::vector<Efficiency> variances_of(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
     const CheckSettings& settings, const ProgressMonitor& monitor);
 /// The time of one sample of each, by one thread, all in turn: a slow moment of the machine falls on all alike.
 void measure_costs(
-    std::span<const Trial> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor);
+    std::span<const CheckCase> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor);
 /// A verdict by trial. Two samplers whose intervals overlap are not ranked.
-std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
+std::vector<Verdict> judge_efficiency(std::span<const CheckCase> trials, std::span<const Efficiency> all);
 
 }  // namespace crescent::check

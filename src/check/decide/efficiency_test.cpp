@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "subjects/list.h"
+#include "check/sources/cases.h"
 
 namespace crescent::check {
 namespace {
@@ -11,13 +11,13 @@ namespace {
 /// Lambert of albedo 0.5 under an even light: X of a uniform draw is cos, of variance 1 / 12; of a cosine one 0.5
 /// always.
 TEST(EfficiencyOfSamplers, HasTheVarianceOfTheWeights) {
-    std::vector<Trial> trials;
-    const TrialSetup setup = trial_setup(LobeKind::none, true, "fill", 32);
+    std::vector<CheckCase> trials;
+    const CaseSetup setup = case_setup(LobeKind::none, true, "fill", 32);
     for (const char* arm : {"uniform", "cosine"}) {
-        trials.push_back(trial_on(setup, 30, 0, arm, nullptr));
-        trials.back().subject = arm_on(arm, trials.back());
+        trials.push_back(make_case_on(setup, 30, 0, arm, nullptr));
+        trials.back().subject = sampler_on(arm, trials.back());
     }
-    Trial baseline = trials[0];
+    CheckCase baseline = trials[0];
     baseline.baseline = true;
     trials.push_back(baseline);
     CheckSettings settings;
@@ -38,8 +38,9 @@ TEST(EfficiencyOfSamplers, HasTheVarianceOfTheWeights) {
 }
 
 TEST(EfficiencyOfSamplers, MeasuresWhatASampleCosts) {
-    std::vector<Trial> trials = {trial_on(trial_setup(LobeKind::none, true, "fill", 32), 30, 0, "cosine", nullptr)};
-    trials[0].subject = arm_on("cosine", trials[0]);
+    std::vector<CheckCase> trials = {
+        make_case_on(case_setup(LobeKind::none, true, "fill", 32), 30, 0, "cosine", nullptr)};
+    trials[0].subject = sampler_on("cosine", trials[0]);
     std::vector<Efficiency> all(1);
     all[0].weighed = true;
     measure_costs(trials, 1, all, ProgressMonitor{});

@@ -19,7 +19,7 @@ constexpr double smooth = 1.1;  // how much the pdf may vary within a difference
 constexpr int bisections = 24;  // of the ends of a branch, to 2^-24
 
 struct Point {
-    Numbers u;
+    PrimarySample u;
     double branch = 1;          // probability of the branch that u lies in
     int first = 0, second = 1;  // the numbers that move w
     Vec3d w{};
@@ -32,19 +32,20 @@ bool same_direction(const Draw& a, const Draw& b) {
         std::fabs(a.wi.x - b.wi.x) + std::fabs(a.wi.y - b.wi.y) + std::fabs(a.wi.z - b.wi.z) < 1e-7;
 }
 
-std::vector<Draw> draws_at(Source& source, const std::vector<Numbers>& u) {
+std::vector<Draw> draws_at(Source& source, const std::vector<PrimarySample>& u) {
     std::vector<Draw> out(u.size());
     source.draw(u, out);
     return out;
 }
 
 /// The ends of the interval of number k about u in which the draw stays the same, by bisection.
-std::vector<double> branch_lengths(Source& source, const std::vector<Numbers>& u, const std::vector<Draw>& at, int k) {
+std::vector<double> branch_lengths(
+    Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at, int k) {
     std::vector<double> length(u.size());
     for (double end : {0.0, 1.0}) {
         std::vector<double> inside(u.size()), outside(u.size(), end);
         for (std::size_t i = 0; i < u.size(); ++i) inside[i] = u[i][k];
-        std::vector<Numbers> v = u;
+        std::vector<PrimarySample> v = u;
         for (int step = 0; step <= bisections; ++step) {
             for (std::size_t i = 0; i < u.size(); ++i)
                 v[i][k] = std::clamp(step == 0 ? end : (inside[i] + outside[i]) / 2, ulp, 1 - ulp);
@@ -62,11 +63,11 @@ std::vector<double> branch_lengths(Source& source, const std::vector<Numbers>& u
 }
 
 /// The number that only chooses a branch, of three; none where every number moves w.
-std::optional<int> chooser(Source& source, const std::vector<Numbers>& u, const std::vector<Draw>& at) {
+std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at) {
     constexpr double little = 0x1p-16;
     for (int k = 2; k >= 0; --k) {
-        std::vector<Numbers> v = u;
-        for (Numbers& x : v) x[k] += x[k] < 0.5 ? little : -little;
+        std::vector<PrimarySample> v = u;
+        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? little : -little;
         const std::vector<Draw> d = draws_at(source, v);
         int moved = 0, looked = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
@@ -89,7 +90,7 @@ std::vector<CentralDifferences> differences(Source& source, const std::vector<Po
     std::vector<CentralDifferences> out(all.size());
     for (std::size_t s = 0; s < steps; ++s) {
         const double h = step_size(s);
-        std::vector<Numbers> u;
+        std::vector<PrimarySample> u;
         for (const Point& p : all)
             for (int side = 0; side < 4; ++side) {
                 u.push_back(p.u);
@@ -162,10 +163,10 @@ Round look(Source& source, const StreamKey& key) {
 
 std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
     std::vector<MapDensity> out;
-    if (source.traits.own_random || !source.subject.draws_at_will() || source.traits.numbers < 2 ||
+    if (source.traits.own_random || !source.subject.can_draw() || source.traits.numbers < 2 ||
         source.traits.numbers > 3)
         return out;
-    const std::vector<Numbers> u = first_numbers(key, points, source.traits);
+    const std::vector<PrimarySample> u = first_numbers(key, points, source.traits);
     const std::vector<Draw> at = draws_at(source, u);
     std::vector<double> branch(u.size(), 1.0);
     int first = 0, second = 1;

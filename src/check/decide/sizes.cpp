@@ -9,8 +9,8 @@
 
 #include "check/constants.h"
 #include "check/verdicts/statistics.h"
-#include "simd/frame.h"
-#include "stats/distributions.h"
+#include "math/simd/frame.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 
@@ -227,7 +227,7 @@ struct Sample {
     double of = 0;
 };
 Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
-    const std::vector<Numbers> u = first_numbers(key, count, source.traits);
+    const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     Sample out;

@@ -28,12 +28,12 @@ std::optional<const char*> fault_of(const Draw& d) {
 
 namespace {
 
-std::vector<Numbers> corner_numbers(int count) {
+std::vector<PrimarySample> corner_numbers(int count) {
     constexpr double ends[] = {0, ulp, 0.25, 0.5, 0.75, 1 - ulp}, elsewhere = 95.0 / 256;
     const int n = std::max(count, 2);
-    Numbers middle;
+    PrimarySample middle;
     for (int k = 0; k < n; ++k) middle[k] = elsewhere;
-    std::vector<Numbers> out;
+    std::vector<PrimarySample> out;
     for (int i = 0; i < n; ++i)
         for (int j = i + 1; j < n; ++j)
             for (double x : ends)
@@ -48,8 +48,8 @@ std::vector<Numbers> corner_numbers(int count) {
     return out;
 }
 
-std::vector<Numbers> some_numbers(const Source& source, StreamKey key, std::uint32_t count) {
-    const std::vector<Numbers> u = first_numbers(key, count, source.traits);
+std::vector<PrimarySample> some_numbers(const Source& source, StreamKey key, std::uint32_t count) {
+    const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
     return u;
 }
 
@@ -67,7 +67,7 @@ bool same_draw(const Draw& a, const Draw& b, bool random = false) {
 }  // namespace
 
 std::optional<SmallFault> rows_of_file(const Source& source) {
-    const RecordedSubject* file = source.recorded();
+    const RecordedSampler* file = source.recorded();
     if (!file) return {};
     SmallFault out{Family::values, 0, static_cast<double>(file->rows())};
     for (std::size_t i = 0; i < file->rows(); ++i) {
@@ -81,8 +81,8 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
 }
 
 std::optional<SmallFault> corners_of_u(Source& source) {
-    if (!source.subject.draws_at_will()) return {};
-    const std::vector<Numbers> u = corner_numbers(source.traits.numbers);
+    if (!source.subject.can_draw()) return {};
+    const std::vector<PrimarySample> u = corner_numbers(source.traits.numbers);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     SmallFault out{Family::corners, 0, static_cast<double>(u.size())};
@@ -109,14 +109,14 @@ template <class Call> void in_blocks(const Call& call) {
 }  // namespace
 
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
-    if (source.traits.own_random || !source.subject.draws_at_will()) return {};
-    const std::vector<Numbers> u = some_numbers(source, key, rows_in_blocks);
+    if (source.traits.own_random || !source.subject.can_draw()) return {};
+    const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
     std::vector<Draw> together(u.size()), again(u.size()), backwards(u.size());
     source.draw(u, together);
     in_blocks([&](std::size_t first, std::size_t n) {
         source.draw(std::span(u).subspan(first, n), std::span(again).subspan(first, n));
     });
-    std::vector<Numbers> reversed(u.rbegin(), u.rend());
+    std::vector<PrimarySample> reversed(u.rbegin(), u.rend());
     source.draw(reversed, backwards);
     std::reverse(backwards.begin(), backwards.end());
     SmallFault out{Family::state, 0, static_cast<double>(u.size())};
@@ -128,8 +128,8 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
 }
 
 std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key) {
-    if (!source.subject.draws_at_will()) return {};
-    const std::vector<Numbers> u = some_numbers(source, key, rows_in_blocks);
+    if (!source.subject.can_draw()) return {};
+    const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     constexpr double golden = 2.399963229728653;  // radians
@@ -176,12 +176,12 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
 
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
     std::vector<int> out;
-    if (source.traits.own_random || !source.subject.draws_at_will()) return out;
-    const std::vector<Numbers> u = some_numbers(source, key, 64);
+    if (source.traits.own_random || !source.subject.can_draw()) return out;
+    const std::vector<PrimarySample> u = some_numbers(source, key, 64);
     std::vector<Draw> draws(u.size()), others(u.size());
     source.draw(u, draws);
     for (int k = 0; k < source.traits.numbers; ++k) {
-        std::vector<Numbers> v = u;
+        std::vector<PrimarySample> v = u;
         for (std::size_t i = 0; i < v.size(); ++i) v[i][k] = u[(i + 1) % u.size()][k];
         source.draw(v, others);
         bool same = true;
@@ -193,11 +193,11 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
 
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more numbers than two, one may choose a texel and others the place in it.
-    if (source.traits.numbers > 2 || source.traits.own_random || !source.subject.draws_at_will()) return {};
-    const std::vector<Numbers> u = some_numbers(source, key, 64);
+    if (source.traits.numbers > 2 || source.traits.own_random || !source.subject.can_draw()) return {};
+    const std::vector<PrimarySample> u = some_numbers(source, key, 64);
     const auto draws_beside = [&](int k, double by) {
-        std::vector<Numbers> v = u;
-        for (Numbers& x : v) x[k] += x[k] < 0.5 ? by : -by;
+        std::vector<PrimarySample> v = u;
+        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? by : -by;
         std::vector<Draw> out(v.size());
         source.draw(v, out);
         return out;

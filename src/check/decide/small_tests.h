@@ -35,7 +35,7 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
 /// What the map draws at a few points where its derivatives are known to `jacobian_error`, and p there, both 1/sr.
 /// Other u may lead to the same direction, so `drawn` is a part of what is drawn there.
 struct MapDensity {
-    Numbers u;
+    PrimarySample u;
     Draw draw;
     double p = 0, drawn = 0, error = 0;  // error: of `drawn`, relative
 };

@@ -73,7 +73,7 @@ double draws_for_1_percent(const stats::Spread& s) {
 }
 
 /// The fit to the largest weights, or that there is nothing to fit.
-void tell_fit(const WeightTail& t, const Trial& trial, Verdict& v) {
+void tell_fit(const WeightTail& t, const CheckCase& trial, Verdict& v) {
     if (!t.fit) {
         v.evidence["times_largest"] = t.times_largest;
         v.say = t.times_largest < bound_drawn || static_cast<double>(t.times_largest) == t.spread.n
@@ -162,7 +162,7 @@ WeightTail tail_of(std::span<const CheckAt> techniques) {
     return out;
 }
 
-void judge_tail(const Trial& trial, const WeightTail& t, Verdict& v) {
+void judge_tail(const CheckCase& trial, const WeightTail& t, Verdict& v) {
     if (!t.weighed) {
         v.state = State::skipped;
         v.say = "There are no weights f L cos / p.";

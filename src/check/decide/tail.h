@@ -7,9 +7,9 @@
 #include <span>
 
 #include "check/decide/check_at.h"
-#include "judgements/verdict.h"
-#include "stats/moments.h"
-#include "stats/tail.h"
+#include "check/verdict.h"
+#include "math/statistics.h"
+#include "math/tail.h"
 
 namespace crescent::check {
 
@@ -41,7 +41,7 @@ WeightTail tail_of_weights(std::span<const double> x);
 WeightTail tail_of(std::span<const CheckAt> techniques);
 
 /// The verdict `tail`: right, or inconclusive with what would settle it, or skipped.
-void judge_tail(const Trial& trial, const WeightTail& t, Verdict& v);
+void judge_tail(const CheckCase& trial, const WeightTail& t, Verdict& v);
 /// The plain mean of the weights, into the evidence of `mean`, which stays open where they have no variance: what was
 /// tested is right, but no interval of the plain mean means anything.
 void judge_plain_mean(const WeightTail& t, Verdict& v);

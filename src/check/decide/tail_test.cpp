@@ -11,7 +11,7 @@ namespace {
 
 /// p ~ cos^s about n, with a share of cosine beside it; f is Lambert of albedo 1, whose weights without that share are
 /// u^-k, k = (s - 1) / (s + 1).
-struct PowerLobe : JudgedSampler {
+struct PowerLobe : SamplerAdapter {
     double s = 1, share = 0;
     std::string name() const override { return "power"; }
     Traits traits() const override {
@@ -22,7 +22,7 @@ struct PowerLobe : JudgedSampler {
     double density_at(double z) const {
         return z > 0 ? (1 - share) * (s + 1) / two_pi * std::pow(z, s) + share * z / pi : 0;
     }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double z = std::pow(u[i].x, 1 / ((u[i][2] < share ? 1 : s) + 1)), r = std::sqrt(1 - z * z);
             out[i] = {{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z}, density_at(z)};
@@ -42,7 +42,7 @@ struct JudgedTail {
     WeightTail of;
 };
 JudgedTail tail_at(const PowerLobe& sampler) {
-    Trial t;
+    CheckCase t;
     t.wo = {0, 0, 1}, t.subject = std::make_shared<PowerLobe>(sampler);
     const CheckAt c = check_sampler_at(*t.subject, 0, t.wo, {}, CheckBudget::limited(), 1);
     for (const Finding& f : c.findings) ADD_FAILURE() << info(f.first.family).name << f.first.difference;

@@ -15,17 +15,18 @@ namespace {
 bool answers_for(const Traits& traits, Vec3d wo) { return traits.wo != Traits::Asked::upper || wo.z > 0; }
 
 /// Some u at each special w_o: the middle, and spread over the cube.
-std::vector<Numbers> few_numbers(int count) {
-    std::vector<Numbers> out;
+std::vector<PrimarySample> few_numbers(int count) {
+    std::vector<PrimarySample> out;
     for (int i = 0; i < 16; ++i) {
-        Numbers u;
+        PrimarySample u;
         for (int k = 0; k < std::max(count, 2); ++k) u[k] = std::fmod(0.5 + i * 0.6180339887 * (k + 1), 1.0);
         out.push_back(u);
     }
     return out;
 }
 
-void note(SmallFault& to, const Numbers& u, const Draw& d, double p, const char* what, std::optional<Vec3d> wo = {}) {
+void note(
+    SmallFault& to, const PrimarySample& u, const Draw& d, double p, const char* what, std::optional<Vec3d> wo = {}) {
     if (to.times++ == 0) to.first = {u, d, p, 0}, to.what = what, to.wo = wo;
 }
 
@@ -52,11 +53,12 @@ std::vector<Vec3d> special_directions() {
     return out;
 }
 
-std::optional<SmallFault> special_places(const JudgedSampler& subject, int technique, std::span<const Vec3d> ordinary) {
-    if (!subject.draws_at_will()) return {};
+std::optional<SmallFault> special_places(
+    const SamplerAdapter& subject, int technique, std::span<const Vec3d> ordinary) {
+    if (!subject.can_draw()) return {};
     const Traits traits = subject.traits();
     const std::vector<Vec3d> special = special_directions();
-    const std::vector<Numbers> u = few_numbers(traits.numbers);
+    const std::vector<PrimarySample> u = few_numbers(traits.numbers);
     SmallFault out{Family::corners};
     std::vector<Draw> draws(u.size());
     std::vector<Pair> pairs;
@@ -88,7 +90,7 @@ std::optional<SmallFault> special_places(const JudgedSampler& subject, int techn
 namespace {
 
 /// f |cos|^k by channel for pairs, k = 1 for phase functions.
-std::vector<Vec3d> f_of(const JudgedSampler& subject, std::span<const Pair> pairs) {
+std::vector<Vec3d> f_of(const SamplerAdapter& subject, std::span<const Pair> pairs) {
     std::vector<Vec3d> out(pairs.size());
     if (subject.traits().channels == 3) {
         subject.f_channels(pairs, out);
@@ -114,7 +116,7 @@ bool differ(double a, double b, double tolerance) { return std::fabs(a - b) > to
 
 }  // namespace
 
-std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const StreamKey& key) {
+std::optional<SmallFault> reciprocity(const SamplerAdapter& subject, const StreamKey& key) {
     const Traits traits = subject.traits();
     if (!subject.has_f() || !traits.reciprocal || traits.wo == Traits::Asked::none) return {};
     const bool both = traits.wo == Traits::Asked::both;
@@ -144,12 +146,12 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
     return out;
 }
 
-std::optional<SmallFault> mis_weights(const JudgedSampler& subject, Vec3d wo, const StreamKey& key) {
+std::optional<SmallFault> mis_weights(const SamplerAdapter& subject, Vec3d wo, const StreamKey& key) {
     if (subject.techniques() < 2) return {};
     const Traits traits = subject.traits();
     SmallFault out{Family::mis, 0, 0, 0, {}, "weights of the techniques do not sum to 1"};
     for (int t = 0; t < subject.techniques(); ++t) {
-        const std::vector<Numbers> u = first_numbers(key, 512, traits);
+        const std::vector<PrimarySample> u = first_numbers(key, 512, traits);
         std::vector<Draw> draws(u.size());
         subject.sample(t, wo, u, draws);
         std::vector<Pair> at;

@@ -18,7 +18,7 @@ bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_t
 
 }  // namespace
 
-BothWays both_ways(const JudgedSampler& subject, StreamKey key) {
+BothWays both_ways(const SamplerAdapter& subject, StreamKey key) {
     const Traits traits = subject.traits();
     if (!subject.has_f() || traits.eta || traits.wo == Traits::Asked::none) return BothWays::not_known;
     const bool both = traits.wo == Traits::Asked::both;

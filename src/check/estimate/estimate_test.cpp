@@ -10,11 +10,11 @@ namespace {
 constexpr double pi_value = 3.14159265358979323846;
 
 /// p = (1 + s) / (2 pi) cos^s about n, drawn exactly.
-struct CosinePower : JudgedSampler {
+struct CosinePower : SamplerAdapter {
     double s = 1;
     explicit CosinePower(double exponent) : s(exponent) {}
     std::string name() const override { return "cosine power"; }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double z = std::pow(u[i].x, 1 / (s + 1)), r = std::sqrt(1 - z * z);
             out[i] = {{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z}, value(z)};
@@ -67,11 +67,11 @@ TEST(CheckSobol, FirstTwoDimensionsAreANetWithOnePointInEachElementaryInterval) 
 }
 
 TEST(CheckSobol, EveryDimensionHasOnePointInEachOfItsIntervals) {
-    for (int d = 0; d < Numbers::most; ++d) EXPECT_EQ(most_in_a_cell(d, 0, 10, 0, 10, 77u, 0), 1) << d;
+    for (int d = 0; d < PrimarySample::most; ++d) EXPECT_EQ(most_in_a_cell(d, 0, 10, 0, 10, 77u, 0), 1) << d;
 }
 
 TEST(CheckSobol, PairsOfDimensionsHaveNoMoreThanEightPointsInACell) {  // t <= 3 of Joe and Kuo's first eight
-    for (int a = 0; a < Numbers::most; ++a)
+    for (int a = 0; a < PrimarySample::most; ++a)
         for (int b = 0; b < a; ++b) EXPECT_LE(most_in_a_cell(a, b, 5, 5, 10, 1u, 2u), 8) << a << " " << b;
 }
 
@@ -93,7 +93,7 @@ TEST(CheckChart, AreaIsSolidAngle) {
 class CheckTree : public testing::Test {
 protected:
     CosinePower sampler{40};
-    TrialLight light;
+    CaseLighting light;
     Source source{sampler, 0, {0, 0, 1}, light};
     CheckBudget budget = CheckBudget::limited();
     Plan plan = make_plan(source, budget, {});

@@ -106,7 +106,7 @@ public:
 private:
     Source& source_;
     const Plan& plan_;
-    bool of_f_, tabulated_ = !source_.subject.draws_at_will();
+    bool of_f_, tabulated_ = !source_.subject.can_draw();
     Stream stream_;
     Integrals out_;
     std::vector<Vec3d> w_, f_;

@@ -13,17 +13,18 @@ namespace {
 
 constexpr double longest_move = 0x1p-4, side_move = 0x1p-10;
 constexpr std::ptrdiff_t draws_to_begin = 64;  // without a step among them there is none
-constexpr int bisections = 6;  // of a move that grew fourfold: the jump is then met within 1/16 of the distance to it
+constexpr int halvings = 6;  // of a move that grew fourfold: the jump is then met within 1/16 of the distance to it
 
 class Moved {
     static constexpr double nowhere = 2;  // further than any direction
 
 public:
-    Moved(Source& source, const std::vector<Numbers>& u, const std::vector<Vec3d>& w) : source_(source), u_(u), w_(w) {}
+    Moved(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w)
+        : source_(source), u_(u), w_(w) {}
 
     /// The jump from w of each of these draws, with number k moved by its own distance, inwards.
     std::vector<LocalStep> by_moving(const std::vector<std::size_t>& which, int k, const std::vector<double>& by) {
-        std::vector<Numbers> v;
+        std::vector<PrimarySample> v;
         for (std::size_t i : which) {
             v.push_back(u_[i]);
             v.back()[k] += v.back()[k] < 0.5 ? by[i] : -by[i];
@@ -41,7 +42,7 @@ public:
 
 private:
     Source& source_;
-    const std::vector<Numbers>& u_;
+    const std::vector<PrimarySample>& u_;
     const std::vector<Vec3d>& w_;
 };
 
@@ -62,7 +63,7 @@ std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
         open = std::move(still);
     }
     std::vector<double> middle(count);
-    for (int n = 0; n < bisections && !closing.empty(); ++n) {
+    for (int n = 0; n < halvings && !closing.empty(); ++n) {
         for (std::size_t i : closing) middle[i] = (same[i] + other[i]) / 2;
         const std::vector<LocalStep> d = moved.by_moving(closing, k, middle);
         for (std::size_t j = 0; j < closing.size(); ++j) {
@@ -74,7 +75,7 @@ std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
     return out;
 }
 
-std::vector<LocalStep> steps_of(Source& source, const std::vector<Numbers>& u, const std::vector<Vec3d>& w) {
+std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
     std::vector<LocalStep> out(w.size());
     Moved moved(source, u, w);
     for (int k = 0; k < source.numbers(); ++k) {
@@ -99,8 +100,8 @@ std::vector<LocalStep> steps_of(Source& source, const std::vector<Numbers>& u, c
 
 }  // namespace
 
-std::vector<LocalStep> local_steps(Source& source, const std::vector<Numbers>& u, const std::vector<Vec3d>& w) {
-    if (source.traits.own_random || !source.subject.draws_at_will()) return {};
+std::vector<LocalStep> local_steps(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
+    if (source.traits.own_random || !source.subject.can_draw()) return {};
     const auto first = std::min<std::ptrdiff_t>(draws_to_begin, std::ssize(w));
     const std::vector<LocalStep> some =
         steps_of(source, {u.begin(), u.begin() + first}, {w.begin(), w.begin() + first});

@@ -14,6 +14,6 @@ struct LocalStep {
     Vec3d next{};
 };
 /// w: the draws at u. As many as were looked at: all, or the first of them.
-std::vector<LocalStep> local_steps(Source& source, const std::vector<Numbers>& u, const std::vector<Vec3d>& w);
+std::vector<LocalStep> local_steps(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w);
 
 }  // namespace crescent::check

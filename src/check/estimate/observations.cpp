@@ -8,7 +8,7 @@
 
 #include "check/constants.h"
 #include "check/estimate/weights.h"
-#include "simd/frame.h"
+#include "math/simd/frame.h"
 
 namespace crescent::check {
 
@@ -49,13 +49,13 @@ public:
     }
 
     /// Independent draws.
-    void batch(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, bool with_f) {
+    void batch(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, bool with_f) {
         draws_.assign(u.size(), {});
         source_.draw(key, from, u, draws_);
         look_at(u, -1, with_f);
     }
     /// Draws of one scrambled set.
-    void batch(std::span<const Numbers> u, int set) {
+    void batch(std::span<const PrimarySample> u, int set) {
         draws_.assign(u.size(), {});
         source_.draw(u, draws_);
         look_at(u, set, false);
@@ -71,7 +71,7 @@ private:
     std::vector<std::size_t> at_;  // of the draws that w_ are of
     std::vector<double> p_;
 
-    void look_at(std::span<const Numbers> u, int set, bool with_f) {
+    void look_at(std::span<const PrimarySample> u, int set, bool with_f) {
         w_.clear(), at_.clear();
         for (std::size_t i = 0; i < u.size(); ++i)
             if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
@@ -99,7 +99,7 @@ private:
     }
 
     /// A draw of the density with finite numbers; others are counted.
-    bool usable(const Numbers& u, const Draw& d, int set) {
+    bool usable(const PrimarySample& u, const Draw& d, int set) {
         DrawChecks& c = to_.checks;
         if (set < 0) ++c.looked_at;
         if (d.delta != 0) {
@@ -134,7 +134,7 @@ private:
     }
 
     /// The draw's own pdf must lie in the range of p over a few roundings of w; p must not be 0 all around.
-    void compare_pdf(std::span<const Numbers> u) {
+    void compare_pdf(std::span<const PrimarySample> u) {
         if (!source_.has_density() || plan_.estimates) return;
         std::vector<std::size_t> odd;
         for (std::size_t k = 0; k < w_.size(); ++k)
@@ -174,7 +174,7 @@ private:
     }
 
     /// Weights of the draws: what comes with them, else f cos / pdf; compared with that, and summed for the mean.
-    void compare_weights(std::span<const Numbers> u, int set) {
+    void compare_weights(std::span<const PrimarySample> u, int set) {
         const bool evaluated = source_.has_f(), truth = evaluated && source_.subject.has_true_f();
         f_.assign(w_.size(), {});
         if (evaluated) source_.f_cos(w_, f_);
@@ -195,7 +195,7 @@ private:
         }
     }
 
-    void compare_weight(const Numbers& u, const Draw& d, std::size_t k, Vec3d due, int set) {
+    void compare_weight(const PrimarySample& u, const Draw& d, std::size_t k, Vec3d due, int set) {
         const Vec3d f = f_[k];
         const bool derived = source_.has_density();
         // The weight may be an estimate too; the mean is compared.
@@ -218,7 +218,7 @@ private:
     }
 
     /// Where rounding leaves few directions, one of them may lie on a cut: draws are spread over half a step about it.
-    std::size_t leaf_of(Vec3d w, const Numbers& u) const {
+    std::size_t leaf_of(Vec3d w, const PrimarySample& u) const {
         const std::size_t l = plan_.tree.find(to_chart(w));
         const double step = plan_.tree.nodes()[static_cast<std::size_t>(plan_.tree.leaves()[l].node)].step;
         if (step <= plan_.step) return l;
@@ -229,7 +229,7 @@ private:
         return plan_.tree.find(to_chart(w + frame.t * (r * math::cos(angle)) + frame.b * (r * math::sin(angle))));
     }
 
-    void take(Vec3d w, double p, int set, const Numbers& u) {
+    void take(Vec3d w, double p, int set, const PrimarySample& u) {
         const std::size_t l = leaf_of(w, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
         const Values v = plan_.values(leaf, w, p);
@@ -283,7 +283,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     }
     Observer observer(source, plan, integrals, to);
     const bool weighs = source.has_f() || source.subject.has_drawn_f();
-    std::vector<Numbers> u;
+    std::vector<PrimarySample> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
     const auto before = static_cast<std::uint32_t>(to.independent);
@@ -294,7 +294,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         observer.batch(draws, from, u, weighs && from < of_f);
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
-    if (source.traits.own_random || !source.subject.draws_at_will()) return;
+    if (source.traits.own_random || !source.subject.can_draw()) return;
     const std::uint32_t evaluations_each = observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
                         last = std::max(first, look.scrambled / replicate_sets / evaluations_each);

@@ -14,7 +14,7 @@ namespace crescent::check {
 
 /// A draw that shows a fault, for the report.
 struct Example {
-    Numbers u;
+    PrimarySample u;
     Draw draw;
     double p = 0, due = 0;  // density there; what was expected in place of what came
 };

@@ -34,14 +34,14 @@ namespace {
 struct Pilot {
     std::vector<DensityPoint> points;
     std::vector<Vec3d> directions;
-    std::vector<Numbers> u;  // of the first of them
+    std::vector<PrimarySample> u;  // of the first of them
     std::array<double, 3> weight{};
     std::uint32_t of = 0;
 };
 
 Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key) {
     Pilot out;
-    std::vector<Numbers> u;
+    std::vector<PrimarySample> u;
     std::vector<Draw> draws;
     std::vector<Vec3d> w;
     std::vector<double> p;

@@ -8,9 +8,9 @@
 
 #include "check/constants.h"
 #include "check/estimate/chart.h"
-#include "simd/frame.h"
-#include "stats/quantiles.h"
-#include "subjects/asked_once.h"
+#include "check/sources/wrappers.h"
+#include "math/simd/frame.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 
@@ -53,7 +53,7 @@ std::vector<Vec3d> beside(std::span<const Vec3d> at, double step) {
 
 std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
     constexpr double golden = 2.399963229728653;  // radians
-    std::vector<Numbers> u(48);
+    std::vector<PrimarySample> u(48);
     std::vector<Draw> draws(u.size());
     source.draw(key, 0, u, draws);
     std::vector<Vec3d> out;
@@ -65,11 +65,11 @@ std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
 
 }  // namespace
 
-Scatter look_for_scatter(Source& source, const StreamKey& key) {
-    Scatter out;
-    if (!source.subject.draws_at_will()) return out;  // a file has one answer for each direction
+EvaluationNoise look_for_scatter(Source& source, const StreamKey& key) {
+    EvaluationNoise out;
+    if (!source.subject.can_draw()) return out;  // a file has one answer for each direction
     const std::vector<Vec3d> at = places_of(source, key), near = beside(at, fine_step), far = beside(at, coarse_step);
-    const JudgedSampler& anew = afresh(source.subject);
+    const SamplerAdapter& anew = uncached(source.subject);
     const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
         std::vector<Pair> pairs;
         for (Vec3d w : wi) pairs.push_back({source.wo, w});
@@ -90,7 +90,7 @@ Scatter look_for_scatter(Source& source, const StreamKey& key) {
     return out;
 }
 
-std::string text_of(const Scatter& s) {
+std::string text_of(const EvaluationNoise& s) {
     if (!s.pdf() && !s.f()) return "";
     const char* what = s.pdf() && s.f() ? "pdf(w) and f(w) are random estimates"
         : s.pdf()                       ? "pdf(w) is a random estimate"

@@ -9,7 +9,7 @@
 
 namespace crescent::check {
 
-struct Scatter {
+struct EvaluationNoise {
     double of_pdf = 0, of_f = 0;  // median relative difference of two answers; 0: they are no estimates
     bool hashed = false;
     bool pdf() const { return of_pdf > 0; }
@@ -17,8 +17,8 @@ struct Scatter {
 };
 
 /// A few hundred answers, at directions that are drawn and all over the sphere.
-Scatter look_for_scatter(Source& source, const StreamKey& key);
+EvaluationNoise look_for_scatter(Source& source, const StreamKey& key);
 /// A sentence; "" where nothing is an estimate.
-std::string text_of(const Scatter& scatter);
+std::string text_of(const EvaluationNoise& scatter);
 
 }  // namespace crescent::check

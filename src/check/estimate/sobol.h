@@ -10,7 +10,7 @@
 
 namespace crescent::check {
 
-using SobolMatrix = std::array<std::array<std::uint32_t, 32>, Numbers::most>;
+using SobolMatrix = std::array<std::array<std::uint32_t, 32>, PrimarySample::most>;
 
 /// Directions v[dimension][bit].
 constexpr SobolMatrix sobol_matrix() {
@@ -18,7 +18,7 @@ constexpr SobolMatrix sobol_matrix() {
         int s;
         std::uint32_t a, m[5];
     };
-    constexpr Line lines[Numbers::most - 1] = {{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}},
+    constexpr Line lines[PrimarySample::most - 1] = {{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}},
         {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
     SobolMatrix v{};
     for (int i = 0; i < 32; ++i) v[0][static_cast<std::size_t>(i)] = 1u << (31 - i);
@@ -75,8 +75,8 @@ public:
         Stream stream(key);
         for (std::uint32_t& s : seeds_) s = stream.bits();
     }
-    Numbers at(std::uint32_t i) const {
-        Numbers out;
+    PrimarySample at(std::uint32_t i) const {
+        PrimarySample out;
         for (int d = 0; d < count_; ++d) {
             const double u = unit_number(owen_scrambled(sobol(i, d), seeds_[static_cast<std::size_t>(d)]));
             out[d] = single_ ? single_number(u) : u;
@@ -85,7 +85,7 @@ public:
     }
 
 private:
-    std::array<std::uint32_t, Numbers::most> seeds_{};
+    std::array<std::uint32_t, PrimarySample::most> seeds_{};
     int count_;
     bool single_;
 };

@@ -19,7 +19,7 @@ double Source::checked(double value, Vec3d at) {
     return 0;
 }
 
-void Source::draw(std::span<const Numbers> u, std::span<Draw> out) {
+void Source::draw(std::span<const PrimarySample> u, std::span<Draw> out) {
     evaluations_ += u.size();
     subject.sample(technique, wo, u, out);
 }
@@ -43,7 +43,7 @@ std::uint32_t Source::available(const StreamKey& key, std::uint32_t wanted) cons
     return static_cast<std::uint32_t>(std::min<std::size_t>(wanted, count));
 }
 
-void Source::draw(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, std::span<Draw> out) {
+void Source::draw(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, std::span<Draw> out) {
     if (!recorded_) {
         for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = numbers_at(key, from + i, numbers(), single());
         return draw(u, out);

@@ -6,20 +6,20 @@
 #include <vector>
 
 #include "check/estimate/stream.h"
-#include "subjects/recorded.h"
+#include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {
 
 /// Calls are for one thread. `subject` and `light` outlive it.
 class Source {
 public:
-    Source(const JudgedSampler& subject, int technique, Vec3d wo, const TrialLight& light)
+    Source(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseLighting& light)
         : subject(subject), technique(technique), wo(wo), light(light), traits(subject.traits()) {}
 
-    const JudgedSampler& subject;
+    const SamplerAdapter& subject;
     const int technique;
     const Vec3d wo;
-    const TrialLight& light;
+    const CaseLighting& light;
     const Traits traits;
     /// p is a random estimate, right in the mean alone: h must not depend on it. The same of f.
     bool estimates = false, f_estimates = false;
@@ -29,17 +29,17 @@ public:
     bool unscaled = false;
 
     /// The file that the draws are read from, if they are.
-    const RecordedSubject* recorded() const { return recorded_; }
+    const RecordedSampler* recorded() const { return recorded_; }
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
     bool has_density() const { return traits.has_pdf && !by_draws; }
     bool has_f() const { return subject.has_f(); }
     int channels() const { return traits.channels == 3 ? 3 : 1; }
 
-    void draw(std::span<const Numbers> u, std::span<Draw> out);
+    void draw(std::span<const PrimarySample> u, std::span<Draw> out);
     /// Draws `from` to `from + u.size()` of a stream, with the numbers that they are of. A file gives its rows in place
     /// of new draws: of each eight the first to the pilot, four to stage 1, three to stage 2, none of them twice.
-    void draw(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, std::span<Draw> out);
+    void draw(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, std::span<Draw> out);
     /// How many of `wanted` draws of a stream there are.
     std::uint32_t available(const StreamKey& key, std::uint32_t wanted) const;
     /// 1/sr, in double where the sampler has it; 0 and counted where it is not finite or negative.
@@ -70,7 +70,7 @@ private:
     Vec3d first_invalid_{};
     double first_invalid_value_ = 0;
     std::vector<Pair> pairs_;
-    const RecordedSubject* recorded_ = dynamic_cast<const RecordedSubject*>(&subject);
+    const RecordedSampler* recorded_ = dynamic_cast<const RecordedSampler*>(&subject);
     std::span<const Pair> pairs_of(std::span<const Vec3d> wi);
     double checked(double value, Vec3d at);
 };

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "check/estimate/chart.h"
-#include "simd/random.h"
-#include "subjects/subject.h"
+#include "check/sources/sampler_adapter.h"
+#include "math/simd/random.h"
 
 namespace crescent::check {
 
@@ -65,8 +65,8 @@ inline Vec3d random_direction(Stream& stream, bool below, double least_z) {
 }
 
 /// The random numbers of sample i of a stream, by position: blocks 2 i and 2 i + 1.
-inline Numbers numbers_at(const StreamKey& key, std::uint32_t i, int count, bool single) {
-    Numbers out;
+inline PrimarySample numbers_at(const StreamKey& key, std::uint32_t i, int count, bool single) {
+    PrimarySample out;
     for (int half = 0; half < (count > 4 ? 2 : 1); ++half) {
         const Vec4u<std::uint32_t> b = key.block(2 * i + static_cast<std::uint32_t>(half));
         const std::uint32_t lanes[4] = {b.x, b.y, b.z, b.w};
@@ -77,8 +77,8 @@ inline Numbers numbers_at(const StreamKey& key, std::uint32_t i, int count, bool
 }
 
 /// The first `count` of them, as a sampler takes them.
-inline std::vector<Numbers> first_numbers(const StreamKey& key, std::uint32_t count, const Traits& traits) {
-    std::vector<Numbers> u(count);
+inline std::vector<PrimarySample> first_numbers(const StreamKey& key, std::uint32_t count, const Traits& traits) {
+    std::vector<PrimarySample> u(count);
     for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, std::max(traits.numbers, 1), traits.bits == 24);
     return u;
 }

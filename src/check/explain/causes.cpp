@@ -46,7 +46,7 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
     Candidate out;
     out.hypothesis.name = "constant";
     out.hypothesis.free = true;
-    out.hypothesis.density = [](const JudgedSampler& s, int t, std::span<const Pair> at, std::span<double> to) {
+    out.hypothesis.density = [](const SamplerAdapter& s, int t, std::span<const Pair> at, std::span<double> to) {
         s.exact_pdf(t, at, to);
     };
     for (const MassRatio& m : all) {
@@ -315,7 +315,7 @@ bool odd_draws_explain(std::span<const Place> places) {
 
 }  // namespace
 
-std::optional<Cause> cause_of(std::span<const Trial> trials, const CheckOutcome& outcome) {
+std::optional<Cause> cause_of(std::span<const CheckCase> trials, const CheckOutcome& outcome) {
     const bool few = std::ranges::any_of(outcome.trials, [&](std::size_t i) { return trials[i].subject->serial(); });
     const std::vector<Place> places = places_of(trials, outcome, most_places, few ? draws_of_few : draws_of_many);
     if (places.empty()) return weight_cause(trials, outcome);

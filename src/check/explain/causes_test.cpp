@@ -6,17 +6,17 @@
 #include "check/explain/frames.h"
 #include "check/explain/text.h"
 #include "check/report/verdicts.h"
-#include "simd/frame.h"
+#include "math/simd/frame.h"
 
 namespace crescent::check {
 namespace {
 
 constexpr double pi = two_pi / 2;
 
-using Sample = std::function<Vec3d(Vec3d wo, const Numbers& u)>;  // {} where nothing is drawn
+using Sample = std::function<Vec3d(Vec3d wo, const PrimarySample& u)>;  // {} where nothing is drawn
 using Density = std::function<double(Vec3d wo, Vec3d wi)>;
 
-struct Made : JudgedSampler {
+struct Made : SamplerAdapter {
     Sample draw;
     Density p;
     Density f_value;
@@ -24,7 +24,7 @@ struct Made : JudgedSampler {
     Traits of;
     std::string name() const override { return "made"; }
     Traits traits() const override { return of; }
-    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const Vec3d w = draw(wo, u[i]);
             out[i] = dot(w, w) > 0 ? Draw{w, p(wo, w)} : Draw{{0, 0, 1}, 0};
@@ -40,7 +40,7 @@ struct Made : JudgedSampler {
     }
 };
 
-Vec3d cosine_draw(Vec3d, const Numbers& u) {
+Vec3d cosine_draw(Vec3d, const PrimarySample& u) {
     const math::SinCos phi = math::sincos(two_pi * u[1]);
     const double r = std::sqrt(u[0]);
     return {r * phi.cos, r * phi.sin, std::sqrt(1 - u[0])};
@@ -48,7 +48,7 @@ Vec3d cosine_draw(Vec3d, const Numbers& u) {
 double cosine_pdf(Vec3d, Vec3d w) { return std::max(w.z, 0.0) / pi; }
 
 /// cos^s about an axis.
-Vec3d power_draw(Vec3d axis, double s, const Numbers& u) {
+Vec3d power_draw(Vec3d axis, double s, const PrimarySample& u) {
     const double c = math::exp(math::log(1 - u[0]) / (s + 1)), r = std::sqrt(1 - c * c);
     const math::SinCos phi = math::sincos(two_pi * u[1]);
     return frame_about(axis).to_world({r * phi.cos, r * phi.sin, c});
@@ -66,9 +66,9 @@ struct Result {
 };
 Result judged(Made made, std::vector<std::pair<double, double>> directions = {{40, 30}}) {
     const auto subject = std::make_shared<Made>(std::move(made));
-    std::vector<Trial> trials;
+    std::vector<CheckCase> trials;
     for (const auto& [theta, azimuth] : directions) {
-        Trial t;
+        CheckCase t;
         t.arm = "made", t.wo = tilt(theta, azimuth), t.theta_deg = theta, t.azimuth_deg = azimuth, t.subject = subject;
         trials.push_back(t);
     }
@@ -102,12 +102,14 @@ TEST(CheckCauses, NamesAConstantWithItsMeaning) {
 TEST(CheckCauses, NamesAFactorThatIsMissingOrThereTwice) {
     expect_cause(judged(made(cosine_draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / pi : 0; })), "cos theta_i");
     expect_cause(judged(made(cosine_draw, [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * w.z; })), "cos theta_i");
-    const auto lobe = [](Vec3d o, const Numbers& u) { return power_draw(mirror(o), 20, u); };
+    const auto lobe = [](Vec3d o, const PrimarySample& u) { return power_draw(mirror(o), 20, u); };
     expect_cause(judged(made(lobe, [](Vec3d o, Vec3d w) { return 21 * power_pdf(mirror(o), 19, w) / 20; })), "w_i.R");
 }
 
 TEST(CheckCauses, NamesAMirroredFrame) {
-    const auto mirrored = [](Vec3d o, const Numbers& u) { return power_draw(mirror(Vec3d{o.x, -o.y, o.z}), 30, u); };
+    const auto mirrored = [](Vec3d o, const PrimarySample& u) {
+        return power_draw(mirror(Vec3d{o.x, -o.y, o.z}), 30, u);
+    };
     const Result r =
         judged(made(mirrored, [](Vec3d o, Vec3d w) { return power_pdf(mirror(o), 30, w); }), {{40, 50}, {60, 200}});
     ASSERT_TRUE(r.cause);
@@ -116,9 +118,10 @@ TEST(CheckCauses, NamesAMirroredFrame) {
 
 TEST(CheckCauses, MeasuresATurn) {
     const Vec3d axis = tilt(50, 20), off = tilt(53, 20);
-    const auto subject = std::make_shared<Made>(made([off](Vec3d, const Numbers& u) { return power_draw(off, 50, u); },
-        [axis](Vec3d, Vec3d w) { return power_pdf(axis, 50, w); }, 2, Traits::Asked::none));
-    Trial t;
+    const auto subject =
+        std::make_shared<Made>(made([off](Vec3d, const PrimarySample& u) { return power_draw(off, 50, u); },
+            [axis](Vec3d, Vec3d w) { return power_pdf(axis, 50, w); }, 2, Traits::Asked::none));
+    CheckCase t;
     t.arm = "made", t.wo = {0, 0, 1}, t.subject = subject;
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
@@ -136,7 +139,7 @@ TEST(CheckCauses, MeasuresATurn) {
 
 TEST(CheckCauses, NamesTheChooserOfLobes) {
     const Vec3d a = tilt(20, 0), b = tilt(60, 120);
-    const auto draw = [a, b](Vec3d, const Numbers& u) { return power_draw(u[2] < 0.3 ? a : b, 40, u); };
+    const auto draw = [a, b](Vec3d, const PrimarySample& u) { return power_draw(u[2] < 0.3 ? a : b, 40, u); };
     const Result r = judged(made(
         draw, [a, b](Vec3d, Vec3d w) { return (power_pdf(a, 40, w) + power_pdf(b, 40, w)) / 2; }, 3,
         Traits::Asked::none));
@@ -145,7 +148,7 @@ TEST(CheckCauses, NamesTheChooserOfLobes) {
 }
 
 TEST(CheckCauses, MeasuresALeak) {
-    const auto draw = [](Vec3d, const Numbers& u) {
+    const auto draw = [](Vec3d, const PrimarySample& u) {
         return u[2] < 0.02 ? from_chart({u[0], two_pi * u[1]}) : power_draw({0, 0, 1}, 50, u);
     };
     const Result r = judged(made(draw, [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 50, w); }, 3));
@@ -154,7 +157,7 @@ TEST(CheckCauses, MeasuresALeak) {
 }
 
 TEST(CheckCauses, SaysThatANumberHasNoEffect) {
-    const auto draw = [](Vec3d o, const Numbers& u) { return cosine_draw(o, Numbers{u[0], 0.3}); };
+    const auto draw = [](Vec3d o, const PrimarySample& u) { return cosine_draw(o, PrimarySample{u[0], 0.3}); };
     const Result r = judged(made(draw, cosine_pdf));
     expect_cause(r, "curve");
     EXPECT_NE(r.text().find("u2 has no effect"), std::string::npos);
@@ -162,7 +165,7 @@ TEST(CheckCauses, SaysThatANumberHasNoEffect) {
 
 TEST(CheckCauses, SaysWherePIsPositiveAndNothingIsDrawn) {
     const double density = 1 / (two_pi * 0.05);
-    const auto draw = [](Vec3d, const Numbers& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };
+    const auto draw = [](Vec3d, const PrimarySample& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };
     const Result r = judged(made(draw, [density](Vec3d, Vec3d) { return density; }, 2, Traits::Asked::none));
     expect_cause(r, "unreached");
 }

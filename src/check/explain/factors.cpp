@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "check/estimate/chart.h"
-#include "simd/frame.h"
+#include "math/simd/frame.h"
 
 namespace crescent::check {
 
@@ -70,9 +70,9 @@ void add_of_boundary(std::vector<Factor>& out, double below_over_above) {
     add("cos theta_i of what is refracted", [](Vec3d, Vec3d i) { return std::fabs(i.z); }, one);
 }
 
-void add_of_light(std::vector<Factor>& out, const TrialLight& light) {
+void add_of_light(std::vector<Factor>& out, const CaseLighting& light) {
     if (light.disks.size() != 1 || !light.lamps.empty()) return;
-    const TrialDisk disk = light.disks[0];
+    const CaseDiskLight disk = light.disks[0];
     out.push_back({"cosine at the light", [disk](Vec3d, Vec3d i) { return std::max(-dot(i, disk.normal), 0.0); }});
     out.push_back({"distance^2 / cosine at the light", [disk](Vec3d, Vec3d i) {
                        const std::optional<double> d = disk.distance(i);
@@ -88,7 +88,7 @@ Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta) {
     return size > 1e-12 ? sum * (1 / size) : Vec3d{0, 0, 1};
 }
 
-std::vector<Factor> factors_for(const Traits& traits, const TrialLight& light) {
+std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light) {
     const bool one_index = traits.eta && traits.eta->x == traits.eta->z;
     const double eta = one_index ? traits.eta->x : 1;
     const auto half = [eta](Vec3d o, Vec3d i) { return half_vector_of(o, i, o.z > 0 ? eta : 1 / eta); };

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "subjects/subject.h"
+#include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {
 
@@ -20,7 +20,7 @@ struct Factor {
 };
 
 /// What a sampler's traits and light allow; no index is assumed that is not declared.
-std::vector<Factor> factors_for(const Traits& traits, const TrialLight& light);
+std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light);
 
 /// The microfacet's normal that leads from wo to wi, or its opposite: of a reflection, or of a refraction, eta = index
 /// beyond over here (Walter et al. 2007, (13), (16)). Unit; n where the two are opposite.

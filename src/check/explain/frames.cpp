@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simd/frame.h"
+#include "math/simd/frame.h"
 
 namespace crescent::check {
 
@@ -56,7 +56,7 @@ constexpr NamedFrame named_frames[] = {{"the frame mirrored in y", [](Vec3d w) {
 enum Which { of_wo = 1, of_wi = 2, of_both = 3 };
 
 /// Where a draw counts as nothing because the pdf with it is 0, there is no density.
-void clear_where_zero(const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> density) {
+void clear_where_zero(const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> density) {
     std::vector<double> p(at.size());
     s.exact_pdf(technique, at, p);
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -68,7 +68,7 @@ Hypothesis in_frame(const NamedFrame& frame, int which, bool at_zero) {
     const char* suffix[] = {"", " for w_o", " for w_i", ""};
     h.name = std::string(frame.name) + suffix[frame.of_lights ? 0 : which];
     h.density = [frame, which, at_zero](
-                    const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
+                    const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
         std::vector<Pair> there(at.begin(), at.end());
         for (Pair& pair : there) {
             if (which & of_wo) pair.wo = frame.of(pair.wo);
@@ -200,7 +200,7 @@ Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& tur
     std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its turn
     for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].trial->wo, turns[k].by});
     h.density = [by, at_zero = places[0].draws_at_zero()](
-                    const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
+                    const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
         std::vector<Pair> there(at.begin(), at.end());
         for (Pair& pair : there) {
             const auto of = std::ranges::max_element(by, {}, [&](const auto& one) { return dot(one.first, pair.wo); });

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "subjects/forwarded.h"
+#include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {
 
@@ -12,10 +12,10 @@ namespace {
 
 constexpr double least_log = 14;  // nats below the median of p: what a draw where the density is 0 counts
 
-class Supposed : public ForwardedSampler {
+class Supposed : public ForwardingAdapter {
 public:
-    Supposed(std::shared_ptr<const JudgedSampler> inner, const Hypothesis& h, double constant)
-        : ForwardedSampler(std::move(inner)), h_(h), constant_(constant) {}
+    Supposed(std::shared_ptr<const SamplerAdapter> inner, const Hypothesis& h, double constant)
+        : ForwardingAdapter(std::move(inner)), h_(h), constant_(constant) {}
     void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { exact_pdf(t, at, out); }
     void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
         h_.density(inner(), t, at, out);
@@ -46,7 +46,7 @@ bool density_is_wrong(const CheckAt& c) {
 void draw_at(Place& place, std::uint32_t count) {
     Source source = place.source();
     const StreamKey key = place.key(7, Purpose::pairs, 1);
-    const std::vector<Numbers> u = first_numbers(key, count, source.traits);
+    const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(count);
     source.draw(u, draws);
     std::vector<Vec3d> w;
@@ -103,12 +103,12 @@ double Place::mean_log(std::span<const double> density) const {
 }
 
 std::vector<Place> places_of(
-    std::span<const Trial> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count) {
+    std::span<const CheckCase> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count) {
     std::vector<Place> wrong;
     for (std::size_t k = 0; k < outcome.at.size(); ++k)
         for (const CheckAt& c : outcome.at[k])
             if (density_is_wrong(c) && c.plan && c.plan->drawn > 0) {
-                const Trial& t = trials[outcome.trials[k]];
+                const CheckCase& t = trials[outcome.trials[k]];
                 wrong.push_back({&t, &c, outcome.trials[k], t.subject->traits(), {}, {}, {}, 0});
             }
     // Spread over the list, which goes from n to grazing and below.

@@ -21,7 +21,7 @@ MassRatio mass_ratio(const CheckAt& c);
 
 /// One technique at one w_o that was found wrong, with fresh draws and p there.
 struct Place {
-    const Trial* trial = nullptr;
+    const CheckCase* trial = nullptr;
     const CheckAt* at = nullptr;
     std::size_t number = 0;  // of the trial in the call
     Traits traits{};
@@ -31,7 +31,7 @@ struct Place {
     double of = 0;                // draws in all
     /// Whether draws where p is 0 count as draws, or as nothing because the pdf with them is 0 too.
     bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
-    const JudgedSampler& subject() const { return *trial->subject; }
+    const SamplerAdapter& subject() const { return *trial->subject; }
     int technique() const { return at->technique; }
     Source source() const { return {subject(), technique(), trial->wo, trial->light}; }
     /// Streams of the explanation: each has a seed of its own.
@@ -47,14 +47,14 @@ struct Place {
 
 /// Up to `most` of those where a question on the density failed, the plainest first; w_o that differ most.
 std::vector<Place> places_of(
-    std::span<const Trial> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
+    std::span<const CheckCase> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
 
 struct Hypothesis {
     std::string name;    // of the cause
     std::string same{};  // what else would say the same, in brackets
     int place = 0;       // in its list, the plainest first
     /// The supposed density of a subject's technique, 1/sr.
-    std::function<void(const JudgedSampler&, int technique, std::span<const Pair>, std::span<double>)> density;
+    std::function<void(const SamplerAdapter&, int technique, std::span<const Pair>, std::span<double>)> density;
     /// By place: what that is multiplied by; empty: 1. free: it is set so that the masses agree.
     std::vector<double> constants{};
     bool free = false;

@@ -82,7 +82,7 @@ Hypothesis times(const Factor& f, double b) {
     Hypothesis h;
     h.name = f.name;
     h.free = true;
-    h.density = [f, b](const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
+    h.density = [f, b](const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
         s.exact_pdf(technique, at, out);
         for (std::size_t i = 0; i < at.size(); ++i)
             if (out[i] > 0) out[i] *= power_of(f.value(at[i].wo, at[i].wi), b);
@@ -128,7 +128,7 @@ std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) 
     out.hypothesis.name = "p";
     out.hypothesis.free = true;
     out.hypothesis.constants = f.constants;
-    out.hypothesis.density = [b](const JudgedSampler& s, int technique, std::span<const Pair> at,
+    out.hypothesis.density = [b](const SamplerAdapter& s, int technique, std::span<const Pair> at,
                                  std::span<double> to) {
         s.exact_pdf(technique, at, to);
         for (double& v : to) v = v > 0 ? v * power_of(v, b) : 0;

@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "check/constants.h"
-#include "stats/distributions.h"
-#include "stats/least_squares.h"
+#include "math/least_squares.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 
@@ -41,9 +41,9 @@ struct NumberStep {
 };
 
 /// Halves each step towards the side that moves more, and drops those that are smooth.
-void close_in(Source& source, int number, std::span<const Numbers> others, std::vector<NumberStep>& all) {
+void close_in(Source& source, int number, std::span<const PrimarySample> others, std::vector<NumberStep>& all) {
     for (int k = 0; k < halvings && !all.empty(); ++k) {
-        std::vector<Numbers> u;
+        std::vector<PrimarySample> u;
         for (const NumberStep& s : all) u.push_back(others[s.of]), u.back()[number] = (s.from + s.to) / 2;
         std::vector<Draw> middle(u.size());
         source.draw(u, middle);
@@ -57,10 +57,10 @@ void close_in(Source& source, int number, std::span<const Numbers> others, std::
     }
 }
 
-std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const Numbers> others) {
+std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const PrimarySample> others) {
     std::vector<NumberStep> out;
     for (std::size_t i = 0; i < others.size(); ++i) {
-        std::vector<Numbers> u(scanned, others[i]);
+        std::vector<PrimarySample> u(scanned, others[i]);
         for (std::size_t k = 0; k < scanned; ++k)
             u[k][number] = std::clamp(static_cast<double>(k) / (scanned - 1), steep_rim, 1 - steep_rim);
         std::vector<Draw> w(u.size());
@@ -105,7 +105,7 @@ LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, st
     StreamKey key{13, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()), 8,
         Purpose::draws, static_cast<std::uint16_t>(lobe)};
     for (std::uint32_t from = 0; from < count; from += batch_size) {
-        std::vector<Numbers> u(std::min(batch_size, count - from));
+        std::vector<PrimarySample> u(std::min(batch_size, count - from));
         for (std::uint32_t i = 0; i < u.size(); ++i) {
             u[i] = numbers_at(key, from + i, source.numbers(), source.single());
             u[i][by.number] = by.lobes[lobe].from + by.lobes[lobe].share() * u[i][by.number];
@@ -248,10 +248,10 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
 }  // namespace
 
 std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
-    if (source.traits.own_random || !source.subject.draws_at_will() || source.traits.numbers < 2) return {};
-    std::vector<Numbers> others;
+    if (source.traits.own_random || !source.subject.can_draw() || source.traits.numbers < 2) return {};
+    std::vector<PrimarySample> others;
     for (std::uint32_t i = 0; others.size() < settings_of_others && i < 1000; ++i) {
-        const Numbers u = numbers_at(key, i, source.numbers(), source.single());
+        const PrimarySample u = numbers_at(key, i, source.numbers(), source.single());
         if (std::min(u.x, u.y) > 0.1 && std::max(u.x, u.y) < 0.9) others.push_back(u);
     }
     std::optional<LobeChooser> out;

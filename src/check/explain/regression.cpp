@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "math/functions.h"
-#include "stats/least_squares.h"
+#include "math/least_squares.h"
 
 namespace crescent::check {
 

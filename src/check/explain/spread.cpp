@@ -83,7 +83,7 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
     refine_by_slope(places, even, share, out.error);
     out.share = share;
     out.hypothesis.name = "leak";
-    out.hypothesis.density = [share, even, whole, at_zero](const JudgedSampler& s, int technique,
+    out.hypothesis.density = [share, even, whole, at_zero](const SamplerAdapter& s, int technique,
                                  std::span<const Pair> at, std::span<double> to) {
         s.exact_pdf(technique, at, to);
         for (std::size_t i = 0; i < at.size(); ++i)

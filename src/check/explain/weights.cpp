@@ -30,10 +30,10 @@ struct Compared {
 
 ByChannel channels_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
-std::vector<Compared> compared_at(const Trial& trial, int technique, std::uint16_t place) {
+std::vector<Compared> compared_at(const CheckCase& trial, int technique, std::uint16_t place) {
     Source source(*trial.subject, technique, trial.wo, trial.light);
     const StreamKey key{17, place, static_cast<std::uint8_t>(technique), 8, Purpose::light, 1};
-    const std::vector<Numbers> u = first_numbers(key, draws_to_compare, source.traits);
+    const std::vector<PrimarySample> u = first_numbers(key, draws_to_compare, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     std::vector<Vec3d> w;
@@ -97,7 +97,7 @@ std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
     return {};
 }
 
-std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const Trial& trial, const char* given,
+std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const CheckCase& trial, const char* given,
     const char* due, const char* verdict) {
     const std::vector<Factor> factors = factors_for(trial.subject->traits(), trial.light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
@@ -111,8 +111,8 @@ void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, do
 }
 
 /// f(a, b) with its eta^2 over f(b, a), for pairs across the surface and on one side.
-std::vector<KnownRatio> reciprocity_ratios(const Trial& trial) {
-    const JudgedSampler& s = *trial.subject;
+std::vector<KnownRatio> reciprocity_ratios(const CheckCase& trial) {
+    const SamplerAdapter& s = *trial.subject;
     const Traits traits = s.traits();
     Stream stream({19, 0, 0, 8, Purpose::pairs, 1});
     std::vector<Pair> there, back;
@@ -133,7 +133,7 @@ std::vector<KnownRatio> reciprocity_ratios(const Trial& trial) {
 }
 
 /// eta^2 seen from w_o's side, and the cosines, as reciprocity shows them: once for each direction.
-std::optional<Cause> reciprocity_cause(const Trial& trial) {
+std::optional<Cause> reciprocity_cause(const CheckCase& trial) {
     const Traits traits = trial.subject->traits();
     const std::vector<KnownRatio> ratios = reciprocity_ratios(trial);
     std::vector<Factor> factors = {{"cos theta_i", [](Vec3d o, Vec3d i) { return std::fabs(i.z / o.z); }}};
@@ -166,9 +166,9 @@ std::string ratio_sentence(const char* given, const char* due, const RatioCause&
         std::fabs(c.constant - 1) < agrees_to ? "" : " and " + constant);
 }
 
-std::optional<Cause> weight_cause(std::span<const Trial> trials, const CheckOutcome& outcome) {
+std::optional<Cause> weight_cause(std::span<const CheckCase> trials, const CheckOutcome& outcome) {
     std::vector<Compared> all;
-    const Trial* trial = nullptr;
+    const CheckCase* trial = nullptr;
     std::size_t directions = 0;
     for (std::size_t k = 0; k < outcome.at.size() && directions < most_directions; ++k)
         for (const CheckAt& c : outcome.at[k]) {

@@ -13,7 +13,7 @@
 #include "check/estimate/chart.h"
 #include "check/estimate/source.h"
 #include "check/estimate/stream.h"
-#include "stats/distributions.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 
@@ -179,7 +179,7 @@ void describe_map(const std::vector<Vec3d>& w, Description& d) {
     for (double h : hits) d.map.push_back(share_interval(h, static_cast<double>(d.draws)));
 }
 
-Description describe_one(const Trial& trial, int technique, const DescribeSettings& settings, std::uint16_t place) {
+Description describe_one(const CheckCase& trial, int technique, const DescribeSettings& settings, std::uint16_t place) {
     Description d;
     d.arm = trial.arm, d.trial = trial.text();
     d.technique = technique, d.techniques = trial.subject->techniques();
@@ -188,7 +188,7 @@ Description describe_one(const Trial& trial, int technique, const DescribeSettin
     const std::uint32_t n =
         source.available(key, trial.subject->limited() ? settings.draws_of_limited : settings.draws);
     std::vector<Vec3d> w;
-    std::vector<Numbers> u;
+    std::vector<PrimarySample> u;
     std::vector<Draw> draws;
     double above = 0, delta = 0, nothing = 0;
     for (std::uint32_t from = 0; from < n; from += batch_size) {
@@ -217,7 +217,7 @@ Description describe_one(const Trial& trial, int technique, const DescribeSettin
 }  // namespace
 
 std::vector<Description> describe(
-    std::span<const Trial> trials, const DescribeSettings& settings, ProgressMonitor& monitor) {
+    std::span<const CheckCase> trials, const DescribeSettings& settings, ProgressMonitor& monitor) {
     std::vector<std::pair<std::size_t, int>> jobs;
     for (std::size_t i = 0; i < trials.size(); ++i)
         for (int t = 0; !trials[i].baseline && t < trials[i].subject->techniques(); ++t) jobs.emplace_back(i, t);
@@ -229,7 +229,7 @@ std::vector<Description> describe(
         out[j] = describe_one(trials[trial], technique, settings, static_cast<std::uint16_t>(trial));
         monitor.advance(1);
     };
-    const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
+    const bool serial = std::ranges::any_of(trials, [](const CheckCase& t) { return t.subject->serial(); });
     for_each_index(serial, jobs.size(), run);
     return out;
 }

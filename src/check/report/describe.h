@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress_monitor.h"
-#include "subjects/subject.h"
+#include "base/progress.h"
+#include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {
 
@@ -48,7 +48,7 @@ struct DescribeSettings {
 
 /// One for each technique of each trial; baselines are left out.
 std::vector<Description> describe(
-    std::span<const Trial> trials, const DescribeSettings& settings, ProgressMonitor& monitor);
+    std::span<const CheckCase> trials, const DescribeSettings& settings, ProgressMonitor& monitor);
 
 /// For a terminal of 80 columns.
 std::string description_text(const Description& d);

@@ -10,7 +10,7 @@ namespace crescent::check {
 namespace {
 
 /// Even over a cone of half angle `angle` about `axis`; a share of the draws is a delta part, one is nothing.
-struct ConeOfDraws : JudgedSampler {
+struct ConeOfDraws : SamplerAdapter {
     double angle = 0.5, delta = 0, nothing = 0;
     bool cosine = false, below = false;
     std::string name() const override { return "cone"; }
@@ -19,7 +19,7 @@ struct ConeOfDraws : JudgedSampler {
         t.numbers = 3, t.delta = delta > 0;
         return t;
     }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double z = cosine ? std::sqrt(u[i].x) : 1 - (1 - std::cos(angle)) * u[i].x, r = std::sqrt(1 - z * z);
             const Vec3d w{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z};
@@ -35,7 +35,7 @@ struct ConeOfDraws : JudgedSampler {
 };
 
 Description described(const ConeOfDraws& s) {
-    Trial t;
+    CheckCase t;
     t.arm = "cone", t.wo = {0, 0, 1}, t.subject = std::make_shared<ConeOfDraws>(s);
     ProgressMonitor monitor;
     return describe({&t, 1}, {}, monitor).at(0);

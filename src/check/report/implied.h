@@ -3,7 +3,7 @@
 #pragma once
 
 #include "check/decide/check_at.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 

@@ -15,7 +15,7 @@ namespace {
 
 bool comes_weighted(const CheckAt& c) { return c.observations.weighed > 0 && c.observations.weightless == 0; }
 
-void note_density(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
+void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     note_implied_density(c, v);
     v.state = State::skipped;
     const bool of_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
@@ -27,7 +27,7 @@ void note_density(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
                                  : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
 }
 
-void note_mean(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
+void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     const bool asked = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
     if (asked) return;
     if (c.observations.weightless > 0) {
@@ -57,12 +57,12 @@ void note_rows(const CheckAt& c, Verdict& v) {
 
 }  // namespace
 
-void note_limits(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
+void note_limits(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     if (v.state == State::wrong) return;
     if (v.name == "density" && !sampler.traits().has_pdf) note_density(sampler, c, v);
     if (v.name == "mean" && sampler.has_f()) note_mean(sampler, c, v);
     if (v.name == "valid") v.say += text_of(c.scatter);
-    if (!sampler.draws_at_will()) note_rows(c, v);
+    if (!sampler.can_draw()) note_rows(c, v);
 }
 
 }  // namespace crescent::check

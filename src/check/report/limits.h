@@ -3,11 +3,11 @@
 #pragma once
 
 #include "check/decide/check_at.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 
 /// Completes a verdict of which nothing is wrong.
-void note_limits(const JudgedSampler& sampler, const CheckAt& c, Verdict& v);
+void note_limits(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v);
 
 }  // namespace crescent::check

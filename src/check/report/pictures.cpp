@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "math/functions.h"
-#include "simd/scalar.h"
+#include "math/simd/scalar.h"
 
 namespace crescent::check {
 
@@ -136,13 +136,13 @@ double degrees_from(double seam, double turned) {
 
 }  // namespace
 
-std::optional<BinMap> bin_map(const Trial& trial, const CheckAt& c) {
+std::optional<BinHistogram> bin_map(const CheckCase& trial, const CheckAt& c) {
     if (!c.plan || c.observations.counts.empty()) return {};
     const bool has_density = trial.subject->traits().has_pdf;
     const std::vector<LeafDraws> leaves = leaf_draws(c, has_density);
     if (leaves.empty()) return {};
     const MapEdges edges = map_edges(leaves, c.plan->middle);
-    BinMap out;
+    BinHistogram out;
     out.arm = trial.arm, out.trial = trial.text();
     out.coordinates = "theta from n and phi about it";
     if (trial.subject->techniques() > 1) out.coordinates += fmt::format(", technique {}", c.technique + 1);
@@ -173,9 +173,9 @@ std::optional<BinMap> bin_map(const Trial& trial, const CheckAt& c) {
     return out;
 }
 
-WeightPicture weight_picture(const Trial& trial, std::span<const double> x, const WeightTail& tail) {
+WeightHistogram weight_picture(const CheckCase& trial, std::span<const double> x, const WeightTail& tail) {
     constexpr int bins = 48;
-    WeightPicture out;
+    WeightHistogram out;
     out.arm = trial.arm, out.trial = trial.text();
     double low = 1e300, high = 0;
     for (double v : x) {
@@ -201,7 +201,7 @@ WeightPicture weight_picture(const Trial& trial, std::span<const double> x, cons
     return out;
 }
 
-void add_rose(const Trial& trial, WeightPicture& to) {
+void add_rose(const CheckCase& trial, WeightHistogram& to) {
     Source source(*trial.subject, 0, trial.wo, trial.light);
     if (!source.has_density() || !source.has_f()) return;
     std::vector<Vec3d> wi;

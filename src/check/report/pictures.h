@@ -5,17 +5,17 @@
 #include <span>
 
 #include "check/decide/tail.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 
 /// Draws of one technique by bins of theta and phi about n, from the leaves of its tree: finer where most draws are.
 /// Both sides count h = q / (p + q), in draws. Without a density what the draws imply, in 1/sr. None if nothing was
 /// drawn.
-std::optional<BinMap> bin_map(const Trial& trial, const CheckAt& c);
+std::optional<BinHistogram> bin_map(const CheckCase& trial, const CheckAt& c);
 /// Histogram of the weights with the fitted tail. x: of all techniques together.
-WeightPicture weight_picture(const Trial& trial, std::span<const double> x, const WeightTail& tail);
+WeightHistogram weight_picture(const CheckCase& trial, std::span<const double> x, const WeightTail& tail);
 /// Adds p and f L cos along the plane of incidence, which costs evaluations of both at 179 directions.
-void add_rose(const Trial& trial, WeightPicture& to);
+void add_rose(const CheckCase& trial, WeightHistogram& to);
 
 }  // namespace crescent::check

@@ -4,18 +4,18 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-#include "subjects/list.h"
+#include "check/sources/cases.h"
 
 namespace crescent::check {
 namespace {
 
 struct MappedTrial {
-    Trial trial;
+    CheckCase trial;
     CheckAt at;
 };
 MappedTrial mapped(const char* arm, double theta) {
-    MappedTrial out{trial_on(trial_setup(lobe_named("ggx"), false, "fill", 0.1), theta, 120, arm, nullptr), {}};
-    out.trial.subject = arm_on(arm, out.trial);
+    MappedTrial out{make_case_on(case_setup(lobe_named("ggx"), false, "fill", 0.1), theta, 120, arm, nullptr), {}};
+    out.trial.subject = sampler_on(arm, out.trial);
     out.at = check_sampler_at(*out.trial.subject, 0, out.trial.wo, {out.trial.light}, CheckBudget::limited(), 1);
     return out;
 }
@@ -24,7 +24,7 @@ double sum_of(const std::vector<double>& v) { return std::accumulate(v.begin(), 
 TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
     for (double theta : {0.0, 60.0}) {
         const MappedTrial m = mapped("ggx-vndf", theta);
-        const std::optional<BinMap> map = bin_map(m.trial, m.at);
+        const std::optional<BinHistogram> map = bin_map(m.trial, m.at);
         ASSERT_TRUE(map);
         const auto bins = static_cast<std::size_t>(map->rings * map->sectors);
         ASSERT_EQ(map->observed.size(), bins);
@@ -46,7 +46,7 @@ TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
 TEST(PicturesOfACheck, ShowTheWeightsAndTheTail) {
     const MappedTrial m = mapped("uniform", 30);
     const std::vector<double> x = weights_of({&m.at, 1});
-    WeightPicture w = weight_picture(m.trial, x, tail_of({&m.at, 1}));
+    WeightHistogram w = weight_picture(m.trial, x, tail_of({&m.at, 1}));
     EXPECT_EQ(sum_of(w.counts) + w.zeros, static_cast<double>(x.size()));
     EXPECT_EQ(w.log10_edges.size(), w.counts.size() + 1);
     add_rose(m.trial, w);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double interval = 1.96;  // standard errors: 95 %
 
-std::string u_text(const Numbers& u, int count) {
+std::string u_text(const PrimarySample& u, int count) {
     std::string out = "(";
     for (int k = 0; k < count; ++k) out += fmt::format("{}{:.6g}", k ? ", " : "", u[k]);
     return out + ")";

@@ -10,8 +10,8 @@
 #include "check/decide/tail.h"
 #include "check/report/limits.h"
 #include "check/report/sentences.h"
+#include "check/verdict_names.h"
 #include "check/verdicts/kinds.h"
-#include "judgements/all.h"
 
 namespace crescent::check {
 
@@ -88,10 +88,10 @@ void place(const Cause& cause, std::vector<Verdict>& all) {
 }  // namespace
 
 std::vector<Verdict> verdicts_of(
-    std::span<const Trial> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause) {
+    std::span<const CheckCase> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause) {
     std::vector<Verdict> out;
     for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
-        const Trial& trial = trials[outcome.trials[k]];
+        const CheckCase& trial = trials[outcome.trials[k]];
         for (std::size_t n = 0; n < verdict_names.size(); ++n) {
             const std::string_view name = verdict_names[n];
             const VerdictKind& kind = *verdict_kinds[n];

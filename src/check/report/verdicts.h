@@ -7,12 +7,12 @@
 
 #include "check/decide/check_sampler.h"
 #include "check/explain/causes.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 
 /// The verdicts of one sampler, for each of its w_o in the order of the list of verdicts.
 std::vector<Verdict> verdicts_of(
-    std::span<const Trial> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause);
+    std::span<const CheckCase> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause);
 
 }  // namespace crescent::check

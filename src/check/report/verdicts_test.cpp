@@ -6,11 +6,11 @@
 namespace crescent::check {
 namespace {
 
-struct Uniform : JudgedSampler {
+struct Uniform : SamplerAdapter {
     double factor = 1;
     explicit Uniform(double by) : factor(by) {}
     std::string name() const override { return "uniform"; }
-    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) out[i] = {from_chart({u[i].x, two_pi * u[i].y}), factor / two_pi};
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
@@ -19,7 +19,7 @@ struct Uniform : JudgedSampler {
 };
 
 std::vector<Verdict> verdicts(double factor) {
-    Trial t;
+    CheckCase t;
     t.arm = "uniform", t.wo = {0, 0, 1}, t.subject = std::make_shared<Uniform>(factor);
     CheckSettings settings;
     settings.budget = CheckBudget::limited();

@@ -5,13 +5,13 @@ namespace crescent::check::kinds {
 
 namespace {
 
-bool always(const JudgedSampler&) { return true; }
-bool never(const JudgedSampler&) { return false; }
-bool with_pdf(const JudgedSampler& s) { return s.traits().has_pdf; }
-bool with_pdf_and_f(const JudgedSampler& s) { return s.traits().has_pdf && s.has_f(); }
-bool with_f(const JudgedSampler& s) { return s.has_f(); }
-bool with_power(const JudgedSampler& s) { return s.has_f() || s.traits().delta; }
-bool with_weights(const JudgedSampler& s) { return s.has_drawn_f(); }
+bool always(const SamplerAdapter&) { return true; }
+bool never(const SamplerAdapter&) { return false; }
+bool with_pdf(const SamplerAdapter& s) { return s.traits().has_pdf; }
+bool with_pdf_and_f(const SamplerAdapter& s) { return s.traits().has_pdf && s.has_f(); }
+bool with_f(const SamplerAdapter& s) { return s.has_f(); }
+bool with_power(const SamplerAdapter& s) { return s.has_f() || s.traits().delta; }
+bool with_weights(const SamplerAdapter& s) { return s.has_drawn_f(); }
 
 }  // namespace
 

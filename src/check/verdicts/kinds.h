@@ -5,15 +5,15 @@
 #include <array>
 
 #include "check/decide/check_at.h"
-#include "judgements/all.h"
-#include "judgements/verdict.h"
+#include "check/verdict.h"
+#include "check/verdict_names.h"
 
 namespace crescent::check {
 
 /// One verdict of the list.
 struct VerdictKind {
     /// Whether a sampler provides what the verdict needs; else it is skipped.
-    bool (*applies)(const JudgedSampler&);
+    bool (*applies)(const SamplerAdapter&);
     const char* needs = "";  // said of a verdict that is skipped
     /// Adds to the verdict at one w_o what no family says; null: nothing.
     void (*add)(const CheckAt&, Verdict&) = nullptr;

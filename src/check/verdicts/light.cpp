@@ -6,7 +6,7 @@
 #include "check/constants.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
-#include "stats/tail.h"
+#include "math/tail.h"
 
 namespace crescent::check {
 

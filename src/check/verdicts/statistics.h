@@ -6,7 +6,7 @@
 
 #include "check/constants.h"
 #include "math/functions.h"
-#include "stats/distributions.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 

@@ -46,8 +46,8 @@ struct Rectangle {
     Figure seen_from(Vec3d) const { return body(); }
     double disk_area() const { return std::sqrt(dot(edge_u, edge_u) * dot(edge_v, edge_v)) / pi; }
 
-    /// a: to the centre, m; b, c: the edges, unit. Numbers: half the edges' lengths; the solid angle, 0 where it is
-    /// under 1e-4 sr; D(x0); b0; b0 + b1; 1 where it shines on x.
+    /// a: to the centre, m; b, c: the edges, unit. PrimarySample: half the edges' lengths; the solid angle, 0 where it
+    /// is under 1e-4 sr; D(x0); b0; b0 + b1; 1 where it shines on x.
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const double u = std::sqrt(dot(edge_u, edge_u)), v = std::sqrt(dot(edge_v, edge_v));
         const Vec3d d = body().middle() - x, b = edge_u * (1 / u), c = edge_v * (1 / v);

@@ -33,8 +33,9 @@ struct Sphere {
     }
     double disk_area() const { return sqr(radius); }
 
-    /// a: to the centre, m. Numbers: the radius; of the cone 1 - sin, 1 - cos; 1 where it shines on x; the distances to
-    /// the centre and to the nearest point, which of a large ball is not their difference in single precision.
+    /// a: to the centre, m. PrimarySample: the radius; of the cone 1 - sin, 1 - cos; 1 where it shines on x; the
+    /// distances to the centre and to the nearest point, which of a large ball is not their difference in single
+    /// precision.
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const Vec3d d = center - x;
         const double far = std::sqrt(dot(d, d)), gap = std::max(far - radius, 0.0);

@@ -1,0 +1,165 @@
+// The command line: its commands, what is said of a wrong call, and the manual that --help prints. The flags of the
+// larger commands are in grammar_*.cpp.
+#include "arguments.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+#include "crescent/crescent.h"
+#include "grammar.h"
+
+namespace crescent::cli {
+
+std::string told(const std::string& text) {
+    return text.find_first_not_of(" \t") == std::string::npos ? "is empty" : "";
+}
+
+std::string seconds(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end != text.c_str() && *end == 0 && value >= 0 && value <= 1e9 ? "" : "expected seconds, 0 to 1e9";
+}
+
+CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
+    const std::string range = fmt::format("{} to {}", low, high);
+    const auto wrong = [=](std::string& text) {
+        std::int64_t value = 0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool good = error == std::errc{} && stop == text.data() + text.size() && value >= low && value <= high;
+        return good ? std::string() : fmt::format("expected a whole number from {}, not '{}'", range, printable(text));
+    };
+    return {wrong, range, ""};
+}
+
+CLI::Validator number(double low, double high) {
+    const std::string range = fmt::format("{} to {}", low, high);
+    const auto wrong = [=](std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool good = end != text.c_str() && *end == 0 && value >= low && value <= high;
+        return good ? std::string() : fmt::format("expected a number from {}, not '{}'", range, printable(text));
+    };
+    return {wrong, range, ""};
+}
+
+void timeout(CLI::App& command, double& to) {
+    command.add_option("--timeout", to, "limit of one answer; programs 10, plugins 60")
+        ->type_name("SECONDS")
+        ->check(number(0.01, 1e6));
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    const auto wrong = [=](std::string& text) {
+        return std::ranges::find(words, text) != words.end() ? std::string() : expected_one_of(words, text);
+    };
+    return {wrong, "", ""};
+}
+
+namespace {
+
+constexpr const char* footer = R"(Exit codes: 0 all holds; 1 an assertion fails (check: wrong); 2 wrong command
+line or experiment file; 3 an output cannot be written, a part is missing or
+(check) the sampler broke off; 4 inconclusive (check); 130 interrupted.
+
+  crescent run experiments/gallery.toml      the published experiment
+  crescent run experiments/gallery.toml --set sphere.s=64 --set seed=7
+  crescent list                              what an experiment can name
+  crescent schema                            every key of an experiment file)";
+
+void add_list(CLI::App& app, Work& work) {
+    std::shared_ptr<ListFlags> f;
+    CLI::App* c = command(app, work, "list", "What an experiment can name.", list, f);
+    c->add_option(
+         "TOPIC", f->what, "arms, shapes, lights, brdfs, plates, meters, verdicts, isas or devices; without it, all")
+        ->type_name("");
+}
+
+void add_schema(CLI::App& app, Work& work) {
+    std::shared_ptr<SchemaFlags> f;
+    CLI::App* c = command(
+        app, work, "schema", "Every key of an experiment file: type, unit, range, default, meaning.", schema, f);
+    c->add_flag("--json", f->json, "as a JSON Schema");
+}
+
+void add_version(CLI::App& app, Work& work) {
+    std::shared_ptr<VersionFlags> f;
+    command(app, work, "version", "Version, commit and compiler.", version, f);
+    app.add_flag_callback("--version", [] { throw CLI::CallForVersion("", 0); }, "Version, commit and compiler.");
+}
+
+/// Commands where none was chosen, and the flags of what was chosen.
+std::vector<std::string> words(const CLI::App& command, bool flags = true) {
+    std::vector<std::string> out;
+    for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+        out.push_back(sub->get_name());
+    if (!flags) return out;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) out.push_back("--" + name);
+    return out;
+}
+
+/// What is wrong with a word that a command does not take.
+std::string unexpected(const CLI::App& command, const std::string& word) {
+    const std::string shown = "'" + printable(word) + "'";
+    const std::string close = did_you_mean(word.substr(0, word.find('=')), words(command));
+    if (word.starts_with('-')) return "no flag " + shown + close;
+    if (!command.get_subcommands([](const CLI::App*) { return true; }).empty())
+        return fmt::format("no command {}: expected one of {}{}", shown, fmt::join(words(command, false), ", "), close);
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_positional())
+            return fmt::format("takes one {}, and {} is a second one", option->get_name(true), shown);
+    return fmt::format("takes flags alone, and {} is none{}", shown, close);
+}
+
+/// The parser's complaint in two lines, with the nearest valid word where a word is unknown.
+std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
+    const auto used = app.get_subcommands();
+    const CLI::App& command = used.empty() ? app : *used.front();
+    const std::string name = used.empty() ? "crescent" : "crescent " + command.get_name();
+    std::string text = name + ": " + error.what();
+    const std::vector<std::string> extra = app.remaining(true);
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extra.empty()) {
+        text = name + ": " + unexpected(command, extra.front());
+    }
+    return text + "\n`" + name + " --help` says what it takes\n";
+}
+
+Work answer(std::FILE* to, const std::string& text, int code) {
+    return [=] {
+        if (to == stdout) print(text);
+        else print_to_stderr(text);
+        return code;
+    };
+}
+
+}  // namespace
+
+std::function<int()> parse(int argc, char** argv) {
+    CLI::App app("A bench for importance samplers: it shows where the noise goes.", "crescent");
+    app.footer(footer);
+    app.get_formatter()->column_width(28);
+    app.require_subcommand(0, 1);
+    Work work;
+    add_run(app, work);
+    add_join(app, work);
+    add_film(app, work);
+    add_list(app, work);
+    add_schema(app, work);
+    add_check(app, work);
+    add_compare(app, work);
+    add_version(app, work);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) { return answer(stdout, app.help(), held); } catch (const CLI::CallForVersion&) {
+        return [] { return version({}); };
+    } catch (const CLI::ParseError& e) { return answer(stderr, misuse(app, e), misused); }
+    return work ? work : answer(stderr, app.help(), misused);
+}
+
+}  // namespace crescent::cli

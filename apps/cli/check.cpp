@@ -1,0 +1,370 @@
+// `crescent check`: samplers judged by themselves.
+#include "check.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "commands.h"
+#include "crescent/crescent.h"
+#include "progress.h"
+#include "signals.h"
+
+namespace crescent::cli {
+
+namespace {
+
+double number_in(const std::string& text, const std::string& what) {
+    double v = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty())
+        throw InputError({what, 0, 0}, "expected a number, not '" + text + "'");
+    return v;
+}
+
+Settings settings_of(const CheckFlags& flags) {
+    Settings out;
+    const std::map<std::string, std::pair<double, double>> ranges = {
+        {"s", {1e-3, 1e6}}, {"alpha", {1e-4, 1}}, {"rho_d", {0, 1}}, {"rho_s", {0, 1}}};
+    for (const std::string& word : flags.settings) {
+        const std::size_t equals = word.find('=');
+        const std::string key = word.substr(0, equals);
+        if (equals == std::string::npos || !ranges.count(key))
+            throw InputError({"--set " + word, 0, 0},
+                "expected s=, alpha=, rho_d= or rho_s= and a number" +
+                    did_you_mean(key, {"s", "alpha", "rho_d", "rho_s"}));
+        const double v = number_in(word.substr(equals + 1), "--set " + word);
+        const auto [low, high] = ranges.at(key);
+        if (!(v >= low && v <= high))
+            throw InputError(
+                {"--set " + word, 0, 0}, key + " is at least " + shortest(low) + " and at most " + shortest(high));
+        out[key] = v;
+    }
+    return out;
+}
+
+/// x,y,z, or degrees from the normal and about it; on either side of the surface.
+Vec3d direction_of(const std::string& text) {
+    std::vector<double> v;
+    std::string rest = text;
+    for (std::size_t comma = 0; comma != std::string::npos && v.size() < 4;) {
+        comma = rest.find(',');
+        v.push_back(number_in(rest.substr(0, comma), "--wo " + text));
+        rest = comma == std::string::npos ? "" : rest.substr(comma + 1);
+    }
+    if (v.size() > 3)
+        throw InputError({"--wo " + text, 0, 0}, "expected x,y,z, or degrees from the normal and about it: 60,250");
+    if (v.size() < 3) {
+        if (!(v[0] >= 0 && v[0] <= 180 && v[0] != 90))
+            throw InputError({"--wo " + text, 0, 0}, "expected 0 to 180 degrees from the normal, and not 90");
+        return tilt(v[0], v.size() > 1 ? v[1] : 0);
+    }
+    const Vec3d w{v[0], v[1], v[2]};
+    const double size = length(w);
+    if (!(size > 0.99 && size < 1.01) || w.z == 0)
+        throw InputError({"--wo " + text, 0, 0}, "expected a unit vector off the horizon, z not 0");
+    return normalize(w);
+}
+
+/// A w_o under the surface is for a sampler that answers for both sides alone.
+void check_sides(const CheckFlags& flags, const Traits& traits) {
+    for (const std::string& text : flags.wo)
+        if (direction_of(text).z < 0 && traits.wo != Traits::Asked::both)
+            throw InputError({"--wo " + text, 0, 0},
+                "is under the surface, and the sampler does not answer there: 0 to less than 90 degrees from the "
+                "normal, z > 0 (a program that does says wo=both)");
+}
+
+/// The w_o of --wo; empty: the list's own.
+Grid grid_of(const CheckFlags& flags) {
+    Grid out;
+    for (const std::string& text : flags.wo) {
+        const Vec3d w = direction_of(text);
+        const auto rounded = [](double v) { return std::round(v * 1e9) / 1e9; };  // 60 for 60, not 60.00000000000001
+        const double theta = rounded(math::acos(std::clamp(w.z, -1.0, 1.0)) * 180 / pi),
+                     turn = rounded(math::atan2(w.y, w.x) * 180 / pi);
+        out.emplace_back(theta, theta == 0 ? 0 : turn < 0 ? turn + 360 : turn);
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string shortest(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", v);
+    return text;
+}
+
+TestSettings test_settings_of(const CheckFlags& flags) {
+    TestSettings r = flags.full ? TestSettings::thorough() : TestSettings::quick();
+    if (!(flags.alpha > 0 && flags.alpha < 1)) throw InputError({"--alpha", 0, 0}, "is between 0 and 1");
+    r.alpha = flags.alpha;
+    r.seed = flags.seed;
+    r.pictures = !flags.html.empty();
+    r.accept_few = flags.accept_few;
+    return r;
+}
+
+PipeLimits limits_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    PipeLimits limits;
+    limits.stop = &monitor.stop;
+    if (flags.full) limits.total_seconds = 3600;
+    if (flags.patience > 0) limits.total_seconds = flags.patience;
+    limits.limit_answers(flags.timeout);
+    return limits;
+}
+
+int exit_of(State state, const CheckFlags& flags) {
+    return state == State::inconclusive && flags.allow_inconclusive ? held : exit_of(state);
+}
+
+int exit_of(State state) {
+    return state == State::wrong       ? failed
+        : state == State::error        ? unwritable
+        : state == State::inconclusive ? inconclusive
+                                       : held;
+}
+
+namespace {
+
+std::vector<CheckCase> trials_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    if (!flags.exec.empty()) {
+        const auto subject = start_pipe(flags.exec, limits_of(flags, monitor));
+        check_sides(flags, subject->traits());
+        return make_user_cases(subject, flags.full, grid_of(flags));
+    }
+    if (!flags.plugin.empty()) {
+        const auto subject = open_plugin(flags.plugin, limits_of(flags, monitor));
+        check_sides(flags, subject->traits());
+        return make_user_cases(subject, flags.full, grid_of(flags));
+    }
+    check_sides(flags, {});
+    if (flags.samples.empty()) return make_cases(flags.arm, settings_of(flags), flags.full, grid_of(flags));
+    if (flags.wo.size() != 1 || flags.table.empty())
+        throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
+    const Vec3d wo = direction_of(flags.wo[0]);
+    CheckCase t = make_user_case(std::make_shared<SampleFile>(flags.samples, flags.table),
+        math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
+    t.wo = wo;
+    return {t};
+}
+
+bool whole_list(const CheckFlags& flags) {
+    return flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
+}
+
+/// Of hundreds of cases each ends at the first look that leaves nothing open.
+TestSettings settings_of_list(const CheckFlags& flags) {
+    TestSettings r = test_settings_of(flags);
+    r.budget = flags.full ? check::CheckBudget::thorough() : check::CheckBudget::quick();
+    r.budget->stop_when_conclusive = !flags.full;
+    return r;
+}
+
+/// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
+std::string command_of(const CheckFlags& f) {
+    std::string out = "crescent check";
+    if (!f.arm.empty()) out += " " + shell_word(f.arm);
+    for (const std::string& text : f.settings) out += " --set " + shell_word(text);
+    for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
+             {"--pdf-table", &f.table}, {"--against", &f.against}})
+        if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
+    for (const std::string& text : f.wo) out += " --wo " + shell_word(text);
+    for (const std::string& text : f.expect) out += " --expect " + shell_word(text);
+    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted}, {"--describe", f.describe},
+             {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
+        if (given) out += std::string(" ") + flag;
+    if (f.patience > 0) out += " --patience " + shortest(f.patience);
+    if (f.timeout > 0) out += " --timeout " + shortest(f.timeout);
+    if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
+    if (f.seed != 1) out += " --seed " + std::to_string(f.seed);
+    return out;
+}
+
+/// Minutes of work are not lost to a folder that is not there: every file is opened before the first draw.
+void try_files(const CheckFlags& flags) {
+    for (const std::string& path : {flags.json, flags.timing, flags.junit, flags.html})
+        if (!path.empty()) can_write(path);
+}
+
+}  // namespace
+
+void write_files(const CheckFlags& flags, const CheckResult& j) {
+    const JudgementSource source{crescent::version(), crescent::commit(), command_of(flags)};
+    if (!flags.json.empty()) write_whole(flags.json, verdict_json(j, source));
+    if (!flags.timing.empty()) write_whole(flags.timing, verdict_timing(j, source));
+    if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
+    if (!flags.html.empty()) write_whole(flags.html, verdict_html(j, source));
+}
+
+namespace {
+
+/// How much a program will be asked, before it is asked for an hour.
+void tell_cost(std::span<const CheckCase> trials, const TestSettings& settings, ProgressMonitor& monitor) {
+    std::size_t judged = 0;
+    bool program = false, light = false;
+    for (const CheckCase& t : trials) {
+        judged += !t.baseline, program = program || t.subject->limited();
+        light = light || t.subject->traits().wo == Traits::Asked::none;
+    }
+    if (!program || !settings.full) return;
+    const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
+    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
+        settings.questions, judged, more));
+}
+
+std::vector<std::string> names_of(std::span<const CheckCase> trials) {
+    std::vector<std::string> out;
+    for (const CheckCase& t : trials)
+        if (!t.baseline && std::find(out.begin(), out.end(), t.arm) == out.end()) out.push_back(t.arm);
+    return out;
+}
+
+/// What distribution the draws have; no verdict.
+int describe_draws(const CheckFlags& flags, std::span<const CheckCase> trials, Progress& monitor) {
+    check::DescribeSettings settings;
+    settings.seed = flags.seed;
+    if (flags.full) settings.draws *= 16, settings.draws_of_limited *= 16;
+    const std::vector<check::Description> all = check::describe(trials, settings, monitor);
+    monitor.clear();
+    std::string text;
+    for (const check::Description& d : all) text += check::description_text(d) + "\n";
+    print(text);
+    if (!flags.json.empty()) {
+        const nlohmann::ordered_json out = {{"format", "crescent check descriptions 1"},
+            {"version", crescent::version()}, {"commit", crescent::commit()}, {"command", command_of(flags)},
+            {"descriptions", check::description_json(all)}};
+        write_whole(flags.json, out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    }
+    return held;
+}
+
+}  // namespace
+
+namespace {
+
+/// "2.1 s, 3.9 s of CPU time, 45 MB of memory at most; 9,700,000 evaluations ..."
+std::string cost_of(const CheckResult& j, double seconds) {
+    std::set<std::pair<std::string, std::string>> cases;
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
+    const Usage used = usage();
+    const double each =
+        static_cast<double>(j.evaluations) / static_cast<double>(std::max<std::size_t>(cases.size(), 1));
+    return fmt::format(
+        "{:.1f} s, {:.1f} s of CPU time, {:.0f} MB of memory at most; {} evaluations of sample, pdf and f, {:.0f} in "
+        "the "
+        "mean of {} cases\n",
+        seconds, used.cpu_seconds, static_cast<double>(used.peak_memory) / 1e6, j.evaluations, each, cases.size());
+}
+
+}  // namespace
+
+int check(const CheckFlags& given) {
+    CheckFlags flags = given;
+    for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may chdir
+        if (!file->empty()) *file = std::filesystem::absolute(*file).string();
+    const Stopwatch watch;
+    Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    StopOnSignal stop(monitor);
+    try_files(flags);
+    if (flags.right > 0) return check_right(flags, monitor);
+    if (flags.planted) return check_planted(flags, monitor);
+    CheckResult j;
+    std::vector<std::string> expected = flags.expect;
+    const bool same = std::erase(expected, "same") > 0;
+    if (same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
+    const std::vector<Waiver> waivers = read_waivers(expected);
+    try {
+        const std::vector<CheckCase> trials = trials_for(flags, monitor);
+        check_waivers(waivers, names_of(trials));
+        if (flags.describe) return describe_draws(flags, trials, monitor);
+        if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
+        tell_cost(trials, test_settings_of(flags), monitor);
+        j = judge(trials, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+    } catch (const SamplerError& fault) { j = complaint(fault, flags, flags.exec.empty() ? flags.plugin : flags.exec); }
+    if (!waivers.empty()) waive(j, waivers);
+    monitor.clear();
+    const bool all = whole_list(flags);
+    if (all) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
+    print(verdict_table(j));
+    if (flags.verbose) print(cost_of(j, watch.seconds()));
+    if (all)
+        print(j.as_expected ? "every arm gets the verdicts expected of it\n"
+                            : "not every arm gets the verdicts expected of it\n");
+    write_files(flags, j);
+    return exit_of(j.state, flags);
+}
+
+// ---- `crescent check A --against B`, and what is said of a program that never came to be judged.
+
+CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const std::string& command) {
+    CheckResult j;
+    j.alpha = flags.alpha;
+    j.state = dynamic_cast<const SamplerTimeout*>(&fault) ? State::inconclusive : State::error;
+    for (std::string_view name : verdict_names) {
+        Verdict v;
+        v.arm = printable(command, 60);
+        v.trial = before_any_trial;
+        v.name = name;
+        v.state = j.state;
+        v.say = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
+                                         : "It could not be asked: the sampler never came to be judged.";
+        v.expected = false;
+        j.verdicts.push_back(v);
+    }
+    j.as_expected = false;
+    return j;
+}
+
+namespace {
+
+/// B on the trials of A: a built-in arm by its name, or a program.
+std::vector<CheckCase> others_of(
+    const CheckFlags& flags, std::span<const CheckCase> a, const ProgressMonitor& monitor) {
+    const std::vector<std::string> names = sampler_names();
+    if (std::find(names.begin(), names.end(), flags.against) != names.end())
+        return sampler_named_against(flags.against, a);
+    const std::string near = did_you_mean(flags.against, names);
+    if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
+        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm" + near);
+    for (const char* end : {".csv", ".npy"})
+        if (flags.against.ends_with(end) && flags.against.find(' ') == std::string::npos)
+            throw InputError({"--against " + flags.against, 0, 0},
+                "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
+                "or a program");
+    try {
+        return sampler_against(start_pipe(flags.against, limits_of(flags, monitor)), a);
+    } catch (const InputError&) {  // start_pipe calls it --exec
+        throw InputError({"--against " + flags.against, 0, 0}, "neither a built-in arm nor a command of the shell");
+    }
+}
+
+}  // namespace
+
+int check_against(
+    const CheckFlags& flags, std::vector<CheckCase> a, std::span<const Waiver> waivers, bool same, Progress& monitor) {
+    std::erase_if(a, [](const CheckCase& t) { return t.baseline; });
+    std::vector<CheckCase> b;
+    try {
+        b = others_of(flags, a, monitor);
+    } catch (const SamplerError& fault) {  // B's own: A has answered
+        const CheckResult j = complaint(fault, flags, flags.against);
+        monitor.clear();
+        print(verdict_table(j));
+        write_files(flags, j);
+        return exit_of(j.state, flags);
+    }
+    CheckResult j = compare_samplers(a, b, test_settings_of(flags), same, monitor);
+    if (!waivers.empty()) waive(j, waivers);
+    monitor.clear();
+    print(against_text(j));
+    write_files(flags, j);
+    return exit_of(j.state, flags);
+}
+
+}  // namespace crescent::cli

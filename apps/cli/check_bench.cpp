@@ -1,0 +1,72 @@
+// `crescent check --planted` and `--right`: the check itself, on samplers of which it is known what they are.
+#include <algorithm>
+#include <cstdio>
+
+#include "check.h"
+#include "tests/known_samplers/correct/law.h"
+#include "tests/known_samplers/faulty/planted.h"
+
+namespace crescent::cli {
+
+namespace {
+
+/// What the faults came to, for the files: one verdict a fault, right where it is caught.
+Verdict caught_or_not(const PlantedFault& fault, const std::string& caught) {
+    Verdict v;
+    v.arm = fault.breaks;
+    v.trial = fault.name;
+    v.name = "caught";
+    v.state = caught.empty() ? State::wrong : State::right;
+    v.expected = !caught.empty();
+    v.say = caught.empty() ? "No verdict is wrong where this fault is planted." : "Caught by " + caught + ".";
+    return v;
+}
+
+std::string catchers(const CheckResult& j) {
+    std::string caught;
+    for (std::string_view name : verdict_names)
+        for (const Verdict& v : j.verdicts)
+            if (v.name == name && v.state == State::wrong) {
+                caught += (caught.empty() ? "" : ", ") + v.name;
+                break;
+            }
+    return caught;
+}
+
+}  // namespace
+
+int check_planted(const CheckFlags& flags, Progress& monitor) {
+    CheckResult j;
+    j.alpha = flags.alpha;
+    std::string text;
+    for (const PlantedFault& fault : planted_faults(flags.full)) {
+        const std::string caught = catchers(judge(fault.trials, test_settings_of(flags), monitor));
+        j.verdicts.push_back(caught_or_not(fault, caught));
+        j.as_expected = j.as_expected && !caught.empty();
+        char line[256];
+        std::snprintf(line, sizeof line, "%-66s %-12s %s\n", fault.name.c_str(), fault.breaks.c_str(),
+            caught.empty() ? "NOT CAUGHT" : caught.c_str());
+        text += line;
+    }
+    j.state = j.as_expected ? State::right : State::wrong;
+    monitor.clear();
+    print(text);
+    write_files(flags, j);
+    return exit_of(j.state);
+}
+
+namespace {
+
+bool keeps_promise(const FalseAlarmStudy& law) { return rate_interval(law.accused, law.judged).first <= law.alpha; }
+
+}  // namespace
+
+int check_right(const CheckFlags& flags, ProgressMonitor& monitor) {
+    const FalseAlarmStudy law = measure_false_alarms(flags.first, flags.right, test_settings_of(flags), monitor);
+    std::string text;
+    for (const std::string& line : law.said) text += line;
+    print(text + right_law_text(law));
+    return keeps_promise(law) ? held : failed;
+}
+
+}  // namespace crescent::cli

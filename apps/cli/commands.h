@@ -1,0 +1,102 @@
+// The commands of the program: what each takes, and the exit codes that all of them return.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "crescent/crescent.h"
+
+namespace crescent::cli {
+
+/// What the program returns to its caller; the same for every command.
+enum Exit : int {
+    held = 0,     // done, and everything asserted holds (check: right)
+    failed = 1,   // done, and an assertion fails (check: wrong)
+    misused = 2,  // the command line or the experiment file is wrong; nothing was written
+    unwritable =
+        3,  // an output could not be written, a needed part is missing, or (check) the sampler broke off: an error
+    inconclusive = 4,  // check: neither right nor wrong
+    bug = 70,          // an internal check failed (EX_SOFTWARE of sysexits.h)
+    interrupted = 130  // SIGINT or SIGTERM
+};
+
+struct RunFlags {
+    std::string file;
+    std::vector<std::string> overrides;  // PATH=VALUE
+    std::string out, isa;                // "": the default
+    std::string instrument = "cpu";
+    std::string only, seed_range;  // "metrics,report", "1:8"; "": all
+    std::string gl_context;        // "": EGL
+    int gl_device = -1;            // -1: a GPU where there is one
+    int seeds = 0, threads = 0;    // 0: the file's; as many as this process may use
+    double keep_after = 10;        // s
+    double timeout = 0;            // s that an answer of a program or plugin may take; 0: the defaults
+    bool quiet = false, preview = false;
+};
+int run(const RunFlags& flags);
+
+struct JoinFlags {
+    std::vector<std::string> parts;
+    std::string out;
+};
+int join(const JoinFlags& flags);
+
+struct FilmFlags {
+    std::string file;
+    std::vector<std::string> overrides;  // PATH=VALUE
+    std::string size = "1080p";
+    int seeds = 0;  // 0: the file's
+    ExplainerOptions options;
+    bool quiet = false;
+};
+int film(const FilmFlags& flags);
+
+struct ListFlags {
+    std::string what;  // "": all
+};
+int list(const ListFlags& flags);
+
+struct SchemaFlags {
+    bool json = false;
+};
+int schema(const SchemaFlags& flags);
+
+struct CheckFlags {
+    std::string arm;                    // "": all built-in arms
+    std::vector<std::string> settings;  // s=128
+    std::string exec, plugin, samples, table;
+    std::string against;                    // a built-in arm, or a program
+    std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails
+    std::vector<std::string> wo;            // x,y,z or degrees
+    std::string json, timing, junit, html;  // files to write
+    double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
+    double timeout = 0;                     // s that an answer of a program or plugin may take; 0: the defaults
+    unsigned seed = 1;
+    unsigned right = 0, first = 0;  // right: how many right samplers; 0: not asked for
+    bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
+    bool verbose = false;   // what it took
+    bool describe = false;  // what distribution the draws have, and no verdict
+};
+int check(const CheckFlags& flags);
+
+struct CompareFlags {
+    std::string file, out;                                      // "": none; out/compare
+    std::vector<std::string> arms, reference, regions, masks;   // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
+    std::vector<std::string> layers, spp, seconds, assertions;  // [NAME=]LAYER, [NAME=]N, [NAME=]S, a check
+    std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
+    bool crop = false, pair = false, schema = false, json = false, quiet = false;
+    unsigned error_rates = 0, seed = 1;  // error_rates: how many calls; 0: not asked for
+};
+int compare(const CompareFlags& flags);
+
+struct VersionFlags {};
+int version(const VersionFlags& flags);
+
+/// Writes to stdout and makes sure that it arrived. A reader who went away (closed pipe) is no error;
+/// anything else throws OutputError.
+void print(const std::string& text);
+/// Writes to stderr. Of both, no control character in a name, a file or a word reaches the terminal.
+void print_to_stderr(const std::string& text);
+
+}  // namespace crescent::cli

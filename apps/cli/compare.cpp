@@ -1,0 +1,162 @@
+// crescent compare: renders of other programs -> meters, bias tests, plates, report.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "crescent/crescent.h"
+#include "progress.h"
+#include "signals.h"
+
+namespace crescent::cli {
+
+namespace {
+
+/// "NAME=VALUE" of a flag; `what` stands in the complaint.
+std::pair<std::string, std::string> cut(const std::string& flag, const std::string& text, const char* what) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos)
+        throw InputError({flag + " " + text, 0, 0}, std::string("expected ") + what);
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// Arms of the flags and of the file.
+std::vector<std::string> arms_of(const CompareFlags& flags) {
+    std::vector<std::string> out;
+    for (const std::string& arm : flags.arms) out.push_back(arm.substr(0, arm.find('=')));
+    if (!flags.file.empty())
+        for (const std::string& name : compare_arms(flags.file)) out.push_back(name);
+    return out;
+}
+
+/// A number for all arms, or for one by name, which stands over it.
+void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all,
+    const std::string& flag, const char* key) {
+    for (const std::string& text : all) {
+        if (text.find('=') != std::string::npos) continue;
+        for (const std::string& arm : arms_of(flags))
+            out.push_back({{"arms", arm, key}, text, true, flag + " " + text});
+    }
+    const std::vector<std::string> arms = arms_of(flags);
+    for (const std::string& text : all) {
+        if (text.find('=') == std::string::npos) continue;
+        const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
+        if (std::find(arms.begin(), arms.end(), arm) == arms.end())
+            throw InputError(
+                {flag + " " + text, 0, 0}, fmt::format("no arm '{}': expected one of {}", arm, fmt::join(arms, ", ")));
+        out.push_back({{"arms", arm, key}, value, true, flag + " " + text});
+    }
+}
+
+/// "LAYER" of all files, or "NAME=LAYER" of an arm or the reference, which overrides it. Layers may have a '=' too.
+void layers_of(std::vector<CompareFlag>& out, const CompareFlags& flags) {
+    const std::vector<std::string> arms = arms_of(flags);
+    const auto named = [&](const std::string& text) {
+        const std::string name = text.substr(0, text.find('='));
+        return name.size() < text.size() && (name == "reference" || std::count(arms.begin(), arms.end(), name));
+    };
+    const auto add = [&](const std::string& name, const std::string& layer, const std::string& text) {
+        if (name == "reference") out.push_back({{"reference_layer"}, layer, false, "--layer " + text});
+        else out.push_back({{"arms", name, "layer"}, layer, false, "--layer " + text});
+    };
+    for (const std::string& text : flags.layers) {
+        if (named(text)) continue;
+        for (const std::string& arm : arms) add(arm, text, text);
+        add("reference", text, text);
+    }
+    for (const std::string& text : flags.layers)
+        if (named(text)) add(text.substr(0, text.find('=')), text.substr(text.find('=') + 1), text);
+}
+
+std::vector<CompareFlag> flags_of(const CompareFlags& f) {
+    std::vector<CompareFlag> out;
+    for (const std::string& text : f.arms) {
+        const auto [name, files] = cut("--arm", text, "NAME=FILES");
+        out.push_back({{"arms", name, "files"}, files, false, "--arm " + text});
+    }
+    for (const std::string& text : f.reference) out.push_back({{"reference"}, text, false, "--reference " + text});
+    for (const std::string& text : f.regions) {
+        const auto [name, box] = cut("--region", text, "NAME=x0,y0,x1,y1");
+        out.push_back({{"regions", name, "box"}, "[" + box + "]", true, "--region " + text});
+    }
+    for (const std::string& text : f.masks) {
+        const auto [name, file] = cut("--mask", text, "NAME=FILE");
+        out.push_back({{"masks", name, "file"}, file, false, "--mask " + text});
+    }
+    layers_of(out, f);
+    per_arm(out, f, f.spp, "--spp", "spp");
+    per_arm(out, f, f.seconds, "--seconds", "seconds");
+    for (const std::string& text : f.assertions)
+        out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
+    if (!f.theme.empty()) out.push_back({{"theme"}, f.theme, false, "--theme " + f.theme});
+    if (!f.align.empty()) out.push_back({{"align"}, f.align, false, "--align " + f.align});
+    if (f.crop) out.push_back({{"crop"}, "true", true, "--crop"});
+    if (f.pair) out.push_back({{"pair"}, "true", true, "--pair"});
+    if (!f.expect.empty()) out.push_back({{"expect"}, f.expect, false, "--expect " + f.expect});
+    const std::pair<const char*, std::string> numbers[] = {
+        {"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}, {"brightest", f.brightest}};
+    for (const auto& [key, text] : numbers)
+        if (!text.empty()) out.push_back({{key}, text, true, std::string("--") + key + " " + text});
+    if (!f.smallest.empty()) {
+        const bool share = f.smallest.back() == '%';
+        const std::string digits = share ? f.smallest.substr(0, f.smallest.size() - 1) + "e-2" : f.smallest;
+        out.push_back({{"smallest"}, digits, true, "--smallest " + f.smallest});
+    }
+    return out;
+}
+
+std::string command_of(const CompareFlags& f) {
+    std::string out = "crescent compare";
+    if (!f.file.empty()) out += " " + shell_word(f.file);
+    const auto all = [&](const char* flag, const std::vector<std::string>& values) {
+        for (const std::string& value : values) out += fmt::format(" {} {}", flag, shell_word(value));
+    };
+    all("--arm", f.arms), all("--reference", f.reference), all("--region", f.regions), all("--mask", f.masks),
+        all("--layer", f.layers);
+    all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
+    if (f.pair) out += " --pair";
+    if (f.crop) out += " --crop";
+    const std::pair<const char*, std::string> rest[] = {{"--align", f.align}, {"--expect", f.expect},
+        {"--smallest", f.smallest}, {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim},
+        {"--brightest", f.brightest}, {"--theme", f.theme}};
+    for (const auto& [flag, value] : rest)
+        if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
+    return out;
+}
+
+/// A section of docs/error-rates.md.
+int error_rates(const CompareFlags& flags) {
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    const std::string text = compare_error_rates(flags.error_rates, flags.seed, progress);
+    progress.clear();
+    print(fmt::format(
+        "\n## Error rates of compare\n\nWritten by crescent {}, commit {}. To reproduce:\n\n"
+        "```sh\ncrescent compare --error-rates {} --seed {}\n```\n\nNot run in the tests: needs minutes of every "
+        "core.\n\n{}",
+        crescent::version(), commit(), flags.error_rates, flags.seed, text));
+    return held;
+}
+
+}  // namespace
+
+int compare(const CompareFlags& flags) {
+    if (flags.schema) return print(flags.json ? compare_schema_json() : compare_schema_text()), held;
+    if (flags.error_rates) return error_rates(flags);
+    if (flags.file.empty() && flags.arms.empty())
+        throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
+    const ComparePlan plan = plan_of(flags_of(flags), flags.file);
+    Provenance provenance;
+    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
+    provenance.command = command_of(flags);
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    std::string summary;
+    const CompareResult result =
+        crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
+    progress.clear();
+    print(summary);
+    return result.state == CompareResult::State::holds ? held
+        : result.state == CompareResult::State::fails  ? failed
+                                                       : inconclusive;
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,140 @@
+// The flags of `crescent check`.
+#include <filesystem>
+
+#include "crescent/crescent.h"
+#include "grammar.h"
+
+namespace crescent::cli {
+
+namespace {
+
+constexpr const char* check_footer =
+    R"(Without ARM every built-in arm is judged, each case by an eighth of the draws
+where that is conclusive, and 0 means that each gets the verdicts expected of
+it. Else: 0 right, 1 wrong, 3 error (the sampler crashed, stopped answering or
+broke the protocol), 4 inconclusive: something could not be decided, or was not
+examined. Wrong comes before error, error before inconclusive. docs/check.md
+says what each verdict means, and how a program behind --exec is asked.)";
+
+/// "Verdicts, in order: valid, ...", in lines of at most 80 columns.
+std::string verdicts_in_order() {
+    std::string out = "Verdicts, in order:";
+    std::size_t column = out.size();
+    for (const std::string_view name : verdict_names) {
+        const std::string word = std::string(name) + (name == verdict_names.back() ? "." : ",");
+        const bool fits = column + 1 + word.size() <= 80;
+        out += (fits ? ' ' : '\n') + word;
+        column = (fits ? column + 1 : 0) + word.size();
+    }
+    return out + '\n';
+}
+
+/// --against.
+CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
+    auto* against = c.add_option("--against", f.against,
+        "hold the sampler against a built-in arm or a program: same distribution, same f, variance ratio");
+    against->type_name("ARM|'PROGRAM'")->check(told);
+    return against;
+}
+
+/// --expect and --allow-inconclusive; gives the former.
+CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
+    c.add_flag("--allow-inconclusive", f.allow_inconclusive, "exit 0 where it would be 4");
+    return c
+        .add_option("--expect", f.expect,
+            "a verdict that is known not to be right, or a file of such lines; same: with --against, a difference "
+            "fails")
+        ->type_name("'[ARM ]VERDICT=STATE: REASON'|FILE|same")
+        ->check([](const std::string& text) {
+            return std::filesystem::is_directory(text) ? "expected a file, found the folder " + printable(text) : "";
+        })
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
+}
+
+/// The files that a call writes.
+void outputs(CLI::App& c, CheckFlags& f) {
+    for (CLI::Option* file :
+        {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
+            c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
+            c.add_option("--junit", f.junit, "write for a build server"),
+            c.add_option("--html", f.html, "write one page with maps, histograms and roses")})
+        file->type_name("FILE")->check(told);
+}
+
+/// A sampler of the caller's own.
+struct Own {
+    CLI::Option *exec, *plugin, *samples;
+};
+
+Own own_samplers(CLI::App& c, CheckFlags& f) {
+    return {c.add_option("--exec", f.exec, "judge a program that answers over a pipe")
+                ->type_name("'PROGRAM ARGS'")
+                ->check(told),
+        c.add_option("--plugin", f.plugin, "judge a shared library, see docs/plugins.md")
+            ->type_name("FILE")
+            ->check(told),
+        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told)};
+}
+
+/// How long a program may take.
+void limits(CLI::App& c, CheckFlags& f, CLI::Option* exec) {
+    c.add_option("--patience", f.patience, "s that --exec may take in all; default 120, with --full 3600")
+        ->type_name("SECONDS")
+        ->needs(exec)
+        ->check(number(0.01, 1e6));
+    timeout(c, f.timeout);
+    c.add_flag("--accept-few", f.accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Work& work) {
+    std::shared_ptr<CheckFlags> f;
+    CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
+    c->footer(verdicts_in_order() + check_footer);
+    auto* arm = c->add_option("ARM", f->arm, "a built-in arm; without it, all")->type_name("");
+    auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
+                    ->type_name("KEY=VALUE")
+                    ->take_all()
+                    ->expected(1)
+                    ->allow_extra_args(false);
+    auto* quick = c->add_flag("--quick", f->quick, "seconds an arm (the default)");
+    c->add_flag("--full", f->full, "minutes: more directions, more draws")->excludes(quick);
+    c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")
+        ->type_name("P")
+        ->check(number(0, 1));
+    c->add_option("--seed", f->seed, "default 1")->type_name("N")->check(whole_number(0, 4294967295));
+    auto* planted = c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which")
+                        ->excludes(arm)
+                        ->excludes(set);
+    const auto [exec, plugin, samples] = own_samplers(*c, *f);
+    limits(*c, *f, exec);
+    auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters")
+                      ->type_name("N")
+                      ->check(whole_number(1, 1000000));
+    for (auto* other : {arm, set, planted}) right->excludes(other);
+    c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
+    for (auto* other : {arm, set, planted, right}) exec->excludes(other), samples->excludes(other);
+    for (auto* other : {arm, set, planted, right, exec, samples}) plugin->excludes(other);
+    exec->excludes(samples);
+    c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
+        ->type_name("FILE")
+        ->needs(samples)
+        ->check(told);
+    auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
+    wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
+    auto* against = comparison(*c, *f);
+    auto* describe = c->add_flag("--describe", f->describe,
+        "print what distribution the draws have, with intervals, and no verdict; --json writes it");
+    for (auto* other : {planted, right, against}) describe->excludes(other);
+    auto* expect = waivers(*c, *f);
+    for (auto* other : {planted, right}) expect->excludes(other);
+    for (auto* other : {planted, right}) against->excludes(other), wo->excludes(other);
+    outputs(*c, *f);
+    c->add_flag("--quiet", f->quiet, "no progress; the table stays");
+    c->add_flag("--verbose", f->verbose, "time, memory and evaluations, after the table");
+}
+
+}  // namespace crescent::cli

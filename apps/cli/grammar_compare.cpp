@@ -1,0 +1,58 @@
+// The flags of `crescent compare`.
+#include "crescent/crescent.h"
+#include "grammar.h"
+
+namespace crescent::cli {
+
+namespace {
+
+constexpr const char* compare_footer =
+    R"(FILES is a path or a pattern of renders of one view, each one independent: OpenEXR,
+PFM, Radiance HDR, NPY. --arm may be given again for the same NAME. Without a reference the
+arms are held against each other. `crescent compare --schema` has the keys of FILE.
+
+Written under DIR: report.html, metrics.json, metrics.csv, junit.xml, plates/.
+Exit codes: 0 nothing asked is violated; 1 an assertion fails, or with --expect same a
+difference was found; 4 --expect same, and too few renders to have seen one.)";
+
+}  // namespace
+
+void add_compare(CLI::App& app, Work& work) {
+    std::shared_ptr<CompareFlags> f;
+    CLI::App* c = command(app, work, "compare", "Compare renders of any program: noise, bias, where.", compare, f);
+    c->footer(compare_footer);
+    const auto many = [&](const char* flag, std::vector<std::string>& to, const char* means, const char* type) {
+        c->add_option(flag, to, means)->type_name(type)->take_all()->expected(1)->allow_extra_args(false)->check(told);
+    };
+    c->add_option("FILE", f->file, "a TOML file; flags stand over it")->type_name("");
+    many("--arm", f->arms, "renders of one arm; may be given again", "NAME=FILES");
+    many("--reference", f->reference, "the converged image, or several", "FILES");
+    many("--region", f->regions, "a box, both ends inside, from the bottom-left", "NAME=x0,y0,x1,y1");
+    many("--mask", f->masks, "pixels above 0 in a picture", "NAME=FILE");
+    many("--layer", f->layers, "which layer of the files, of one arm's, or of reference=LAYER", "[NAME=]LAYER");
+    many("--spp", f->spp, "samples a pixel of one render", "[NAME=]N");
+    many("--seconds", f->seconds, "time of one render", "[NAME=]S");
+    many("--assert", f->assertions, "a claim such as 'rmse.H(a) < rmse.H(b)'", "CHECK");
+    c->add_option("--align", f->align, "display: place data windows that differ in the display window")
+        ->type_name("display");
+    c->add_flag("--crop", f->crop, "compare the pixels that the data windows of all renders share");
+    c->add_flag("--pair", f->pair, "renders with the same number in their names share random numbers");
+    c->add_option("--expect", f->expect, "same: a difference between arms fails")->type_name("same");
+    c->add_option("--smallest", f->smallest, "with it: the difference that must have been seen; default 1%")
+        ->type_name("SHARE");
+    c->add_option("--exposure", f->exposure, "of photographs; default 1")->type_name("E");
+    c->add_option("--alpha", f->alpha, "chance of a false alarm; default 0.01")->type_name("P");
+    c->add_option("--trim", f->trim, "share of pixels relMSE and MAPE leave out; default 0")->type_name("SHARE");
+    c->add_option("--brightest", f->brightest, "the most that Y of a pixel of one render can be, e.g. a clamp")
+        ->type_name("Y");
+    c->add_option("--theme", f->theme, "of plates: dark, light")->type_name("THEME");
+    c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(told);
+    auto* schema = c->add_flag("--schema", f->schema, "every key of FILE");
+    c->add_flag("--json", f->json, "with --schema: as a JSON Schema")->needs(schema);
+    auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");
+    rates->type_name("CALLS")->check(whole_number(1, 100000));
+    c->add_option("--seed", f->seed, "of their noise; default 1")->type_name("SEED")->needs(rates);
+    c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,106 @@
+// crescent run: an experiment file -> films, meters, plates, report.
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "crescent/crescent.h"
+#include "instruments.h"
+#include "progress.h"
+#include "signals.h"
+
+namespace crescent::cli {
+
+namespace {
+
+/// The command that makes the outputs again. Where they go, threads and instruction set do not change them and are
+/// left out, so that equal runs state equal commands.
+std::string command_of(const RunFlags& flags) {
+    std::string command = "crescent run " + shell_word(flags.file);
+    for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
+    if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
+    if (!flags.seed_range.empty()) command += " --seed-range " + flags.seed_range;
+    if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
+    if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;
+    if (flags.gl_device >= 0) command += " --gl-device " + std::to_string(flags.gl_device);
+    return command;
+}
+
+/// The picture, and where it is.
+int show_preview(const Experiment& experiment, const RunOptions& options, Progress& progress) {
+    const std::vector<unsigned char> png = preview(experiment, {options.threads, options.isa, nullptr}, progress);
+    Staging staging(options.out, "preview");
+    staging.write("preview.png", png);
+    staging.commit(progress);
+    progress.clear();
+    print(fmt::format(
+        "{}/preview.png: the reference, its regions and the crops of plates on rulers of pixels\n", options.out));
+    return held;
+}
+
+}  // namespace
+
+int run(const RunFlags& flags) {
+    std::vector<std::string> overrides = flags.overrides;
+    if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
+    RunOptions options;
+    if (!flags.only.empty()) options.parts = output_parts(flags.only);
+    if (!flags.seed_range.empty())
+        std::sscanf(flags.seed_range.c_str(), "%d:%d", &options.seeds.first, &options.seeds.last);
+    const Experiment experiment = load(flags.file, overrides);
+
+    options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
+    options.threads = flags.threads;
+    options.isa = flags.isa;
+    options.keep_after_s = flags.keep_after;
+    options.timeout_s = flags.timeout;
+    options.command = command_of(flags);
+    options.instrument = instrument(flags);
+
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    if (flags.preview) return show_preview(experiment, options, progress);
+    const RunResult result = crescent::run(experiment, options, progress);
+    progress.clear();
+    print(result.summary);
+    return result.metrics.all_hold() ? held : failed;
+}
+
+// ---- Looks the word up among the kinds of instrument that registered themselves and opens the one it finds with the
+// two
+// --gl flags, which the CPU refuses.
+
+namespace {
+
+void only_with_gl(const char* flag, bool given) {
+    if (given) throw InputError({flag, 0, 0}, "expected together with --instrument gl");
+}
+
+}  // namespace
+
+std::shared_ptr<Instrument> instrument(const RunFlags& flags) {
+    if (flags.instrument == "cpu") {
+        only_with_gl("--gl-context", !flags.gl_context.empty());
+        only_with_gl("--gl-device", flags.gl_device >= 0);
+        return nullptr;
+    }
+    const std::shared_ptr<const BackendKind> kind = find_instrument(flags.instrument);
+    if (!kind)
+        throw OutputError("this build has no instrument '" + flags.instrument +
+            "': it was made without it, or without the headers of EGL");
+    return kind->open({flags.gl_context, flags.gl_device});
+}
+
+// ---- crescent join: parts of one experiment -> the metrics of the run of all their seeds.
+
+int join(const JoinFlags& flags) {
+    std::string command = "crescent join";
+    for (const std::string& part : flags.parts) command += " " + shell_word(part);
+    const Measured joined = crescent::join(flags.parts, command);
+    ProgressMonitor monitor;
+    write_metrics(joined, flags.out, monitor);
+    print(terminal_summary(report_inputs(joined), {}, flags.out, {true, false, false, false}));
+    return joined.metrics.all_hold() ? held : failed;
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,99 @@
+// Handlers by sigaction(), waits by setitimer() and SIGALRM: while a run is watched, 0.5 s from the first signal to the
+// end, 5 s more where outputs have begun to move. The last words follow from the monitor's state; write() writes them.
+#include "signals.h"
+
+#include <atomic>
+#include <csignal>
+#include <cstring>
+
+#include <sys/time.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "crescent/crescent.h"
+
+namespace crescent::cli {
+
+namespace {
+
+std::atomic<ProgressMonitor*> watched{nullptr};
+std::atomic<bool> let_finish{false};
+std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
+constexpr itimerval patience{{}, {0, 500'000}};        // a large process takes a while to end
+constexpr itimerval moving_patience{{}, {5, 0}};       // outputs that are being moved are let finish, as a disk permits
+
+/// What stands under the final names when the process ends here.
+const char* last_words() {
+    const ProgressMonitor* monitor = watched.load();
+    switch (monitor ? monitor->outputs.load() : left_behind.load()) {
+        case Outputs::moving: return "crescent: interrupted; the outputs are either all of before or all of this run\n";
+        case Outputs::stand: return "crescent: interrupted; the outputs of this run are complete\n";
+        default: return "crescent: interrupted; existing outputs were not changed\n";
+    }
+}
+
+// All handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3) and setitimer, which that list lacks and which is
+// one system call on Linux, the BSDs and macOS; macOS has no timer_settime.
+extern "C" void end_now(int) {
+    const char* words = last_words();
+    static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
+    Process::kill_all();
+    ::_exit(interrupted);
+}
+
+extern "C" void time_is_up(int signal) {
+    const ProgressMonitor* monitor = watched.load();
+    if (!monitor || monitor->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
+    else ::setitimer(ITIMER_REAL, &moving_patience, nullptr);
+}
+
+extern "C" void ask_to_stop(int signal) {
+    ProgressMonitor* monitor = watched.load();
+    if (!monitor || monitor->stop.exchange(true)) end_now(signal);
+    else ::setitimer(ITIMER_REAL, &patience, nullptr);
+}
+
+void handle(int signal, void (*handler)(int)) {
+    struct sigaction action{};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void end_on_signals() {
+    struct sigaction before{};
+    for (const int signal : {SIGINT, SIGTERM}) handle(signal, end_now);
+    if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(SIGHUP, end_now);  // nohup
+}
+
+// Installed before the constructors of all libraries run, so that a signal in the first milliseconds ends with 130 too.
+// The sanitizers' own start-up comes later than this and replaces sigaction.
+#if defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(__has_feature)
+#define __has_feature(x) 0
+#endif
+#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer) && !__has_feature(memory_sanitizer)
+[[gnu::section(".preinit_array"), gnu::used]] void (*before_all)() = end_on_signals;
+#endif
+#endif
+
+StopOnSignal::StopOnSignal(ProgressMonitor& monitor) {
+    watched = &monitor;
+    handle(SIGALRM, time_is_up);
+    struct sigaction before{};
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, ask_to_stop);
+}
+
+StopOnSignal::~StopOnSignal() {
+    left_behind = watched.load()->outputs.load();
+    end_on_signals();
+    const itimerval never{};
+    ::setitimer(ITIMER_REAL, &never, nullptr);
+    watched = nullptr;
+}
+
+}  // namespace crescent::cli

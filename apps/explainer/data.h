@@ -1,0 +1,53 @@
+// Everything the film shows, measured in this run: nothing here is typed in.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cast.h"
+#include "words.h"
+
+namespace crescent::film {
+
+struct Measures;  // measures/measures.h
+
+struct Data {
+    Experiment experiment;        // with the arms that the film adds
+    std::string experiment_hash;  // of the experiment as it was given
+    Cast cast;
+    Metrics metrics;
+    Evidence evidence;
+    Provenance provenance;
+    ShapeMap shapes;
+    std::vector<std::pair<RunKey, Film>> films;
+    std::vector<ReferenceFilm> references;  // the ones the meters use, one an exponent
+    std::vector<Film> opening;              // the cosine arm's doublings from one sample on
+    std::shared_ptr<const Measures> measures;
+
+    RunKey key(const std::string& arm, std::uint64_t n = 0, double s = 0) const;  // 0: the cast's
+    const Film* film(const RunKey& key) const;                                    // nullptr: not run
+    const ReferenceFilm& reference(double s = 0) const;
+    const RunMetrics* meter(const RunKey& key) const;
+    const RegionMetrics* region(const RunKey& key, const std::string& region) const;
+    const Box& box(const std::string& region) const;
+
+    // Numbers with their sources.
+    Number rmse(const RunKey& key, const std::string& region, int digits = 3) const;
+    Number n_of(const RunKey& key) const;
+    Number s_of(const RunKey& key) const;
+    Number arm(const std::string& arm) const;  // its name as a reader calls it
+    plates::Colour ink(const std::string& arm) const;
+};
+
+/// `box` of a film as a photograph, one byte triple a pixel of the film.
+plates::Block photograph_of(const Data& data, const plates::View& view, const Box& box);
+/// A box of w x h around the middle of `of`, moved so that it lies in the image.
+Box around(const Data& data, const Box& of, int w, int h);
+
+/// Runs the experiment in memory, with the arms and rungs that the film adds. InputError where it lacks what the film
+/// needs.
+Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);
+
+}  // namespace crescent::film

@@ -1,0 +1,38 @@
+// ffmpeg, fed with raw frames over a pipe.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "crescent/crescent.h"
+#include "rasters.h"
+
+namespace crescent::film {
+
+/// The files that go into the film, and those to be written; "" where there is none.
+struct Ingredients {
+    int width = 0, height = 0;
+    std::string captions, chapters, poster, voice;  // .srt, ffmetadata, .png, .wav
+    std::string mp4, webm;                          // to be written
+    std::string log;                                // what ffmpeg says
+};
+
+/// OutputError where ffmpeg or one of its parts is missing: told before the work.
+void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor);
+
+class Encoder {
+public:
+    explicit Encoder(const Ingredients& in);
+    void take(const Raster& raster, const ProgressMonitor& monitor);
+    /// Waits for ffmpeg to finish. OutputError if it failed, or wrote no film.
+    void finish(const ProgressMonitor& monitor);
+
+private:
+    [[noreturn]] void fail(const std::string& what);
+
+    Ingredients in_;
+    Process process_;
+};
+
+}  // namespace crescent::film

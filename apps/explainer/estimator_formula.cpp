@@ -1,0 +1,68 @@
+// Words are measured, then set from left to right: 1/N and the sum, f, L and cos over the bar, p under its middle. The
+// ink of a term runs from muted to bright as it is lit.
+#include "estimator_formula.h"
+
+#include <algorithm>
+
+#include "drawing.h"
+#include "words.h"
+
+namespace crescent::film {
+
+namespace {
+
+constexpr Colour wash{1, 1, 1, 0.16};
+
+struct Setter {
+    Frame& frame;
+    Text how;
+    /// Sets words with their left end at x, their middle at y; returns the right end.
+    double put(double x, double y, const Words& words, const Term& term) const {
+        const Rect size = frame.measure(words, how);
+        draw_term(frame, {x, y - size.h / 2, size.w + 1, size.h}, words, how, term);
+        return x + size.w;
+    }
+    /// The same without the wash.
+    void bare(double x, double y, const Words& words, const Term& term) const {
+        const Rect size = frame.measure(words, how);
+        Text inked = how;
+        inked.ink = mixed(muted, bright, term.lit);
+        frame.text({x, y - size.h / 2, size.w + 1, size.h}, words, inked, term.alpha);
+    }
+    double width(const Words& words) const { return frame.measure(words, how).w; }
+};
+
+}  // namespace
+
+Colour mixed(const Colour& a, const Colour& b, double t) {
+    return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t, a.a + (b.a - a.a) * t};
+}
+
+void draw_term(Frame& frame, const Rect& box, const Words& words, Text how, const Term& term) {
+    frame.fill({box.x - 8, box.y, box.w + 16, box.h}, wash, term.alpha * term.lit);
+    how.ink = mixed(muted, bright, term.lit);
+    frame.text(box, words, how, term.alpha);
+}
+
+void draw_estimator(Frame& frame, Point at, double px, const EstimatorTerms& terms) {
+    const Setter set{frame, with_px(with(title_text, Weight::medium), px)};
+    const double up = 0.66 * px, gap = 0.3 * px;
+    const Words one{formulas::one}, n{"N"}, sigma{"Σ"};
+    const double bar = std::max(set.width(one), set.width(n)) + 12;
+    const double sum = bar + gap + set.width(sigma);
+    frame.fill({at.x - 8, at.y - 2 * up, sum + 16, 4 * up}, wash, terms.average.alpha * terms.average.lit);
+    set.bare(at.x + (bar - set.width(one)) / 2, at.y - up, one, terms.average);
+    set.bare(at.x + (bar - set.width(n)) / 2, at.y + up, n, terms.average);
+    frame.line({at.x, at.y}, {at.x + bar, at.y}, bright, 3, terms.average.alpha);
+    set.bare(at.x + bar + gap, at.y, sigma, terms.average);
+    double x = at.x + sum + gap;
+    const double left = x;
+    x = set.put(x, at.y - up, Words(formulas::f), terms.f) + gap;
+    x = set.put(x, at.y - up, Words(formulas::light), terms.light) + gap;
+    x = set.put(x, at.y - up, Words(formulas::cosine), terms.cosine);
+    const Words p{formulas::density};
+    frame.line({left, at.y}, {x, at.y}, bright, 3, terms.density.alpha);
+    set.put((left + x - set.width(p)) / 2, at.y + up, p, terms.density);
+}
+
+}  // namespace crescent::film

@@ -1,0 +1,60 @@
+// Draws the shot and its heading, then the ground over both, so that they fade in and out in 0.3 s, then the caption
+// over that. A frame that shows the same as the one before it, because all that the shot asked of the time has the same
+// answer, is not drawn again.
+#include "painter.h"
+
+#include "drawing.h"
+
+namespace crescent::film {
+
+namespace {
+
+constexpr double fade = 0.3;  // s at either end of a shot
+
+void heading(Frame& f, const Shot& shot) {
+    const double in = f.ease(0, fade);
+    const Rect& bar = heading_band;
+    f.fill(
+        {bar.x, bar.y + 6, 7, bar.h - 12}, shot.kind == Kind::photograph ? photograph_accent : instrument_accent, in);
+    f.text({bar.x + 26, bar.y, 1200, bar.h}, shot.title, title_text, in);
+    if (shot.kind == Kind::words) return;
+    const bool photograph = shot.kind == Kind::photograph;
+    const Words label(photograph ? "PHOTOGRAPH" : "INSTRUMENT",
+        photograph ? ", no number is read off it" : ", read off the float films");
+    Text how = with(with(small_text, photograph ? photograph_accent : instrument_accent), Align::right);
+    f.text({bar.right() - 560, bar.y, 560, bar.h}, label, how, in);
+}
+
+}  // namespace
+
+Painter::Painter(const Timeline& timeline, int height)
+    : timeline_(timeline), canvas_(height * 16 / 9, height, ground, height / sheet_height) {}
+
+void Painter::caption(Frame& f, const Shot& shot) const {
+    for (std::size_t k = 0; k < shot.cues.size(); ++k) {
+        const Cue& cue = shot.cues[k];
+        const double end = k + 1 < shot.cues.size() ? shot.cues[k + 1].at : shot.seconds;
+        if (!f.after(cue.at) || f.after(end)) continue;
+        const double alpha = f.ease(cue.at, cue.at + 0.2);
+        f.text(caption_band, broken(cue.words), cue.question ? with(caption_text, photograph_accent) : caption_text,
+            alpha);
+    }
+}
+
+bool Painter::draw(int frame) {
+    const Timeline::Place place = timeline_.at(frame);
+    if (frame_ && shot_ == place.shot && frame_->same_at(place.t)) return false;
+    const Shot& shot = timeline_.shots()[place.shot];
+    canvas_.clear(ground);
+    frame_ = std::make_unique<Frame>(canvas_, place.t);
+    shot_ = place.shot;
+    Frame& f = *frame_;
+    shot.draw(f);
+    heading(f, shot);
+    f.fill({0, 0, sheet_width, caption_band.y}, ground,
+        1 - f.ease(0, fade) * (1 - f.ease(shot.seconds - fade, shot.seconds - 0.03)));
+    caption(f, shot);
+    return true;
+}
+
+}  // namespace crescent::film

@@ -1,0 +1,58 @@
+// The shots of the film in their order; one file each under shots/.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "data.h"
+#include "frame.h"
+
+namespace crescent::film {
+
+// ---- A shot as a value: what it is called, how long it lasts, what is said when, and how it looks at a time.
+
+/// A caption, from `at` (s from the shot's beginning) to the next one's beginning. After a question nothing is said for
+/// 4 s.
+struct Cue {
+    double at = 0;
+    Words words;  // at most two lines of 42 characters
+    bool question = false;
+};
+
+/// What a shot shows, said at its top: photographs have gone through the display chain, instruments read the float
+/// films.
+enum class Kind { words, photograph, instrument };
+
+struct Shot {
+    std::string name;  // "columns": of its still, and of its chapter in messages
+    Words title;       // of the chapter; stands at the top of the frame
+    Kind kind = Kind::words;
+    Words seen;  // what is seen, for the transcript
+    double seconds = 0;
+    double still = 0;  // the time of its still: everything there, nothing moving
+    std::vector<Cue> cues;
+    std::function<void(Frame&)> draw;
+};
+
+Shot title(const Data& data);
+Shot columns(const Data& data);
+Shot one_pixel(const Data& data);
+Shot same_randoms(const Data& data);
+Shot firefly(const Data& data);
+Shot ladder_cosine(const Data& data);
+Shot ladder_phong(const Data& data);
+Shot heat(const Data& data);
+Shot failure_b(const Data& data);
+Shot heavy_tail(const Data& data);
+Shot tilt(const Data& data);
+Shot exponent(const Data& data);
+Shot seeds(const Data& data);
+Shot beyond(const Data& data);
+Shot claims(const Data& data);
+Shot closing(const Data& data);
+
+/// All of them, with what they show made ready; one that has nothing to show in this run lasts 0 s and is left out.
+std::vector<Shot> shots_of(const Data& data);
+
+}  // namespace crescent::film

@@ -1,0 +1,55 @@
+// Elements in short.
+type Child = Node | string | undefined;
+type Attributes = Record<string, string | number | boolean | ((event: Event) => void) | undefined>;
+
+/** An element with attributes, listeners ("onclick") and children. */
+export function el<K extends keyof HTMLElementTagNameMap>(tag: K, given: Attributes = {}, ...inside: Child[]): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(given)) {
+    if (typeof value === "function") made.addEventListener(name.slice(2), value);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value !== undefined) made.setAttribute(name, String(value));
+  }
+  made.append(...inside.filter((child): child is Node | string => child !== undefined));
+  return made;
+}
+
+/** Markup that the core made: charts, formulas. Nothing of the address is ever in it unescaped. */
+export function made(markup: string): DocumentFragment {
+  const holder = document.createElement("template");
+  holder.innerHTML = markup;
+  return holder.content;
+}
+
+/** PrimarySample in words with their minus sign; commands, which are typed, keep the hyphen. */
+export const minus = (words: string): string => words.replace(/(^|[\s(=,[±])-(?=\.?\d)/g, "$1−");
+
+export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
+  return document.getElementById(id) as T;
+}
+
+/** Copies an element's text; a browser that keeps its clipboard to itself has it selected. What was done, in words. */
+export async function copied(from: HTMLElement): Promise<string> {
+  try {
+    await navigator.clipboard.writeText(from.textContent ?? "");
+    return "Copied.";
+  } catch {
+    window.getSelection()?.selectAllChildren(from);
+    return "Selected: copy it with the keyboard.";
+  }
+}
+
+/** Says a line to those who listen, at most once a second, the last one always. */
+export class Speaker {
+  private said = 0;
+  private timer = 0;
+  constructor(private readonly at: HTMLElement) {}
+  say(line: string): void {
+    window.clearTimeout(this.timer);
+    const wait = Math.max(0, this.said + 1000 - performance.now());
+    this.timer = window.setTimeout(() => {
+      this.said = performance.now();
+      if (this.at.textContent !== line) this.at.textContent = line;
+    }, wait);
+  }
+}

@@ -1,0 +1,22 @@
+# cmake -DROOT=src -DNAME=folder -DALLOWED=a|b|c -DSTAMP=file -P check_includes.cmake
+# Fails with file:line where a file of ROOT/NAME includes a folder that is not in ALLOWED. Public headers
+# (crescent/*.h) may be included, and files next to the including one.
+file(GLOB_RECURSE files ${ROOT}/${NAME}/*.h ${ROOT}/${NAME}/*.cpp)
+set(wrong "")
+foreach(file IN LISTS files)
+  if(file MATCHES "_test\\.cpp$")
+    continue()
+  endif()
+  file(STRINGS ${file} includes REGEX "^[ \t]*#[ \t]*include[ \t]*\"[a-z_]+/")
+  foreach(include IN LISTS includes)
+    string(REGEX MATCH "\"([a-z_]+)/" found "${include}")
+    set(folder ${CMAKE_MATCH_1})
+    if(NOT folder MATCHES "^(${ALLOWED}|crescent)$")
+      string(APPEND wrong "${file}: ${include}: src/${NAME} does not depend on ${folder}\n")
+    endif()
+  endforeach()
+endforeach()
+if(wrong)
+  message(FATAL_ERROR "${wrong}Allowed: ${ALLOWED}. Dependencies are in CMakeLists.txt.")
+endif()
+file(TOUCH ${STAMP})

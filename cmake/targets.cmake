@@ -1,0 +1,82 @@
+# crescent_library: one folder of src/ is one static library, and includes only itself and the folders it depends on.
+
+set(crescent_targets "")        # all libraries, those that depend on others first
+set(crescent_test_sources "")   # *_test.cpp next to their sources, for tests/CMakeLists.txt
+set(crescent_sources "")        # of crescent::check built alone, where all folders are one target
+set(crescent_libraries "")
+
+function(crescent_add_static_library target)
+  add_library(${target} STATIC ${ARGN})
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:crescent_compile_options>)
+  if(NOT PROJECT_IS_TOP_LEVEL)  # another project builds what it links
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+endfunction()
+
+# A file of src/NAME that includes a folder which NAME does not depend on fails the build.
+function(crescent_check_includes name)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.h ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  set(stamp ${PROJECT_BINARY_DIR}/includes/${name}.stamp)
+  list(JOIN ARGN "|" allowed)
+  add_custom_command(OUTPUT ${stamp} DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/check_includes.cmake VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR}/src -DNAME=${name} "-DALLOWED=${name}|${allowed}"
+      -DSTAMP=${stamp} -P ${PROJECT_SOURCE_DIR}/cmake/check_includes.cmake
+    COMMENT "includes of src/${name}")
+  add_custom_target(crescent_${name}_includes DEPENDS ${stamp})
+  add_dependencies(crescent_${name} crescent_${name}_includes)
+endfunction()
+
+# crescent_library(NAME [DEPENDS folder...] [LIBS target...] [PCH header...] [EXCLUDE regex]): src/NAME/**.cpp is the
+# target crescent_NAME, also called crescent::NAME.
+function(crescent_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 of "" "EXCLUDE" "DEPENDS;LIBS;PCH")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  set(tests ${sources})
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  if(of_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX "${of_EXCLUDE}")
+    list(FILTER tests EXCLUDE REGEX "${of_EXCLUDE}")
+  endif()
+  set(crescent_test_sources ${crescent_test_sources} ${tests} PARENT_SCOPE)
+  if(NOT CRESCENT_RUN)
+    set(crescent_sources ${crescent_sources} ${sources} PARENT_SCOPE)
+    set(crescent_libraries ${crescent_libraries} ${of_LIBS} PARENT_SCOPE)
+    return()
+  endif()
+  crescent_add_static_library(crescent_${name} ${sources})
+  add_library(crescent::${name} ALIAS crescent_${name})
+  list(TRANSFORM of_DEPENDS PREPEND crescent_ OUTPUT_VARIABLE depends)
+  target_link_libraries(crescent_${name} PUBLIC ${depends} ${of_LIBS})
+  if(${name} IN_LIST crescent_fuzzed)
+    target_compile_options(crescent_${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+  crescent_use_pch(crescent_${name} ${of_PCH})
+  crescent_check_includes(${name} ${of_DEPENDS})
+  set(crescent_targets crescent_${name} ${crescent_targets} PARENT_SCOPE)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)
+    include(${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)
+  endif()
+endfunction()
+
+# crescent::check without the rest: all folders it depends on are one target, compiled a few files at a time.
+function(crescent_check_alone)
+  crescent_add_static_library(crescent_check ${crescent_sources})
+  add_library(crescent::check ALIAS crescent_check)
+  target_link_libraries(crescent_check PUBLIC ${crescent_libraries})
+  if(NOT DEFINED CMAKE_UNITY_BUILD)
+    set_target_properties(crescent_check PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    foreach(source IN LISTS crescent_sources)
+      string(REGEX MATCH "src/(check/(sources|report|explain)|check|output|[a-z]+)/" group ${source})
+      string(REGEX REPLACE "src/(base|math|scene|samplers)/" "scene" group ${group})
+      string(MAKE_C_IDENTIFIER ${group} group)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endforeach()
+  endif()
+  crescent_use_pch(crescent_check <nlohmann/json.hpp>)
+  set(crescent_targets crescent_check PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,2 @@
+/* The C interface of samplers in shared libraries, docs/plugins.md. */
+#include "check/sampler_plugin.h"

@@ -1,2 +1,0 @@
-# What a reader of compare.md has: renders of two versions and of a reference, and the plan of a comparison.
-. laws/docs/pages/renders.bash

@@ -1,0 +1,117 @@
+// One file that is seen whole or not at all. It is written without a name beside the place, so that a kill leaves
+// nothing, where the file system has that, else under a name of its own (mkstemp: nothing of anybody else's is opened,
+// followed or removed); it is brought to the disk and renamed. Pipes and devices are written to as they are.
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <functional>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/errors.h"
+#include "base/text.h"
+#include "check/report/print.h"
+
+namespace crescent::inline judgements {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& why) {
+    throw OutputError("cannot write " + printable(path) + ": " + why);
+}
+
+/// /dev/stdout, a FIFO, /dev/null.
+bool takes_a_stream(const std::string& path) {
+    struct stat s{};
+    return path.starts_with("/dev/") || path.starts_with("/proc/") ||
+        (stat(path.c_str(), &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
+}
+
+class Beside {
+public:
+    explicit Beside(const std::string& path) : path_(path) {
+        struct stat s{};
+        if (stat(path.c_str(), &s) == 0 && S_ISDIR(s.st_mode)) fail(path, "it is a folder");
+        const std::size_t slash = path.rfind('/');
+        folder_ = slash == std::string::npos ? "./" : path.substr(0, slash + 1);
+#ifdef O_TMPFILE
+        file_ = access("/proc/self/fd", X_OK) == 0 ? open(folder_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600) : -1;
+#endif
+        if (file_ >= 0) return;
+        name_ = folder_ + ".crescent-XXXXXX";
+        file_ = mkostemp(name_.data(), O_CLOEXEC);
+        if (file_ < 0) fail(path, std::strerror(errno));
+    }
+    ~Beside() {
+        if (file_ >= 0) close(file_);
+        if (!name_.empty()) unlink(name_.c_str());
+    }
+    Beside(const Beside&) = delete;
+    Beside& operator=(const Beside&) = delete;
+
+    int file() const { return file_; }
+    void bring() {
+        struct stat s{};
+        const mode_t mask = umask(0);
+        umask(mask);
+        const mode_t mode = stat(path_.c_str(), &s) == 0 ? s.st_mode & 07777 : 0666 & ~mask;
+        const bool done = fchmod(file_, mode) == 0 && fsync(file_) == 0 &&
+            (name_.empty() ? name_and_rename() : rename(name_.c_str(), path_.c_str()) == 0);
+        if (!done) fail(path_, std::strerror(errno));
+        name_.clear();
+    }
+
+private:
+    /// By a name that is always the same for that path: what a kill left between two calls goes.
+    bool name_and_rename() const {
+        const std::string own = fmt::format("/proc/self/fd/{}", file_);
+        const std::string name = fmt::format("{}.crescent-{:016x}", folder_, std::hash<std::string>{}(path_));
+        for (int tries = 0; tries < 100; ++tries) {
+            if (linkat(AT_FDCWD, own.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+                if (rename(name.c_str(), path_.c_str()) == 0) return true;
+                if (errno == ENOENT) continue;  // another process writes the same file
+                const int why = errno;
+                unlink(name.c_str());
+                errno = why;
+                return false;
+            }
+            if (errno != EEXIST) return false;
+            unlink(name.c_str());
+        }
+        return false;
+    }
+
+    std::string path_, folder_, name_;  // name_: none for a file without a name
+    int file_ = -1;
+};
+
+void write_all(int file, const std::string& path, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t n = ::write(file, text.data(), text.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail(path, std::strerror(errno));
+        text.remove_prefix(static_cast<std::size_t>(n));
+    }
+}
+
+}  // namespace
+
+void can_write(const std::string& path) {
+    if (!takes_a_stream(path)) Beside{path};
+}
+
+void write_whole(const std::string& path, const std::string& text) {
+    if (!takes_a_stream(path)) {
+        Beside beside(path);
+        write_all(beside.file(), path, text);
+        return beside.bring();
+    }
+    const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    if (file < 0) fail(path, std::strerror(errno));
+    write_all(file, path, text);
+    close(file);
+}
+
+}  // namespace crescent::inline judgements

@@ -1,0 +1,211 @@
+// The terminal's table shows the worst state over all w_o; JSON and JUnit have every verdict. What takes time goes into
+// the timing alone, so that a judgement has the same bytes each time.
+#include "check/report/print.h"
+
+#include <array>
+#include <fmt/format.h>
+#include <map>
+
+#include "base/text.h"
+#include "check/report/summary.h"
+#include "check/verdict_names.h"
+#include "output/junit.h"
+
+namespace crescent::inline judgements {
+
+namespace {
+
+State worst(State a, State b) {
+    const auto rank = [](State s) {
+        return s == State::wrong ? 4 : s == State::error ? 3 : s == State::inconclusive ? 2 : s == State::right ? 1 : 0;
+    };
+    return rank(b) > rank(a) ? b : a;
+}
+
+/// The worst state of each verdict of one arm.
+using Row = std::map<std::string, State>;
+
+std::string rows_of(const CheckResult& judgement) {
+    std::vector<std::string> order;
+    std::map<std::string, Row> rows;
+    for (const Verdict& v : judgement.verdicts) {
+        if (!rows.count(v.arm)) order.push_back(v.arm);
+        Row& row = rows[v.arm];
+        row[v.name] = row.count(v.name) ? worst(row[v.name], v.state) : v.state;
+    }
+    std::string out = fmt::format("{:<18}", "arm");
+    for (std::string_view name : verdict_names) out += fmt::format(" {:<12}", name);
+    out += "\n";
+    for (const std::string& arm : order) {
+        out += fmt::format("{:<18}", arm);
+        for (std::string_view name : verdict_names) {
+            const auto at = rows[arm].find(std::string(name));
+            out += fmt::format(" {:<12}", at == rows[arm].end() ? "-" : word(at->second));
+        }
+        out += "\n";
+    }
+    return out;
+}
+
+std::string expected_ones(const CheckResult& judgement) {
+    std::map<std::string, int> lines;  // told once each, with how often
+    for (const Verdict& v : judgement.verdicts)
+        if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
+            ++lines[fmt::format(
+                "{}: {} {} as {}: {}", v.arm, word(v.state), v.name, v.waived ? "waived" : "expected", v.why_expected)];
+    std::string out = lines.empty() && judgement.unmet.empty() ? "" : "\n";
+    for (const auto& [line, count] : lines) out += fmt::format("{} ({} cases)\n", line, count);
+    for (const std::string& line : judgement.unmet) out += line + "\n";
+    return out;
+}
+
+nlohmann::ordered_json head_of(const char* format, const JudgementSource& source) {
+    nlohmann::ordered_json root;
+    root["format"] = format;
+    for (const auto& [key, value] :
+        {std::pair("version", &source.version), {"commit", &source.commit}, {"command", &source.command}})
+        if (!value->empty()) root[key] = *value;
+    return root;
+}
+
+std::string text_of(const nlohmann::ordered_json& root) {
+    return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+nlohmann::ordered_json cases_of(const CheckResult& judgement) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const Verdict& v : judgement.verdicts)
+        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}}; out.empty() || out.back() != one)
+            out.push_back(std::move(one));
+    return out;
+}
+
+}  // namespace
+
+std::string verdict_table(const CheckResult& judgement, bool all) {
+    const std::string summary = summary_of(judgement);
+    const std::size_t details = std::min(summary.find("\n\n"), summary.size());
+    std::string out =
+        summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(judgement) + expected_ones(judgement);
+    if (details < summary.size()) out += summary.substr(details + 1);
+    for (const Verdict& v : judgement.verdicts)
+        if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
+    for (const std::string& last :
+        {implied_told(judgement), unseen_told(judgement), nothing_drawn_told(judgement), not_looked_at_told(judgement)})
+        if (!last.empty()) out += "\n" + last + "\n";
+    const std::string asked =
+        judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
+    out += fmt::format(
+        "\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n",
+        word(judgement.state), judgement.tests, judgement.alpha, judgement.screened, judgement.confirmed, asked);
+    return out;
+}
+
+std::string verdict_json(const CheckResult& judgement, const JudgementSource& source) {
+    nlohmann::ordered_json root = head_of("crescent check 2", source);
+    root["state"] = word(judgement.state);
+    root["as_expected"] = judgement.as_expected;
+    root["alpha"] = judgement.alpha;
+    root["tests"] = judgement.tests;
+    root["failed_once"] = judgement.screened;
+    root["failed_twice"] = judgement.confirmed;
+    if (judgement.questions > 0) root["questions"] = judgement.questions;
+    if (!judgement.unmet.empty()) root["unmet_expectations"] = judgement.unmet;
+    root["asked_for"] = cases_of(judgement);
+    root["left_out"] = nlohmann::ordered_json::array();
+    for (const SkippedCase& l : judgement.left_out)
+        root["left_out"].push_back({{"arm", l.arm}, {"case", l.trial}, {"verdicts", l.verdicts}, {"why", l.why}});
+    root["verdicts"] = nlohmann::ordered_json::array();
+    for (const Verdict& v : judgement.verdicts) {
+        nlohmann::ordered_json one;
+        one["arm"] = v.arm;
+        one["case"] = v.trial;
+        one["name"] = v.name;
+        one["state"] = word(v.state);
+        one["say"] = v.say;
+        if (!v.cause.empty()) one["cause"] = v.cause;
+        if (const std::string next = settling(v); !next.empty()) one["settle"] = next;
+        one["expected"] = v.expected;
+        if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
+        if (v.waived) one["waived"] = true;
+        one["evidence"] = v.evidence;
+        root["verdicts"].push_back(std::move(one));
+    }
+    return text_of(root);
+}
+
+std::string verdict_timing(const CheckResult& judgement, const JudgementSource& source) {
+    nlohmann::ordered_json root = head_of("crescent check timing 1", source);
+    root["verdicts"] = nlohmann::ordered_json::array();
+    for (const Verdict& v : judgement.verdicts) {
+        nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}, {"name", v.name}, {"seconds", v.seconds}};
+        if (!v.say_timed.empty()) one["say"] = v.say_timed;
+        one.update(v.timing);
+        root["verdicts"].push_back(std::move(one));
+    }
+    return text_of(root);
+}
+
+std::string verdict_junit(const CheckResult& judgement) {
+    using Case = JunitCase::State;
+    JunitSuite suite{"crescent check", {}, {}};
+    for (const Verdict& v : judgement.verdicts) {
+        const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
+        const bool open = v.state == State::skipped || v.state == State::inconclusive;
+        const std::string next = settling(v);
+        const Case state = v.state == State::error ? Case::error
+            : fails                                ? Case::failed
+            : open                                 ? Case::skipped
+                                                   : Case::passed;
+        suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.trial), state,
+            fmt::format("{}: {}", word(v.state), sentences_of(v.say).front()),
+            v.say + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next),
+            v.seconds});
+    }
+    for (const std::string& line : judgement.unmet)
+        suite.cases.push_back({"crescent check", "expectations", Case::failed, line, line, 0});
+    return junit_text(suite);
+}
+
+// ---- The words of each front end for one step stand side by side.
+
+namespace {
+
+/// By front end.
+using Words = std::array<const char*, 3>;
+constexpr Words thorough = {"--full", "crescent::IsARightSamplerBy(crescent::TestSettings::thorough())", "full=True"};
+constexpr Words time = {"--patience SECONDS", "a sampler that answers faster", "patience=SECONDS"};
+constexpr Words accept = {"--allow-inconclusive", "crescent::IsNotAWrongSampler()", "state != 'wrong'"};
+
+std::string named(const Words& words, FrontEnd front_end) { return words[static_cast<std::size_t>(front_end)]; }
+
+}  // namespace
+
+std::string settling(const Verdict& v, FrontEnd front_end) {
+    switch (v.next.kind) {
+        case NextStep::Kind::none: return v.settle;
+        case NextStep::Kind::more_draws:
+            return named(thorough, front_end) + " draws more" +
+                (v.next.times > 0 ? fmt::format(" (about {:.2g} times as many draws are needed).", v.next.times) : ".");
+        case NextStep::Kind::more_time: return named(time, front_end) + ": there was no time to look at all of it.";
+        case NextStep::Kind::heavier_pdf:
+            return "a pdf that falls off no faster than f; " + named(accept, front_end) + " accepts a heavy tail.";
+    }
+    return v.settle;
+}
+
+std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end) {
+    const auto [theta, azimuth] = wo;
+    switch (front_end) {
+        case FrontEnd::command_line: return fmt::format("--wo {:g},{:g} judges this w_o alone.", theta, azimuth);
+        case FrontEnd::cpp:
+            return fmt::format(
+                "crescent::IsARightSamplerBy(settings) with settings.wo = {{{{{:g}, {:g}}}}} judges "
+                "this w_o alone.",
+                theta, azimuth);
+        case FrontEnd::python: return fmt::format("wo_deg=[({:g}, {:g})] judges this w_o alone.", theta, azimuth);
+    }
+    return "";
+}
+
+}  // namespace crescent::inline judgements

@@ -1,0 +1,342 @@
+// Verdicts of one arm, name and state are one finding, told by the one that is furthest off; the other sentences follow
+// with the w_o at which they were said.
+#include "check/report/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "base/vec.h"
+#include "check/sources/sampler_adapter.h"
+#include "check/verdict.h"
+#include "check/verdict_names.h"
+#include "math/functions.h"
+#include "math/simd/scalar.h"
+
+namespace crescent::inline judgements {
+
+namespace {
+
+int rank(State s) { return s == State::wrong ? 0 : s == State::error ? 1 : 2; }
+
+using Key = std::pair<std::string, std::string>;  // arm and case
+
+std::map<Key, std::set<std::string>> left_out_of(const CheckResult& j) {
+    std::map<Key, std::set<std::string>> out;
+    for (const SkippedCase& l : j.left_out) out[{l.arm, l.trial}].insert(l.verdicts.begin(), l.verdicts.end());
+    return out;
+}
+
+struct Count {
+    std::size_t cases = 0;
+    bool by_wo = true;  // they differ by w_o alone
+};
+
+std::map<std::string, Count> count_cases(const CheckResult& j) {
+    std::map<std::string, std::set<std::string>> cases;
+    for (const Verdict& v : j.verdicts) cases[v.arm].insert(v.trial);
+    std::map<std::string, Count> out;
+    for (const auto& [arm, trials] : cases)
+        out[arm] = {trials.size(), std::all_of(trials.begin(), trials.end(), [](const std::string& t) {
+                        return t.starts_with("w_o") && t.find(',') == std::string::npos;
+                    })};
+    return out;
+}
+
+void add(Finding& f, const Verdict& v) {
+    ++f.count;
+    if (!f.worst || v.size > f.worst->size) f.worst = &v;
+}
+
+/// What a verdict says beyond what the worst of its finding says already.
+std::string told_beside(const Verdict& v, const std::set<std::string>& already) {
+    std::string out;
+    for (const std::string& sentence : sentences_of(told(v)))
+        if (!already.contains(sentence)) out += (out.empty() ? "" : " ") + sentence;
+    return out;
+}
+
+void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
+    const std::vector<std::string> of_worst = sentences_of(told(*f.worst));
+    const std::set<std::string> already(of_worst.begin(), of_worst.end());
+    for (const Verdict* v : all) {
+        const std::string say = told_beside(*v, already);
+        if (say.empty()) continue;
+        const auto same =
+            std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == say; });
+        if (same != f.sentences.end()) same->second.push_back(v->trial);
+        else f.sentences.push_back({say, {v->trial}});
+    }
+}
+
+/// The cause that is named for the worst verdict, or for another wrong one of the same arm, best of the same name.
+std::string cause_of(const Finding& f, const CheckResult& j) {
+    std::string out = f.worst->cause;
+    for (const bool of_name : {true, false})
+        for (const Verdict& v : j.verdicts)
+            if (out.empty() && v.arm == f.arm && v.state == State::wrong && (!of_name || v.name == f.name))
+                out = v.cause;
+    return out;
+}
+
+}  // namespace
+
+std::string told(const Verdict& v, FrontEnd front_end) {
+    const std::string next = settling(v, front_end);
+    return v.say + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next) +
+        (v.say_timed.empty() ? "" : " " + v.say_timed);
+}
+
+std::vector<std::string> sentences_of(const std::string& text) {
+    std::vector<std::string> out;
+    std::size_t from = 0;
+    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
+        if (at + 2 >= text.size() || text[at + 2] < 'A' || text[at + 2] > 'Z') continue;
+        out.push_back(text.substr(from, at + 1 - from));
+        from = at + 2;
+    }
+    out.push_back(text.substr(from));
+    return out;
+}
+
+std::vector<Finding> findings_of(const CheckResult& j) {
+    const auto left_out = left_out_of(j);
+    const std::map<std::string, Count> counts = count_cases(j);
+    std::map<std::tuple<std::string, std::string, State, bool>, std::size_t> place;
+    std::vector<Finding> out;
+    std::vector<std::vector<const Verdict*>> members;
+    for (const Verdict& v : j.verdicts) {
+        if (v.state == State::right || v.state == State::skipped) continue;
+        const auto left = left_out.find({v.arm, v.trial});
+        if (left != left_out.end() && left->second.count(v.name)) continue;
+        const bool expected = v.expected && !v.why_expected.empty();
+        const auto [at, fresh] =
+            place.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
+        if (fresh) {
+            out.push_back({v.arm, v.name, v.state, expected, 0, counts.at(v.arm).cases,
+                counts.at(v.arm).by_wo ? "w_o" : "cases", nullptr, {}});
+            members.emplace_back();
+        }
+        add(out[at->second], v);
+        members[at->second].push_back(&v);
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        if (out[i].state == State::wrong) out[i].cause = cause_of(out[i], j);
+        if (out[i].state != State::error) list_sentences(out[i], members[i]);
+        else
+            for (const Verdict* v : members[i])
+                if (v->evidence.contains("first_fault")) out[i].worst = v;
+        if (out[i].state == State::error) out[i].of = j.verdicts.size(), out[i].cases = "verdicts";
+    }
+    const auto order = [](const Finding& f) {
+        const auto name = std::find(verdict_names.begin(), verdict_names.end(), f.name);
+        return std::tuple(rank(f.state), f.arm, name - verdict_names.begin(), f.expected);
+    };
+    std::sort(out.begin(), out.end(), [&](const Finding& a, const Finding& b) { return order(a) < order(b); });
+    return out;
+}
+
+namespace {
+
+/// "at 8 of 8 w_o, worst at w_o 60 deg az 250"; "" for a sampler that is judged once, without w_o.
+std::string where_found(const Finding& f) {
+    if (f.of == 1 && f.worst->trial == without_wo) return "";
+    const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
+    return fmt::format("at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->trial);
+}
+
+}  // namespace
+
+std::string told(const Finding& f, FrontEnd front_end) {
+    const std::string say = told(*f.worst, front_end);
+    if (f.state == State::error && f.worst->trial == before_any_trial) return "error. " + say;
+    if (f.state == State::error)
+        return fmt::format(
+            "error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of, f.worst->trial, say);
+    const std::string where = where_found(f);
+    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, say);
+    return out;
+}
+
+std::string left_out_told(const CheckResult& j) {
+    if (j.left_out.empty()) return "";
+    std::set<Key> cases;
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
+    std::vector<std::string> trials;
+    bool valid_alone = true;
+    for (const SkippedCase& l : j.left_out) {
+        trials.push_back(l.trial);
+        valid_alone = valid_alone && l.verdicts.size() + 1 == verdict_names.size();
+    }
+    return fmt::format("Left out: {} at {} of {} w_o ({}). {}", valid_alone ? "all but valid" : "some verdicts",
+        trials.size(), cases.size(), fmt::join(trials, "; "), j.left_out[0].why);
+}
+
+std::string summary_of(const CheckResult& j) {
+    std::string out, details, arm;
+    for (const Finding& f : findings_of(j)) {
+        if (f.expected) continue;
+        out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", told(f));
+        if (f.sentences.empty()) continue;
+        details += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
+        for (const auto& [say, trials] : f.sentences)
+            details += fmt::format("  [{}] {}\n", fmt::join(trials, "; "), say);
+    }
+    if (const std::string left = left_out_told(j); !left.empty()) out += left + "\n";
+    return out + details;
+}
+
+namespace {
+
+std::string in_one_line(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+/// What and how large, where, and the cause: a line each.
+std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
+    if (f.state == State::error) return {in_one_line(told(f, FrontEnd::cpp))};
+    std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->say))};
+    if (const std::string where = where_found(f); !where.empty()) out.push_back("  " + where);
+    if (with_cause && !f.cause.empty()) out.push_back("  " + in_one_line(f.cause));
+    return out;
+}
+
+/// The step of the first finding: a wrong one is looked at alone, an open one has what would settle it.
+std::string next_step_of(const Finding& f) {
+    const Verdict& v = *f.worst;
+    std::string say = in_one_line(settling(v, FrontEnd::cpp));
+    if (say.empty() && v.wo && f.state == State::wrong) say = one_wo_text(*v.wo, FrontEnd::cpp);
+    return say.empty() ? "" : "Next: " + say;
+}
+
+}  // namespace
+
+std::string what_is_wrong(const CheckResult& judgement, std::size_t most_lines) {
+    std::vector<Finding> findings = findings_of(judgement);
+    std::erase_if(findings, [](const Finding& f) { return f.expected; });
+    std::vector<std::string> last;
+    if (const std::string left = left_out_told(judgement); !left.empty()) last.push_back(in_one_line(left));
+    if (!findings.empty())
+        if (const std::string next = next_step_of(findings[0]); !next.empty()) last.push_back(next);
+    std::vector<std::string> lines;
+    std::size_t shown = 0;
+    for (; shown < findings.size(); ++shown) {
+        const std::vector<std::string> more =
+            lines_of(findings[shown], shown == 0 || findings[shown].cause != findings[0].cause);
+        const bool others = shown + 1 < findings.size();
+        if (shown > 0 && lines.size() + more.size() + others + last.size() > most_lines) break;
+        lines.insert(lines.end(), more.begin(), more.end());
+    }
+    std::vector<std::string> others;
+    for (; shown < findings.size(); ++shown)
+        others.push_back(fmt::format("{} ({})", findings[shown].name, word(findings[shown].state)));
+    if (!others.empty()) lines.push_back(fmt::format("Also not right: {}", fmt::join(others, ", ")));
+    lines.insert(lines.end(), last.begin(), last.end());
+    return lines.empty() ? "" : fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+std::string unseen_told(const CheckResult& judgement) {
+    if (judgement.state == State::error) return "";  // what there is of right verdicts is not the whole
+    std::map<std::string, double> most;
+    for (const Verdict& v : judgement.verdicts)
+        for (const auto& [kind, size] : v.hidden)
+            if (v.state == State::right) most[kind] = std::max(most[kind], size);
+    std::vector<std::string> said;
+    const auto say = [&](const char* kind, const char* words, double unit) {
+        if (const auto at = most.find(kind); at != most.end())
+            said.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
+    };
+    say("constant", "a constant factor of {:.2g} %", 100);
+    say("leak", "{:.2g} % of the draws uniform", 100);
+    say("cap", "a cap with {:.2g} % of p never drawn", 100);
+    say("rotation", "a rotation by {:.2g} rad", 1);
+    say("parameter", "an exponent off by {:.2g} %", 100);
+    return said.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(said, ", "));
+}
+
+std::string nothing_drawn_told(const CheckResult& judgement) {
+    constexpr double worth_saying = 0.01;
+    const auto most = std::ranges::max_element(judgement.verdicts, {}, &Verdict::nothing);
+    if (most == judgement.verdicts.end() || !(most->nothing > worth_saying)) return "";
+    return fmt::format("Up to {:.3g} % of the draws drew nothing, pdf 0 or under the horizon: {} at {}.",
+        100 * most->nothing, most->arm, most->trial);
+}
+
+// ---- Read off the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
+// physics. Rings of 15 degrees are means of the evidence's own, by solid angle.
+
+namespace {
+
+constexpr double edges[] = {0, 15, 30, 45, 60, 75, 90, 180};  // degrees
+constexpr std::size_t rings = std::size(edges) - 1, most_lines = 16;
+
+/// "2.61 +- 0.02", to the first digit of the error; "0" where nothing was drawn.
+std::string with_error(double v, double se) {
+    if (!(v > 0)) return "0";
+    if (!(se > 0)) return fmt::format("{:.4g}", v);
+    const int digits = static_cast<int>(std::floor(math::log10(se)));
+    if (digits > 0 || digits < -6) return fmt::format("{:.3g} +- {:.1g}", v, se);
+    return fmt::format("{:.{}f} +- {:.{}f}", v, -digits, se, -digits);
+}
+
+/// The mean over the rows between two angles.
+std::string ring_told(const nlohmann::ordered_json& rows, double from, double to) {
+    double sum = 0, square = 0, whole = 0;
+    for (const auto& row : rows) {
+        const double low = row[0].get<double>(), high = row[1].get<double>();
+        if (low < from || high > to) continue;
+        const double angle = math::cos(low * pi / 180) - math::cos(high * pi / 180);
+        sum += row[2].get<double>() * angle, square += sqr(row[3].get<double>() * angle);
+        whole += angle;
+    }
+    if (to > 90) whole = 1;  // rows end where the draws do
+    return whole > 0 ? with_error(sum / whole, std::sqrt(square) / whole) : "-";
+}
+
+std::string line_of(const Verdict& v, const std::string& name) {
+    const nlohmann::ordered_json &rows = v.evidence["implied_rings"]["rows"], &peak = v.evidence["implied_peak"];
+    std::string out = fmt::format("{:<20}", name);
+    for (std::size_t k = 0; k < rings; ++k) out += fmt::format(" {:<15}", ring_told(rows, edges[k], edges[k + 1]));
+    return out + " " + with_error(peak["pdf"].get<double>(), peak["standard_error"].get<double>()) + "\n";
+}
+
+}  // namespace
+
+std::string implied_told(const CheckResult& j) {
+    std::vector<const Verdict*> all;
+    bool one_arm = true;
+    for (const Verdict& v : j.verdicts)
+        if (v.evidence.contains("implied_rings")) {
+            all.push_back(&v);
+            one_arm = one_arm && v.arm == all[0]->arm;
+        }
+    if (all.empty()) return "";
+    std::string out = fmt::format("{:<20}", "degrees from n");
+    for (std::size_t k = 0; k < rings; ++k)
+        out += fmt::format(" {:<15}", fmt::format("{:g} to {:g}", edges[k], edges[k + 1]));
+    out += " highest\n";
+    for (std::size_t i = 0; i < std::min(all.size(), most_lines); ++i)
+        out += line_of(*all[i], one_arm ? all[i]->trial : all[i]->arm + " " + all[i]->trial);
+    if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
+    return "The density that the draws imply, there being no pdf(w): 1/sr, the mean over each ring and one standard "
+           "error.\n" +
+        out + "Finer in the JSON: implied_rings, implied_bins.";
+}
+
+std::string not_looked_at_told(const CheckResult& j) {
+    if (j.state == State::error) return "";
+    std::vector<std::string> all;
+    for (const Verdict& v : j.verdicts) {
+        const auto at = v.evidence.find("not_looked_at");
+        if (at == v.evidence.end()) continue;
+        const std::string what = at->get<std::string>();
+        if (std::find(all.begin(), all.end(), what) == all.end()) all.push_back(what);
+    }
+    return all.empty() ? "" : fmt::format("Not looked at: {}.", fmt::join(all, "; "));
+}
+
+}  // namespace crescent::inline judgements

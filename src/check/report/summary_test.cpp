@@ -1,0 +1,68 @@
+// What a failing test prints of a judgement: few lines, in a fixed order, in calls of C++.
+#include "check/report/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace crescent {
+namespace {
+
+CheckResult of_verdicts(std::initializer_list<std::tuple<const char*, State, double, const char*>> verdicts) {
+    CheckResult j;
+    for (const auto& [name, state, theta, cause] : verdicts) {
+        Verdict v;
+        v.arm = "sampler", v.name = name, v.state = state, v.cause = cause;
+        v.trial = "w_o " + std::to_string(static_cast<int>(theta)) + " deg";
+        v.wo = {theta, 0};
+        v.say = std::string("What of ") + name + ".\nHow large.";
+        j.verdicts.push_back(v);
+    }
+    return j;
+}
+
+std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> out;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) out.push_back(line);
+    return out;
+}
+
+TEST(WhatIsWrong, IsWhatHowLargeWhereCauseAndNext) {
+    const auto said = lines(what_is_wrong(of_verdicts({{"normalised", State::wrong, 60, ""},
+        {"density", State::right, 60, ""}, {"normalised", State::wrong, 30, "A factor 2."}})));
+    ASSERT_EQ(said.size(), 4u);
+    EXPECT_EQ(said[0], "normalised is wrong: What of normalised. How large.");
+    EXPECT_EQ(said[1], "  at 2 of 2 w_o, worst at w_o 60 deg");
+    EXPECT_EQ(said[2], "  A factor 2.");
+    EXPECT_EQ(said[3].find("Next: crescent::IsARightSamplerBy(settings) with settings.wo = {{60, 0}}"), 0u) << said[3];
+}
+
+TEST(WhatIsWrong, HasAtMostEightLinesHoweverMuchIsWrong) {
+    const CheckResult j = of_verdicts(
+        {{"valid", State::wrong, 0, "A."}, {"support", State::wrong, 0, "B."}, {"normalised", State::wrong, 0, "C."},
+            {"density", State::wrong, 0, "D."}, {"tail", State::inconclusive, 0, ""}, {"mean", State::error, 0, ""}});
+    for (std::size_t most : {5u, 8u, 12u}) {
+        const auto said = lines(what_is_wrong(j, most));
+        EXPECT_LE(said.size(), most);
+        EXPECT_GE(said.size() + 3, most);
+        EXPECT_EQ(said[0].find("valid is wrong"), 0u);
+        std::string all;
+        for (const std::string& line : said) all += line;
+        for (const Verdict& v : j.verdicts)
+            if (v.state != State::error) EXPECT_NE(all.find(v.name), std::string::npos) << v.name << "\n" << all;
+    }
+    EXPECT_EQ(what_is_wrong(of_verdicts({{"valid", State::right, 0, ""}})), "");
+}
+
+TEST(NextStep, IsNamedByEachFrontEndInItsOwnWords) {
+    CheckResult j = of_verdicts({{"density", State::inconclusive, 0, ""}});
+    j.verdicts[0].next = {NextStep::Kind::more_draws, 4};
+    EXPECT_NE(summary_of(j).find("--full"), std::string::npos) << summary_of(j);
+    EXPECT_EQ(what_is_wrong(j).find("--"), std::string::npos) << what_is_wrong(j);
+    EXPECT_NE(what_is_wrong(j).find("TestSettings::thorough()"), std::string::npos) << what_is_wrong(j);
+    EXPECT_NE(settling(j.verdicts[0], FrontEnd::python).find("full=True"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace crescent

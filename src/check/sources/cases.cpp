@@ -1,0 +1,319 @@
+// Every built-in arm on the surfaces that it states, or on every lobe; under a fill, disks, a ball or a rectangle; at 8
+// w_o, 16 in full mode. --set changes what a surface has.
+#include "check/sources/cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "check/sources/wrappers.h"
+#include "math/functions.h"
+
+namespace crescent::inline subjects {
+
+namespace {
+
+/// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so
+/// that distance decides and not order; one straight above facing down (its frame's axis is -z); and of every other
+/// kind of light its example. Radiances, m.
+CaseLighting light_named(const std::string& name) {
+    const CaseDiskLight oblique{20, 2.0 * tilt(35, 20), -1.0 * tilt(20, 60), 0.5};
+    const CaseDiskLight behind{12, 3.2 * tilt(48, 35), -1.0 * tilt(60, 40), 0.9};
+    const CaseDiskLight overhead{20, {0.1, -0.05, 2}, {0, 0, -1}, 0.6};
+    const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+    CaseLighting light;
+    light.fill = has("fill") ? 1 : 0;
+    if (has("two disks")) light.disks = {behind, oblique};
+    else if (has("overhead")) light.disks = {overhead};
+    else if (has("disk")) light.disks = {oblique};
+    for_each_lamp([&]<class Kind>() {
+        if (has(Kind::name)) light.lamps.push_back({10, Kind::example()});
+    });
+    return light;
+}
+
+using Setups = std::vector<CaseSetup>;
+
+/// The surfaces that an arm states; where it states none, every lobe at a middling width, and Lambert.
+Setups setups_of(const SamplerInfo& arm) {
+    Setups all;
+    for (const CaseSurface& on : arm.trials)
+        all.push_back(case_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
+    // What is judged under a disk alone aims at lights, and is judged under every kind too.
+    const auto add = [&](std::string_view light) {
+        all.push_back(case_setup(LobeKind::none, true, std::string(light), 32));
+    };
+    if (std::ranges::any_of(arm.trials, [](const CaseSurface& on) { return on.light == "disk"; })) {
+        for_each_lamp([&]<class Kind>() { add(Kind::name); });
+        add("disk + rectangle");
+    }
+    if (!all.empty()) return all;
+    all.push_back(case_setup(LobeKind::none, true, "fill", 32));
+    for (const LobeInfo& lobe : lobe_infos())
+        all.push_back(case_setup(lobe.kind, true, "fill", lobe.parameter == LobeParameter::alpha ? 0.3 : 32));
+    return all;
+}
+
+/// What is known of an arm on such a surface at theta_R = theta.
+ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& on, double theta_deg) {
+    const SurfaceSetup& f = on.surface;
+    return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : ExpectedBehaviour{};
+}
+
+/// Sets what this surface and light have; the keys that it read are crossed out of `unread`.
+void apply(const Settings& settings, CaseSetup& setup, Settings& unread) {
+    const auto set = [&](const char* key, bool has, double& to) {
+        const auto at = settings.find(key);
+        if (at == settings.end() || !has) return;
+        to = at->second;
+        unread.erase(key);
+    };
+    SurfaceSetup& f = setup.surface;
+    set("s", setup.tells_s, f.s);
+    set("alpha", setup.tells_alpha, f.alpha);
+    set("rho_d", f.rho_d > 0, f.rho_d);
+    set("rho_s", f.rho_s > 0, f.rho_s);
+    if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).judged_from)
+        throw InputError({"--set", 0, 0},
+            fmt::format(
+                "alpha is judged from {:g} on where the lobe is {}: the quadrature of a sharper one is not known",
+                lobe_info(f.lobe).judged_from, lobe_info(f.lobe).label));
+    if (f.rho_d + f.rho_s > 1)
+        throw InputError({"--set", 0, 0},
+            fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));
+}
+
+std::shared_ptr<const SamplerAdapter> subject_of(const std::string& arm, const CaseSetup& setup, Vec3d wo) {
+    std::shared_ptr<const SamplerAdapter> out;
+    for_each_sampler(Samplers{}, [&]<template <class> class A>() {
+        if (A<float>::name == arm) out = std::make_shared<BuiltIn<A>>(setup.surface, wo, setup.light);
+    });
+    return out;
+}
+
+/// Two setups that --set made alike count once.
+bool alike(const CaseSetup& a, const CaseSetup& b) {
+    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.tells_s || a.surface.s == b.surface.s) &&
+        (!a.tells_alpha || a.surface.alpha == b.surface.alpha);
+}
+
+}  // namespace
+
+double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
+    if (wo.z <= 0 || wi.z <= 0) return 0;
+    return f.rho_d / pi + f.rho_s * lobe_value(f.lobe, f.s, f.alpha, wo, wi);
+}
+
+std::shared_ptr<const SamplerAdapter> sampler_on(const std::string& name, const CheckCase& trial) {
+    CaseSetup on;
+    const auto value = [&](const char* key, double& to) {
+        for (const auto& [known, v] : trial.parameters)
+            if (known == key) to = v;
+    };
+    value("s", on.surface.s);
+    value("alpha", on.surface.alpha);
+    on.surface.rho_d = trial.brdf.empty() || trial.brdf.starts_with("Lambert") ? 0.5 : 0;
+    for (const LobeInfo& lobe : lobe_infos())
+        if (trial.brdf == lobe.label || trial.brdf == "Lambert + " + std::string(lobe.label))
+            on.surface.lobe = lobe.kind;
+    on.surface.rho_s = on.surface.lobe == LobeKind::none ? 0 : 0.4;
+    on.light = trial.light;
+    return subject_of(name, on, trial.wo);
+}
+
+std::vector<std::pair<double, double>> wo_grid(bool full) {
+    std::vector<std::pair<double, double>> grid = {
+        {0, 0}, {1, 200}, {30, 0}, {45, 130}, {60, 250}, {75, 310}, {85, 75}, {89, 180}};
+    if (full)
+        for (std::pair<double, double> extra : {std::pair{0.1, 10.0}, {5.0, 100.0}, {15.0, 20.0}, {40.0, 90.0},
+                 {55.0, 300.0}, {70.0, 45.0}, {80.0, 165.0}, {87.0, 270.0}})
+            grid.push_back(extra);
+    return grid;
+}
+
+CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, double sharpness) {
+    CaseSetup out;
+    const LobeInfo* info = lobe == LobeKind::none ? nullptr : &lobe_info(lobe);
+    out.surface.lobe = lobe;
+    out.surface.rho_d = lambert ? 0.5 : 0;
+    out.surface.rho_s = lobe == LobeKind::none ? 0 : 0.4;
+    out.tells_alpha = info && info->parameter == LobeParameter::alpha;
+    out.tells_s = info && info->parameter == LobeParameter::s;
+    (out.tells_alpha ? out.surface.alpha : out.surface.s) = sharpness;
+    out.brdf = info ? info->label : "";
+    if (lambert) out.brdf = out.brdf.empty() ? "Lambert" : "Lambert + " + out.brdf;
+    out.lighting = lighting;
+    out.light = light_named(lighting);
+    return out;
+}
+
+CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std::string arm,
+    std::shared_ptr<const SamplerAdapter> subject) {
+    CheckCase t;
+    t.arm = std::move(arm);
+    t.brdf = setup.brdf;
+    t.lighting = setup.lighting;
+    t.wo = tilt(theta, azimuth);
+    t.theta_deg = theta;
+    t.azimuth_deg = azimuth;
+    if (setup.tells_s) t.parameters.emplace_back("s", setup.surface.s);
+    if (setup.tells_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
+    t.light = setup.light;
+    t.subject = std::move(subject);
+    return t;
+}
+
+std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settings, bool full, const Grid& own) {
+    std::vector<CheckCase> trials;
+    const std::vector<std::string> names = sampler_names();
+    if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
+        const std::string near = nearest(arm, names);
+        throw InputError({"crescent check", 0, 0},
+            "no sampler '" + arm + "'" +
+                (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", "))
+                              : "; did you mean '" + near + "'?"));
+    }
+    Settings unread = settings;
+    for (const std::string& name : names) {
+        if (!arm.empty() && name != arm) continue;
+        Setups setups;
+        for (CaseSetup s : setups_of(*find_arm_info(name))) {
+            apply(settings, s, unread);
+            bool seen = false;
+            for (const CaseSetup& other : setups) seen = seen || alike(s, other);
+            if (!seen) setups.push_back(s);
+        }
+        for (const CaseSetup& s : setups)
+            for (const auto& [theta, azimuth] : own.empty() ? wo_grid(full) : own) {
+                CheckCase t = make_case_on(s, theta, azimuth, name, subject_of(name, s, tilt(theta, azimuth)));
+                t.theory = theory_of(*find_arm_info(name), s, theta);
+                trials.push_back(std::move(t));
+            }
+    }
+    if (!unread.empty())
+        throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
+    return trials;
+}
+
+// ---- CheckCases of a user's sampler, with arms of the list beside it that are aimed at its BRDF.
+
+namespace {
+
+/// A built-in arm aimed at a user's BRDF.
+template <template <class> class A> class Borrowed : public BuiltIn<A> {
+public:
+    Borrowed(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
+        : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
+    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    bool serial() const override { return owner_->serial(); }
+    bool limited() const override { return owner_->limited(); }
+
+private:
+    std::shared_ptr<const SamplerAdapter> owner_;
+};
+
+}  // namespace
+
+CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& subject, double theta, double azimuth) {
+    CheckCase t;
+    t.arm = subject->name();
+    t.wo = tilt(theta, azimuth);
+    t.theta_deg = theta;
+    t.azimuth_deg = azimuth;
+    t.subject = subject;
+    return t;
+}
+
+namespace {
+
+/// The grid of w_o that a sampler answers for: one where it has none, mirrored under the surface too where it takes
+/// both sides.
+Grid grid_for(const Traits& traits, bool full) {
+    if (traits.wo == Traits::Asked::none) return {{0, 0}};
+    Grid grid = wo_grid(full);
+    if (traits.wo != Traits::Asked::both) return grid;
+    for (const auto& [theta, azimuth] : wo_grid(full))
+        if (full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
+    return grid;
+}
+
+}  // namespace
+
+std::vector<CheckCase> make_user_cases(
+    const std::shared_ptr<const SamplerAdapter>& subject, bool full, const Grid& own) {
+    std::vector<CheckCase> trials;
+    const Traits traits = subject->traits();
+    const Grid grid = own.empty() ? grid_for(traits, full) : own;
+    for (const auto& [theta, azimuth] : grid) {
+        trials.push_back(make_user_case(subject, theta, azimuth));
+        const bool can_be_ranked =
+            subject->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::Asked::none;
+        if (!can_be_ranked) continue;  // cosine and uniform reach neither delta parts nor the other side
+        const Vec3d wo = tilt(theta, azimuth);
+        for (const std::shared_ptr<const SamplerAdapter>& peer :
+            {std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
+                std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
+            trials.push_back(make_user_case(peer, theta, azimuth));
+            trials.back().baseline = true;
+        }
+    }
+    return trials;
+}
+
+namespace {
+
+/// An arm of the list aimed at a user's f.
+class WithF : public SamplerAdapter {
+public:
+    WithF(std::shared_ptr<const SamplerAdapter> arm, std::shared_ptr<const SamplerAdapter> owner)
+        : arm_(std::move(arm)), owner_(std::move(owner)) {}
+    std::string name() const override { return arm_->name(); }
+    Traits traits() const override { return arm_->traits(); }
+    int techniques() const override { return arm_->techniques(); }
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        arm_->sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { arm_->pdf(t, at, out); }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        arm_->exact_pdf(t, at, out);
+    }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        arm_->mis_weight(t, at, out);
+    }
+    bool has_f() const override { return owner_->has_f(); }
+    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    bool serial() const override { return owner_->serial(); }
+    bool limited() const override { return owner_->limited(); }
+
+private:
+    std::shared_ptr<const SamplerAdapter> arm_, owner_;
+};
+
+}  // namespace
+
+std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<const CheckCase> a) {
+    std::vector<CheckCase> out;
+    for (const CheckCase& t : a) {
+        CheckCase b = t;
+        b.arm = name;
+        b.theory = {};
+        b.subject = std::make_shared<WithF>(sampler_on(name, t), named_side(t.subject, "A"));  // f is A's
+        out.push_back(std::move(b));
+    }
+    return out;
+}
+
+std::vector<CheckCase> sampler_against(
+    const std::shared_ptr<const SamplerAdapter>& subject, std::span<const CheckCase> a) {
+    std::vector<CheckCase> out;
+    for (const CheckCase& t : a) {
+        out.push_back(t);
+        out.back().arm = subject->name();
+        out.back().subject = subject;
+        out.back().theory = {};
+    }
+    return out;
+}
+
+}  // namespace crescent::inline subjects

@@ -1,0 +1,353 @@
+// Rows of questions become lines or blocks and the answers rows of doubles, which are read the same way. Directions
+// under the horizon of a sampler of the hemisphere are not asked about. What `f` stands for is asked once, along the
+// normal.
+#include "check/sources/pipe.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/text.h"
+#include "check/sources/pipe_io.h"
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent::inline subjects {
+
+namespace {
+
+/// A multiple of 2^-24, which single precision holds.
+double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1 - 0x1p-24); }
+
+class PipeSampler : public SamplerAdapter {
+public:
+    PipeSampler(const std::string& command, const PipeLimits& limits) : talk_(command, limits) {
+        try {
+            greet();
+        } catch (const SamplerError&) {
+            const std::string& broken = talk_.broken();
+            const bool unknown =
+                broken.find("exit code 127") != std::string::npos || broken.find("exit code 126") != std::string::npos;
+            talk_.stop();
+            if (unknown && hello_.name.empty())
+                throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
+            throw;
+        } catch (...) {
+            talk_.stop();
+            throw;
+        }
+    }
+    ~PipeSampler() override { talk_.stop(); }
+    PipeSampler(const PipeSampler&) = delete;
+    PipeSampler& operator=(const PipeSampler&) = delete;
+
+    std::string name() const override { return hello_.name; }
+    Traits traits() const override { return hello_.traits; }
+    bool serial() const override { return true; }
+    bool has_f() const override { return has_f_; }
+    bool has_drawn_f() const override { return has_f_ || hello_.weight; }
+    QueryUsage spending() const override { return talk_.spending(); }
+
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        const std::size_t numbers = static_cast<std::size_t>(hello_.traits.numbers), given = 3 + numbers,
+                          got = 4 + weights();
+        const Vec3d o = asked(wo);
+        std::vector<double> in, answers(u.size() * got);
+        for (const PrimarySample& v : u) {
+            for (double x : {o.x, o.y, o.z}) in.push_back(x);
+            for (int k = 0; k < hello_.traits.numbers; ++k) in.push_back(hello_.protocol == 1 ? v[k] : for_float(v[k]));
+        }
+        std::vector<bool> delta(u.size());
+        if (hello_.blocks) ask_block("smpl", "sample", u.size(), given, got, in, answers);
+        else
+            talk_.lines(
+                u.size(), sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+                });
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = drawn(std::span(answers).subspan(i * got, got), delta[i]);
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        values("pdf_", "pdf", "one number", at, 1, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        if (hello_.traits.channels == 1) return values("f___", "f", "one number", at, 1, out);
+        std::vector<Vec3d> by_channel(out.size());
+        f_channels(at, by_channel);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        if (hello_.traits.channels == 1) return SamplerAdapter::f_channels(at, out);
+        std::vector<double> answers(3 * out.size());
+        values("f___", "f", "three numbers, one a channel", at, 3, answers);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};
+    }
+
+private:
+    mutable PipeConnection talk_;
+    Handshake hello_;
+    bool has_f_ = false;
+
+    std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
+    Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : wo; }
+    std::string sample_expected() const {
+        std::string out =
+            hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
+        if (hello_.weight) out += weights() == 1 ? " weight" : " weight weight weight";
+        return out + (hello_.delta ? "', or 'delta q' in place of pdf" : "'");
+    }
+    static PipeConnection::Write writer(const char* verb, std::size_t columns, const std::vector<double>& in) {
+        return [verb, columns, &in](std::size_t i, std::string& line) {
+            line = verb;
+            for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
+        };
+    }
+    void ask_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
+        const std::vector<double>& in, std::span<double> out) const {
+        if (count == 0) return;
+        const PipeConnection::Write write = writer(verb, given, in);
+        talk_.blocks({operation, count, given, got, in, out, [&](std::size_t i) {
+                          std::string line;
+                          write(i, line);
+                          return line;
+                      }});
+    }
+
+    bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {
+        for (std::size_t k = 0; k < to.size(); ++k) {
+            const std::size_t word = s.find_first_not_of(" \t");
+            if (k == 3 && hello_.delta && word != s.npos && s.substr(word).starts_with("delta ")) {
+                delta[i] = true;
+                s.remove_prefix(word + 6);
+            }
+            if (!take_float(s, to[k])) return false;
+        }
+        return blank(s);
+    }
+    /// Nothing drawn where pdf is 0, or where a draw lies under the horizon and only the hemisphere counts.
+    Draw drawn(std::span<const double> a, bool delta) const {
+        Draw d{{a[0], a[1], a[2]}, a[3]};
+        if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
+        const bool nothing = !delta && d.pdf == 0;
+        if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
+        if (delta) d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen, d.pdf = 0;
+        if (weights() == 1) d.weight = a[4];
+        if (weights() == 3) d.weights = {a[4], a[5], a[6]}, d.weight = luminance(d.weights);
+        return d;
+    }
+
+    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked.
+    void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
+        std::size_t columns, std::span<double> out) const {
+        const auto counts = [&](const Pair& p) { return !hello_.hemisphere || p.wi.z > 0; };
+        std::vector<double> in;
+        for (const Pair& p : all) {
+            if (!counts(p)) continue;
+            const Vec3d o = asked(p.wo);
+            for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
+        }
+        const std::size_t count = in.size() / 6;
+        std::vector<double> answers(count * columns);
+        if (hello_.blocks) ask_block(operation, verb, count, 6, columns, in, answers);
+        else if (count > 0)
+            talk_.lines(count, expected, writer(verb, 6, in), [&](std::size_t i, std::string_view s) {
+                if (operation[0] == 'f' && s == "-") {
+                    std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
+                    return true;
+                }
+                for (std::size_t k = 0; k < columns; ++k)
+                    if (!take_float(s, answers[i * columns + k])) return false;
+                return blank(s);
+            });
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const bool there = counts(all[i]);
+            const double cos = std::fabs(all[i].wi.z),
+                         by = operation[0] == 'f' && hello_.f_cos ? (cos > 0 ? 1 / cos : 0) : 1;
+            for (std::size_t k = 0; k < columns; ++k)
+                out[i * columns + k] = there ? answers[next * columns + k] * by : 0;
+            next += there;
+        }
+    }
+
+    void greet() {
+        talk_.lines(
+            1, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
+            [](std::size_t, std::string& line) { line = "hello 2"; },
+            [&](std::size_t, std::string_view s) {
+                Handshake hello;
+                if (const GreetingFault fault = read_greeting(s, hello); fault)
+                    talk_.fault("hello 2", 0, fault.got, fault.expected);
+                hello_ = hello;
+                return true;
+            });
+        talk_.greeted();
+        probe_f();
+    }
+    /// Whether there is a BRDF: `-`, or NaN in a block, is none.
+    void probe_f() {
+        const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
+        const std::vector<double> normal = {0, 0, 1, 0, 0, 1};
+        std::vector<double> answer(columns);
+        if (hello_.blocks) {
+            ask_block("f___", "f", 1, 6, columns, normal, answer);
+            has_f_ = !std::isnan(answer[0]);
+            return;
+        }
+        talk_.lines(1,
+            columns == 1 ? "one number, or '-' where there is no BRDF"
+                         : "three numbers, one a channel, or '-' where there is no BRDF",
+            writer("f", 6, normal), [&](std::size_t, std::string_view s) {
+                has_f_ = s != "-";
+                for (std::size_t k = 0; has_f_ && k < columns; ++k)
+                    if (!take_float(s, answer[k])) return false;
+                return !has_f_ || blank(s);
+            });
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, const PipeLimits& limits) {
+    return std::make_shared<PipeSampler>(command, limits);
+}
+
+// ---- A table of keys, each with what it takes, from which the messages are made too. The name is all that stands
+// before the first word with '='.
+
+namespace {
+
+bool one_of(std::string_view value, std::initializer_list<std::string_view> words, int& which) {
+    which = 0;
+    for (std::string_view w : words) {
+        if (w == value) return true;
+        ++which;
+    }
+    return false;
+}
+
+bool whole_number(std::string_view value, int low, int high, int& out) {
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), out);
+    return error == std::errc{} && end == value.data() + value.size() && out >= low && out <= high;
+}
+
+/// One index, or one a channel, separated by commas.
+bool indices(std::string_view value, std::optional<Vec3d>& out) {
+    std::vector<double> v;
+    std::string text(value);
+    for (char& c : text)
+        if (c == ',') c = ' ';
+    for (std::string_view rest = text; !blank(rest);) {
+        v.emplace_back();
+        if (!take_float(rest, v.back()) || !(v.back() > 0) || !(v.back() < 1e6)) return false;
+    }
+    if (v.size() != 1 && v.size() != 3) return false;
+    out = v.size() == 1 ? Vec3d{v[0], v[0], v[0]} : Vec3d{v[0], v[1], v[2]};
+    return true;
+}
+
+struct GreetingKey {
+    const char* name;
+    const char* values;
+    std::function<bool(std::string_view, Handshake&)> read;
+};
+
+const std::array<GreetingKey, 14>& keys() {
+    using S = std::string_view;
+    static const std::array<GreetingKey, 14> all = {{
+        {"u", "a whole number from 1 to 8",
+            [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
+        {"domain", "hemisphere or sphere",
+            [](S v, Handshake& g) {
+                g.hemisphere = v == "hemisphere";
+                return g.hemisphere || v == "sphere";
+            }},
+        {"wo", "upper, both or none",
+            [](S v, Handshake& g) {
+                int which = 0;
+                const bool known = one_of(v, {"upper", "both", "none"}, which);
+                g.traits.wo = which == 1 ? Traits::Asked::both
+                    : which == 2         ? Traits::Asked::none
+                                         : Traits::Asked::upper;
+                return known;
+            }},
+        {"channels", "1 or 3",
+            [](S v, Handshake& g) { return whole_number(v, 1, 3, g.traits.channels) && g.traits.channels != 2; }},
+        {"weight", "yes or no", [](S v, Handshake& g) { return (g.weight = v == "yes") || v == "no"; }},
+        {"delta", "yes or no", [](S v, Handshake& g) { return (g.delta = v == "yes") || v == "no"; }},
+        {"pdf", "yes or no", [](S v, Handshake& g) { return (g.traits.has_pdf = v == "yes") || v == "no"; }},
+        {"f", "cos or nocos", [](S v, Handshake& g) { return (g.f_cos = v == "cos") || v == "nocos"; }},
+        {"eta", "a number over 0 and under 1e6, or three separated by commas",
+            [](S v, Handshake& g) { return indices(v, g.traits.eta); }},
+        {"transport", "radiance or importance",
+            [](S v, Handshake& g) { return (g.traits.importance = v == "importance") || v == "radiance"; }},
+        {"reciprocal", "yes or no", [](S v, Handshake& g) { return (g.traits.reciprocal = v == "yes") || v == "no"; }},
+        {"random", "own or given",
+            [](S v, Handshake& g) { return (g.traits.own_random = v == "own") || v == "given"; }},
+        {"real", "f32 or f64",
+            [](S v, Handshake& g) {
+                g.traits.bits = v == "f32" ? 24 : 53;
+                return v == "f32" || v == "f64";
+            }},
+        {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
+    }};
+    return all;
+}
+
+GreetingFault unknown(std::string_view name) {
+    std::vector<std::string> known;
+    for (const GreetingKey& k : keys()) known.emplace_back(k.name);
+    return {fmt::format("one of {} before the '='", fmt::join(known, ", ")),
+        fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, known))};
+}
+
+GreetingFault read_key(std::string_view word, Handshake& out) {
+    const std::size_t equals = word.find('=');
+    const std::string_view name = word.substr(0, equals), value = equals == word.npos ? "" : word.substr(equals + 1);
+    if (equals == word.npos) return {"KEY=VALUE", fmt::format("got the word {} after the keys", shown(word))};
+    for (const GreetingKey& k : keys()) {
+        if (name != k.name) continue;
+        if (k.read(value, out)) return {};
+        return {fmt::format("{} for {}", k.values, k.name), "got " + shown(value)};
+    }
+    return unknown(name);
+}
+
+}  // namespace
+
+GreetingFault read_greeting(std::string_view answer, Handshake& out) {
+    const std::string form = "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'";
+    const bool one = answer.starts_with("hello 1 "), two = answer.starts_with("hello 2 ");
+    if ((!one && !two) || blank(answer.substr(8))) return {form, "got " + shown(answer) + only_answers};
+    out.protocol = one ? 1 : 2;
+    std::string_view rest = answer.substr(8), name = rest;
+    const std::size_t key = two ? rest.find('=') : rest.npos;
+    if (key != rest.npos) {
+        const std::size_t before = rest.find_last_of(" \t", key);
+        if (before == rest.npos || blank(rest.substr(0, before))) return {form, "got no name in " + shown(answer)};
+        name = rest.substr(0, before);
+        rest = rest.substr(before);
+        std::set<std::string_view> seen;
+        while (!blank(rest)) {
+            rest.remove_prefix(rest.find_first_not_of(" \t"));
+            const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+            if (const GreetingFault fault = read_key(rest.substr(0, end), out); fault) return fault;
+            const std::string_view name_of_key = rest.substr(0, rest.find('='));
+            if (!seen.insert(name_of_key).second)
+                return {"each key once", fmt::format("got the key {} twice", shown(name_of_key))};
+            rest.remove_prefix(end);
+        }
+    }
+    name.remove_prefix(name.find_first_not_of(" \t"));
+    while (name.ends_with(' ') || name.ends_with('\t')) name.remove_suffix(1);
+    out.name = printable(name, 60);
+    if (out.delta && !out.weight)
+        return {"weight=yes beside delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
+    out.traits.delta = out.delta;
+    return {};
+}
+
+}  // namespace crescent::inline subjects

@@ -1,0 +1,153 @@
+// The words of the pipe protocol: floats in and out, and what came, made fit to be shown.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <deque>
+#include <fmt/format.h>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/process.h"
+#include "check/sources/pipe.h"
+
+namespace crescent::inline subjects {
+
+/// What came, for a message: cut short, with what does not print shown as \xNN.
+inline std::string shown(std::string_view s) {
+    std::string out = "'";
+    for (char c : s.substr(0, 80)) {
+        if (c >= ' ' && c < 127) out += c;
+        else out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return out + (s.size() > 80 ? "...'" : "'");
+}
+
+/// Behind what came in place of an answer: programs greet their users, warn and tell of progress.
+inline constexpr const char* only_answers = "; stdout is for answers alone, what else is said belongs on stderr";
+
+/// What a double makes of a number that it cannot hold: infinite where it is too large, 0 where it is too small.
+/// Decided by the place of its first digit, in powers of ten (of two for hexadecimal digits).
+inline double out_of_range(std::string_view word, bool hex) {
+    const std::size_t mark = std::min(word.find_first_of(hex ? "pP" : "eE"), word.size());
+    const std::string_view digits = word.substr(0, mark);
+    const std::size_t point = std::min(digits.find('.'), digits.size()), first = digits.find_first_not_of("0.");
+    if (first == std::string_view::npos) return 0;
+    double power = first < point ? static_cast<double>(point - first) : -static_cast<double>(first - point - 1);
+    if (hex) power *= 4;
+    std::string_view after = word.substr(std::min(mark + 1, word.size()));
+    const bool negative = after.starts_with('-');
+    if (negative || after.starts_with('+')) after.remove_prefix(1);
+    double exponent = 0;
+    for (char c : after) exponent = std::min(10 * exponent + (c - '0'), 1e18);
+    return power + (negative ? -exponent : exponent) > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+/// A float at the front of `s`, decimal or hexadecimal, NaN and infinities included; what is left stays in `s`.
+inline bool take_float(std::string_view& s, double& out) {
+    while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
+    const std::size_t end = std::min(s.find_first_of(" \t"), s.size());
+    std::string_view word = s.substr(0, end);
+    s.remove_prefix(end);
+    const bool negative = !word.empty() && word.front() == '-';
+    if (negative || (!word.empty() && word.front() == '+')) word.remove_prefix(1);
+    const bool hex = word.size() > 2 && word[0] == '0' && (word[1] == 'x' || word[1] == 'X');
+    if (hex) word.remove_prefix(2);
+    const auto [stop, error] = std::from_chars(
+        word.data(), word.data() + word.size(), out, hex ? std::chars_format::hex : std::chars_format::general);
+    if (error == std::errc::result_out_of_range) out = out_of_range(word, hex);
+    else if (error != std::errc{}) return false;
+    if (stop != word.data() + word.size() || word.empty() || word.front() == '-' || word.front() == '+') return false;
+    if (negative) out = -out;
+    return true;
+}
+
+/// Nothing but spaces.
+inline bool blank(std::string_view s) { return s.find_first_not_of(" \t") == std::string_view::npos; }
+
+/// Shortest text that reads back as the same double.
+inline void append(std::string& to, double v) {
+    char buffer[32];
+    buffer[0] = ' ';
+    const auto end = std::to_chars(buffer + 1, buffer + sizeof buffer, v).ptr;
+    to.append(buffer, end);
+}
+
+// ---- Requests to a program and its answers, text lines or blocks of doubles. Requests run far ahead of the answers,
+// both ways without blocking, so that neither side waits for the other.
+
+class PipeConnection {
+public:
+    /// Starts `command` by the shell.
+    PipeConnection(const std::string& command, const PipeLimits& limits)
+        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = command}) {}
+    PipeConnection(const PipeConnection&) = delete;
+    PipeConnection& operator=(const PipeConnection&) = delete;
+
+    using Write = std::function<void(std::size_t, std::string&)>;
+    using Read = std::function<bool(std::size_t, std::string_view)>;
+    /// One line each way `count` times; `read` says whether an answer was as expected.
+    void lines(std::size_t count, std::string_view expected, const Write& write, const Read& read);
+    /// Rows of doubles each way; `told` shows a request in a message.
+    struct Rows {
+        const char* operation;  // four letters
+        std::size_t count, given, got;
+        std::span<const double> in;
+        std::span<double> out;
+        std::function<std::string(std::size_t)> told;
+    };
+    void blocks(const Rows& rows);
+
+    /// Says what is wrong with the answer to request i of those under way.
+    [[noreturn]] void fault(
+        const std::string& request, std::size_t i, const std::string& what, std::string_view expected);
+    void greeted() { greeted_ = true; }
+    const std::string& broken() const { return broken_; }
+    QueryUsage spending() const { return {requests_, seconds_since(began_), limits_.total_seconds}; }
+    /// What it had time to say is read no more; half a second to end by itself, unless it was given up.
+    void stop() { program_.end(broken_.empty() ? 500 : 0); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    /// Requests under way: how many answers are due, how many requests are written, how many answers came.
+    struct Exchange {
+        std::size_t count;
+        std::string_view expected;
+        std::function<std::string(std::size_t)> told;  // request i, for a message
+        std::function<void()> produce, take;           // more requests into `outgoing`; answers out of what came
+        std::size_t written = 0, answered = 0, sent = 0;
+        std::string outgoing{};
+    };
+    PipeLimits limits_;
+    mutable Process program_;  // asked how it ended where a message says so
+    std::string incoming_;
+    std::size_t read_from_ = 0;
+    std::uint64_t requests_ = 0;
+    std::string broken_;  // what went wrong; nothing is asked from then on
+    bool greeted_ = false, slow_ = false;
+    Clock::time_point began_ = Clock::now();
+
+    static double seconds_since(Clock::time_point then) {
+        return std::chrono::duration<double>(Clock::now() - then).count();
+    }
+    void run(Exchange& x);
+    void send(Exchange& x, bool answers_wait);
+    void mind_the_time(Exchange& x, Clock::time_point last);
+    void take_lines(Exchange& x, const Read& read);
+    void take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& due);
+    [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
+        fault(x.told(i), i, what, x.expected);
+    }
+    bool fill();
+    std::string_view pending() const { return std::string_view(incoming_).substr(read_from_); }
+    std::string how_it_ended(int milliseconds) const;
+    std::string why_closed() const;
+    std::string why_silent() const;
+    std::string end_of_output() const;
+};
+
+}  // namespace crescent::inline subjects

@@ -1,0 +1,348 @@
+// Hosts are started when a thread calls and none is free, and kept. Requests carry the surface once a run of rows.
+#include "check/sources/plugin.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#ifdef __linux__
+#include <sys/auxv.h>
+#endif
+
+#include "base/errors.h"
+#include "base/files.h"
+#include "base/process.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "check/sources/plugin_host.h"
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent::inline subjects {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The program to execute: the one that this code is a part of, else a small one beside the library that it is a part
+/// of (the Python module), else one in PATH. CRESCENT_PLUGIN_HOST names another.
+std::string host_program() {
+    if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
+    Dl_info own{};
+    if (dladdr(reinterpret_cast<const void*>(&host_program), &own) == 0) return plugin_host_name;
+#ifdef __linux__
+    Dl_info program{};
+    if (dladdr(reinterpret_cast<const void*>(getauxval(AT_PHDR)), &program) != 0 && own.dli_fbase == program.dli_fbase)
+        return "/proc/self/exe";
+#endif
+    const std::filesystem::path beside = std::filesystem::path(own.dli_fname).parent_path() / plugin_host_name;
+    std::error_code unknown;
+    return std::filesystem::exists(beside, unknown) ? beside.string() : plugin_host_name;
+}
+
+/// What a library says of itself in the greeting of its host.
+struct About {
+    std::string name;
+    int numbers = 2;
+    bool pdf = false, f = false, serial = false;
+};
+
+struct Call {
+    const char* function;
+    Vec3d wo;  // of the first row
+    /// "in crescent_sampler_sample at w_o = (0, 0, 1)".
+    std::string text() const {
+        return fmt::format("in {} at w_o = ({:.9g}, {:.9g}, {:.9g})", function, wo.x, wo.y, wo.z);
+    }
+};
+
+/// Memory of one size that a host has too.
+class SharedMemory {
+public:
+    SharedMemory() {
+#ifdef __linux__
+        file_ = ::memfd_create("crescent", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+#else
+        const std::string name = fmt::format("/crescent-{}-{}", ::getpid(), static_cast<const void*>(this));
+        file_ = ::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
+        ::shm_unlink(name.c_str());
+#endif
+        if (file_ >= 0 && ::ftruncate(file_, PluginRows::bytes) == 0)
+            memory_ = ::mmap(nullptr, PluginRows::bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+        if (memory_ == MAP_FAILED) throw OutputError(fmt::format("no shared memory: {}", std::strerror(errno)));
+#ifdef __linux__
+        ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // a plugin cannot take it away
+#endif
+    }
+    ~SharedMemory() {
+        if (memory_ != MAP_FAILED) ::munmap(memory_, PluginRows::bytes);
+        if (file_ >= 0) ::close(file_);
+    }
+    SharedMemory(const SharedMemory&) = delete;
+    SharedMemory& operator=(const SharedMemory&) = delete;
+    int file() const { return file_; }
+    void* at() const { return memory_; }
+
+private:
+    int file_ = -1;
+    void* memory_ = MAP_FAILED;
+};
+
+/// A process with the library loaded. Used by one thread at a time; nothing can be asked of it after a fault.
+class Host {
+public:
+    Host(const std::string& library, const PipeLimits& limits)
+        : library_(printable(library)),
+          limits_(limits),
+          process_({.argv = {plugin_host_name, library},
+              .file = host_program(),
+              .label = std::filesystem::path(library).filename().string(),
+              .shared = memory_.file()}) {
+        std::string line;
+        for (char c = 0; line.size() < 65536;) {
+            receive({&c, 1}, "while it was opened");
+            if (c == '\n') break;
+            line += c;
+        }
+        read_greeting(line);
+    }
+    ~Host() { process_.end(200); }
+    Host(const Host&) = delete;
+    Host& operator=(const Host&) = delete;
+
+    const About& about() const { return about_; }
+
+    /// One request: its runs, and the random numbers or directions of its rows. The answer is there until the next.
+    PluginRows ask(char operation, std::span<const OutsideRun> runs, std::span<const double> given, std::size_t rows,
+        const Call& call) {
+        const PluginRows block(memory_.at(), rows, given.size() / rows);
+        std::ranges::copy(given, block.given);
+        const PluginRequest head{operation, static_cast<std::uint32_t>(runs.size()), static_cast<std::uint32_t>(rows)};
+        std::vector<double> columns;
+        for (const OutsideRun& r : runs)
+            for (const double v : {static_cast<double>(r.rows), r.wo.x, r.wo.y, r.wo.z, r.surface.s, r.surface.alpha,
+                     r.surface.diffuse, r.surface.lobe})
+                columns.push_back(v);
+        std::string front(reinterpret_cast<const char*>(&head), sizeof head);
+        front.append(reinterpret_cast<const char*>(columns.data()), columns.size() * sizeof(double));
+        const std::string what = call.text();
+        send(front, what);
+        PluginAnswer answer{};
+        receive({reinterpret_cast<char*>(&answer), sizeof answer}, what);
+        if (answer.rows == 0) {
+            std::string text(std::min<std::size_t>(answer.bytes, 4096), ' ');
+            receive(text, what);
+            throw SamplerError(fmt::format("the plugin {} {} {}", library_, printable(text), what));
+        }
+        return block;
+    }
+
+private:
+    std::string library_;
+    PipeLimits limits_;
+    SharedMemory memory_;
+    Process process_;
+    About about_;
+
+    void send(std::string_view bytes, const std::string& what) {
+        for (Clock::time_point last = Clock::now(); !bytes.empty();) {
+            const ssize_t n = process_.write(bytes);
+            if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n)), last = Clock::now();
+            else if (n < 0 && errno != EAGAIN && errno != EINTR) throw_ended(what);
+            else wait(true, last, what);
+        }
+    }
+    void receive(std::span<char> to, const std::string& what) {
+        for (Clock::time_point last = Clock::now(); !to.empty();) {
+            const ssize_t n = process_.read(to.data(), to.size());
+            if (n > 0) to = to.subspan(static_cast<std::size_t>(n)), last = Clock::now();
+            else if (n == 0) throw_ended(what);
+            else wait(false, last, what);
+        }
+    }
+    void wait(bool to_write, Clock::time_point last, const std::string& what) {
+        process_.wait_ready(to_write, !to_write, 50);
+        if (limits_.stop && limits_.stop->load()) throw Interrupted{};
+        if (std::chrono::duration<double>(Clock::now() - last).count() > limits_.call_seconds)
+            throw SamplerError(
+                fmt::format("the plugin {} was stopped after {:g} s {}: expected an answer in that time "
+                            "(--timeout)",
+                    library_, limits_.call_seconds, what));
+    }
+    [[noreturn]] void throw_ended(const std::string& what) {
+        const std::optional<ProcessEnd> end = process_.ended(1000);
+        throw SamplerError(end ? fmt::format("the plugin {} ended its process by {} {}", library_, end->text(), what)
+                               : fmt::format("the plugin {} closed its pipe to crescent {}", library_, what));
+    }
+
+    void read_greeting(std::string_view line) {
+        const std::string expected = fmt::format("{}... columns={}", plugin_greeting, plugin_columns);
+        const auto refuse = [&](std::string_view got) {
+            throw OutputError(fmt::format("cannot open the plugin {}: {} answers '{}', expected '{}'", library_,
+                printable(host_program()), printable(got, 200), expected));
+        };
+        if (!line.starts_with(plugin_greeting)) refuse(line);
+        std::string_view rest = line.substr(std::strlen(plugin_greeting));
+        if (rest.starts_with("error "))
+            throw OutputError(fmt::format("cannot open the plugin {}: {}", library_, printable(rest.substr(6))));
+        bool columns = false;
+        while (!rest.empty() && about_.name.empty()) {
+            const std::size_t equals = std::min(rest.find('='), rest.size() - 1);
+            const std::string_view key = rest.substr(0, equals);
+            rest.remove_prefix(equals + 1);
+            const std::string_view value = key == "name" ? rest : rest.substr(0, rest.find(' '));
+            rest.remove_prefix(std::min(value.size() + 1, rest.size()));
+            if (key == "name") about_.name = printable(value);
+            if (key == "numbers") std::from_chars(value.data(), value.data() + value.size(), about_.numbers);
+            if (key == "pdf") about_.pdf = value == "1";
+            if (key == "f") about_.f = value == "1";
+            if (key == "serial") about_.serial = value == "1";
+            if (key == "columns") columns = value == plugin_columns;
+        }
+        if (!columns || about_.name.empty()) refuse(line);
+    }
+};
+
+class Plugin : public PluginSampler {
+public:
+    Plugin(const std::string& path, const PipeLimits& limits, const OutsideSurface& surface)
+        : path_(path), limits_(limits), surface_(surface) {
+        free_.push_back(std::make_unique<Host>(path_, limits_));
+        about_ = free_.front()->about();
+    }
+
+    std::string name() const override { return about_.name; }
+    int numbers() const override { return about_.numbers; }
+    bool serial() const override { return about_.serial; }
+    Traits traits() const override {
+        Traits traits;
+        traits.numbers = about_.numbers;
+        traits.has_pdf = about_.pdf;
+        return traits;
+    }
+    bool has_f() const override { return about_.f; }
+
+    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
+        const Call call{"crescent_sampler_sample", batch.runs.front().wo};
+        on_host([&](Host& host) {
+            const PluginRows rows = host.ask('s', batch.runs, batch.u, out.pdf.size(), call);
+            std::copy_n(rows.wi, 3 * out.wi.size(), doubles(out.wi).data());
+            std::copy_n(rows.values, out.pdf.size(), out.pdf.begin());
+        });
+    }
+
+    void sample(int /*technique*/, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        std::vector<double> numbers, pdf;
+        std::vector<Vec3d> wi;
+        for (std::size_t first = 0; first < u.size(); first += plugin_rows) {
+            const std::size_t rows = std::min<std::size_t>(plugin_rows, u.size() - first);
+            numbers.clear(), wi.resize(rows), pdf.resize(rows);
+            for (const PrimarySample& row : u.subspan(first, rows))
+                for (int k = 0; k < about_.numbers; ++k) numbers.push_back(row[k]);
+            const OutsideRun run{wo, surface_, rows};
+            draw({{&run, 1}, numbers}, {wi, pdf});
+            for (std::size_t i = 0; i < rows; ++i) out[first + i] = Draw{wi[i], pdf[i]};
+        }
+        count(u.size());
+    }
+    void pdf(int /*technique*/, std::span<const Pair> at, std::span<double> out) const override {
+        values('p', "crescent_sampler_pdf", at, surface_, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        values('f', "crescent_sampler_f", at, surface_, out);
+    }
+    bool has_density() const override { return about_.pdf; }
+    void density(
+        Vec3d wo, const OutsideSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+        std::vector<Pair> at;
+        for (const Vec3d& w : wi) at.push_back({wo, w});
+        values('p', "crescent_sampler_pdf", at, surface, out);
+    }
+
+private:
+    static std::span<double> doubles(std::span<Vec3d> v) { return {&v.data()->x, 3 * v.size()}; }
+
+    void values(char operation, const char* function, std::span<const Pair> at, const OutsideSurface& on,
+        std::span<double> out) const {
+        std::vector<OutsideRun> runs;
+        std::vector<Vec3d> wi;
+        for (std::size_t first = 0; first < at.size(); first += plugin_rows) {
+            const std::size_t rows = std::min<std::size_t>(plugin_rows, at.size() - first);
+            runs.clear(), wi.clear();
+            for (const auto& [wo, direction] : at.subspan(first, rows)) {
+                const bool same =
+                    !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
+                if (!same) runs.push_back({wo, on, 0});
+                ++runs.back().rows;
+                wi.push_back(direction);
+            }
+            on_host([&](Host& host) {
+                const PluginRows block = host.ask(operation, runs, doubles(wi), rows, {function, runs[0].wo});
+                std::copy_n(block.values, rows, out.subspan(first, rows).begin());
+            });
+        }
+        count(at.size());
+    }
+
+    /// Calls with a host that no other thread uses. One that failed is not used again, and neither is the plugin.
+    template <class Work> void on_host(const Work& work) const {
+        std::unique_lock<std::mutex> one_at_a_time(serial_, std::defer_lock);
+        if (about_.serial) one_at_a_time.lock();
+        std::unique_ptr<Host> host = taken();
+        try {
+            if (!host) host = std::make_unique<Host>(path_, limits_);
+            work(*host);
+        } catch (const std::runtime_error& fault) {
+            const std::lock_guard<std::mutex> guard(lock_);
+            if (fault_.empty()) fault_ = fault.what();
+            throw;
+        }
+        const std::lock_guard<std::mutex> guard(lock_);
+        free_.push_back(std::move(host));
+    }
+    std::unique_ptr<Host> taken() const {
+        const std::lock_guard<std::mutex> guard(lock_);
+        if (!fault_.empty()) throw SamplerExited("the plugin was given up: " + fault_);
+        if (free_.empty()) return nullptr;
+        std::unique_ptr<Host> host = std::move(free_.back());
+        free_.pop_back();
+        return host;
+    }
+
+    std::string path_;
+    PipeLimits limits_;
+    OutsideSurface surface_;
+    About about_;
+    mutable std::mutex serial_, lock_;
+    mutable std::vector<std::unique_ptr<Host>> free_;  // both under lock_
+    mutable std::string fault_;
+};
+
+static_assert(sizeof(Vec3d) == 3 * sizeof(double) && sizeof(OutsideSurface) == 4 * sizeof(double));
+
+}  // namespace
+
+std::shared_ptr<const PluginSampler> open_plugin(
+    const std::string& path, const PipeLimits& limits, const OutsideSurface& surface) {
+    return std::make_shared<Plugin>(path, limits, surface);
+}
+
+std::uint64_t plugin_mark(const std::string& path) {
+    const std::string bytes = contents_of(path);
+    return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+}  // namespace crescent::inline subjects

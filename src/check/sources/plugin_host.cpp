@@ -1,0 +1,262 @@
+// dlopen() and dlsym(); the functions of sampler_plugin.h are called by one thread, block by block. The pipes are moved
+// to descriptors of our own before the plugin is loaded, and its stdout goes to stderr. A second thread ends the group
+// when crescent is gone, also in the middle of a call. Needs nothing of crescent, so that it is a small program too.
+#include "check/sources/plugin_host.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cfenv>
+#include <climits>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "check/sampler_plugin.h"
+
+namespace crescent::inline subjects {
+
+const char* const plugin_host_name = "crescent-plugin-host";
+
+namespace {
+
+constexpr std::size_t columns = 7;  // doubles of plugin_columns
+
+/// Ends the host and all that the plugin started in its group. Its exit handlers do not run: it may have threads.
+[[noreturn]] void end_group() {
+    if (::getpgrp() == ::getpid()) ::kill(0, SIGKILL);
+    ::_exit(0);
+}
+
+[[noreturn]] void leave() {
+    std::fflush(nullptr);  // what the plugin printed
+    end_group();
+}
+
+/// Where crescent is at the other ends.
+struct Pipes {
+    int in = ::fcntl(0, F_DUPFD_CLOEXEC, 64), out = ::fcntl(1, F_DUPFD_CLOEXEC, 64);
+
+    /// False at the end of the input.
+    bool read(void* to, std::size_t size) const {
+        for (auto* at = static_cast<char*>(to); size > 0;) {
+            const ssize_t n = ::read(in, at, size);
+            if (n < 0 && errno == EINTR) continue;
+            if (n <= 0) return false;
+            at += n, size -= static_cast<std::size_t>(n);
+        }
+        return true;
+    }
+    void write(const void* from, std::size_t size) const {
+        for (const auto* at = static_cast<const char*>(from); size > 0;) {
+            const ssize_t n = ::write(out, at, size);
+            if (n < 0 && errno == EINTR) continue;
+            if (n <= 0) leave();
+            at += n, size -= static_cast<std::size_t>(n);
+        }
+    }
+    void write(const std::string& text) const { write(text.data(), text.size()); }
+};
+
+/// Waits until the other end of the input is closed. A host that is idle then ends by itself.
+void* watch(void* input) {
+    pollfd end{*static_cast<int*>(input), 0, 0};
+    while (::poll(&end, 1, -1) < 0) {}
+    const timespec moment{0, 200'000'000};
+    ::nanosleep(&moment, nullptr);
+    end_group();
+}
+
+/// The program that this is a part of may have set handlers already.
+void reset_signals() {
+    for (int s = 1; s < NSIG; ++s) ::signal(s, SIG_DFL);
+}
+
+void start_watching(int& input) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the plugin's thread
+    pthread_t thread;
+    if (pthread_create(&thread, nullptr, watch, &input) != 0) ::_exit(1);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+#ifdef __linux__
+    ::prctl(PR_SET_PDEATHSIG, 0);  // which would end this process alone, and leave its group
+#endif
+}
+
+struct Fault {
+    std::string text, function = "";  // that was called; "": none
+};
+
+/// Calls a function of the plugin in the floating-point environment that every program begins with.
+template <class Call> auto called(const char* function, Call&& call) {
+    const pid_t self = ::getpid();
+    const auto same_process = [&] {
+        if (::getpid() != self) ::_exit(0);  // a child of the plugin, which returned here as well
+    };
+    std::fesetenv(FE_DFL_ENV);
+    try {
+        const auto result = call();
+        same_process();
+        return result;
+    } catch (const std::exception& e) {
+        same_process();
+        throw Fault{std::string("threw '") + e.what() + "'", function};
+    } catch (...) {
+        same_process();
+        throw Fault{"threw something", function};
+    }
+}
+
+struct Library {
+    using Answer = int (*)(size_t, const double*, const double*, const double*, double*);
+    int (*sample)(size_t, const double*, const double*, const double*, double*, double*) = nullptr;
+    Answer pdf = nullptr, f = nullptr;
+    unsigned numbers = 2;
+    bool serial = false;
+    std::string name;
+
+    explicit Library(const std::string& path) {
+        // dlopen takes a name without a slash for one of the system's libraries.
+        const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
+        void* library = called("dlopen", [&] { return ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); });
+        if (!library) throw Fault{::dlerror()};
+        const auto find = [&]<class F>(const char* symbol, F& to) {
+            to = reinterpret_cast<F>(::dlsym(library, symbol));
+            return to != nullptr;
+        };
+        unsigned (*abi)() = nullptr, (*how_many)() = nullptr;
+        int (*one_at_a_time)() = nullptr;
+        const char* (*calls_itself)() = nullptr;
+        if (!find("crescent_sampler_abi", abi)) throw missing("crescent_sampler_abi");
+        if (const unsigned version = called("crescent_sampler_abi", abi); version != CRESCENT_SAMPLER_ABI)
+            throw Fault{"it has version " + std::to_string(version) + " of the interface; this program has version " +
+                std::to_string(CRESCENT_SAMPLER_ABI)};
+        if (!find("crescent_sampler_sample", sample)) throw missing("crescent_sampler_sample");
+        find("crescent_sampler_pdf", pdf), find("crescent_sampler_f", f);
+        if (find("crescent_sampler_numbers", how_many)) numbers = called("crescent_sampler_numbers", how_many);
+        if (numbers < 1 || numbers > 8)
+            throw Fault{"it takes " + std::to_string(numbers) + " random numbers a sample: expected 1 to 8"};
+        if (find("crescent_sampler_serial", one_at_a_time))
+            serial = called("crescent_sampler_serial", one_at_a_time) != 0;
+        if (find("crescent_sampler_name", calls_itself))
+            if (const char* own = called("crescent_sampler_name", calls_itself)) name = own;
+        if (name.empty()) name = path.substr(path.rfind('/') + 1);
+        std::replace(name.begin(), name.end(), '\n', ' ');
+    }
+
+    static Fault missing(const char* function) {
+        return {std::string("it has no function ") + function + ": see sampler_plugin.h"};
+    }
+};
+
+/// What the rows of a request share, one copy a row. Reused, so that memory is taken once.
+struct Columns {
+    std::vector<double> run, wo, surface;
+
+    bool read(const Pipes& pipes, const PluginRequest& request) {
+        wo.resize(3 * request.rows), surface.resize(4 * request.rows);
+        run.resize((1 + columns) * request.runs);
+        if (!pipes.read(run.data(), run.size() * sizeof(double))) return false;
+        std::size_t row = 0;
+        for (const double* r = run.data(); r != run.data() + run.size(); r += 1 + columns)
+            for (auto left = static_cast<std::size_t>(r[0]); left > 0 && row < request.rows; --left, ++row)
+                std::copy_n(r + 1, 3, &wo[3 * row]), std::copy_n(r + 4, 4, &surface[4 * row]);
+        return true;
+    }
+};
+
+void answer(
+    const Pipes& pipes, const Library& library, const PluginRequest& request, const Columns& with, void* memory) {
+    const char* function = "crescent_sampler_sample";
+    Library::Answer at_directions = nullptr;
+    if (request.operation == 'p') function = "crescent_sampler_pdf", at_directions = library.pdf;
+    if (request.operation == 'f') function = "crescent_sampler_f", at_directions = library.f;
+    const std::size_t n = request.rows;
+    const PluginRows rows(memory, n, at_directions ? 3 : library.numbers);
+    const int code = called(function, [&] {
+        if (at_directions) return at_directions(n, with.wo.data(), rows.given, with.surface.data(), rows.values);
+        return library.sample(n, with.wo.data(), rows.given, with.surface.data(), rows.wi, rows.values);
+    });
+    if (code != 0) throw Fault{"gave " + std::to_string(code) + ", expected 0,"};
+    const PluginAnswer head{request.rows, 0};
+    pipes.write(&head, sizeof head);
+}
+
+std::string greeting(const Library& library) {
+    const auto number = [](const char* key, unsigned value) { return key + std::to_string(value) + " "; };
+    return plugin_greeting + number("numbers=", library.numbers) + number("pdf=", library.pdf != nullptr) +
+        number("f=", library.f != nullptr) + number("serial=", library.serial) + "columns=" + plugin_columns +
+        " name=" + library.name + "\n";
+}
+
+/// Loaded for good: a plugin may have threads, and is never unloaded.
+const Library& load(const Pipes& pipes, const char* path) {
+    try {
+        const Library* library = new Library(path);
+        pipes.write(greeting(*library));
+        return *library;
+    } catch (Fault& fault) {
+        const std::string function = fault.function.empty() ? "" : fault.function + " ";
+        std::replace(fault.text.begin(), fault.text.end(), '\n', ' ');
+        pipes.write(std::string(plugin_greeting) + "error " + function + fault.text + "\n");
+    }
+    leave();
+}
+
+}  // namespace
+
+void serve_plugin(const char* path) {
+    static Pipes pipes;
+    void* memory = ::mmap(nullptr, PluginRows::bytes, PROT_READ | PROT_WRITE, MAP_SHARED, 3, 0);
+    if (memory == MAP_FAILED) ::_exit(1);
+    ::close(3);
+    const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    ::dup2(nothing, 0), ::dup2(2, 1);
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+    reset_signals();
+    start_watching(pipes.in);
+    const Library& library = load(pipes, path);
+    try {
+        Columns with;
+        for (PluginRequest request{}; pipes.read(&request, sizeof request) && with.read(pipes, request);)
+            answer(pipes, library, request, with, memory);
+    } catch (const Fault& fault) {
+        const PluginAnswer head{0, static_cast<std::uint32_t>(fault.text.size())};
+        pipes.write(&head, sizeof head);
+        pipes.write(fault.text);
+    }
+    leave();
+}
+
+namespace {
+
+/// Before main() and the constructors of the program that this is a part of. glibc and macOS hand the arguments over.
+[[gnu::constructor(101)]] void serve_if_host(int count, char** words) {
+    if (count == 2 && std::strcmp(words[0], plugin_host_name) == 0) serve_plugin(words[1]);
+}
+
+}  // namespace
+
+}  // namespace crescent::inline subjects
+
+#ifdef CRESCENT_PLUGIN_HOST_PROGRAM
+int main() {
+    std::fputs(
+        "crescent-plugin-host: crescent starts this program to run a plugin in it; see docs/plugins.md\n", stderr);
+    return 2;
+}
+#endif

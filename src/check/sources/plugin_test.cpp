@@ -1,0 +1,104 @@
+// The plugin is compiled from tests/system/odd_plugin.c; this program, executed again, is its host.
+#include "check/sources/plugin.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+#include <unistd.h>
+
+#include "base/errors.h"
+#include "base/progress.h"
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A plugin that does `on_call` in each call, in a folder that lives as long as the test.
+class Plugins : public ::testing::Test {
+protected:
+    std::string compiled(const std::string& on_call) {
+        const std::string file = (folder_ / "libodd.so").string();
+        const std::string command =
+            "cc -O1 -shared -fPIC -pthread -I " CRESCENT_SOURCE_DIR "/src -D 'ON_CALL=" + on_call + "' -o '" + file +
+            "' " CRESCENT_SOURCE_DIR "/tests/system/odd_plugin.c -lm";
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        return file;
+    }
+    /// What is thrown where it is drawn from.
+    template <class Error> std::string error(const PluginSampler& plugin) {
+        const std::vector<PrimarySample> u(10, {0.25, 0.5});
+        std::vector<Draw> out(u.size());
+        try {
+            plugin.sample(0, {0, 0, 1}, u, out);
+        } catch (const Error& e) { return e.what(); }
+        return "";
+    }
+    void SetUp() override { std::filesystem::create_directory(folder_); }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+private:
+    std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("crescent-plugins-" + std::to_string(::getpid()));
+};
+
+TEST_F(Plugins, AnswerManyThreadsAtOnce) {
+    const auto plugin = open_plugin(compiled(""));
+    EXPECT_EQ(plugin->name(), "libodd.so");
+    EXPECT_EQ(plugin->numbers(), 2);
+    EXPECT_TRUE(plugin->traits().has_pdf);
+    EXPECT_FALSE(plugin->has_f());
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&] {
+            // More rows than one request holds.
+            std::vector<PrimarySample> u;
+            for (int i = 0; i < 70000; ++i) u.push_back({(i + 0.5) / 70000, 0.25});
+            std::vector<Draw> out(u.size());
+            plugin->sample(0, {0, 0, 1}, u, out);
+            for (std::size_t i = 0; i < u.size(); ++i) ASSERT_DOUBLE_EQ(out[i].pdf, std::sqrt(u[i].x) / pi) << i;
+            std::vector<Pair> at;
+            for (const Draw& d : out) at.push_back({d.wi, d.wi});
+            std::vector<double> p(at.size());
+            plugin->pdf(0, at, p);
+            for (std::size_t i = 0; i < p.size(); ++i) ASSERT_DOUBLE_EQ(p[i], out[i].pdf) << i;
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(plugin->spending().answers, 4u * 2 * 70000);
+}
+
+TEST_F(Plugins, ThatEndTheirProcessAreGivenUp) {
+    const auto plugin = open_plugin(compiled("raise(SIGFPE)"));
+    const std::string said = error<SamplerError>(*plugin);
+    EXPECT_THAT(said, HasSubstr("libodd.so"));
+    EXPECT_THAT(said, HasSubstr("SIGFPE"));
+    EXPECT_THAT(said, HasSubstr("crescent_sampler_sample at w_o = (0, 0, 1)"));
+    EXPECT_THAT(error<SamplerExited>(*plugin), HasSubstr("SIGFPE"));
+}
+
+TEST_F(Plugins, ThatLoopAreStoppedAfterTheirTimeOrByTheMonitor) {
+    const std::string file = compiled("for (;;) {}");
+    PipeLimits limits;
+    limits.limit_answers(0.3);
+    EXPECT_THAT(error<SamplerError>(*open_plugin(file, limits)), HasSubstr("after 0.3 s"));
+    std::atomic<bool> stop = false;
+    PipeLimits stopped;
+    stopped.stop = &stop;
+    const auto plugin = open_plugin(file, stopped);
+    stop = true;
+    EXPECT_EQ(error<Interrupted>(*plugin), "interrupted");
+}
+
+TEST_F(Plugins, ThatAreNoneSayWhatIsMissing) {
+    EXPECT_THROW(open_plugin("nowhere.so"), OutputError);
+    EXPECT_THROW(open_plugin(CRESCENT_SOURCE_DIR "/README.md"), OutputError);
+}
+
+}  // namespace
+}  // namespace crescent

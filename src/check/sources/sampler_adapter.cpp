@@ -1,0 +1,68 @@
+// Of lights the nearest along w_i counts. Disks shine from the side that their normal points to; distances in m.
+#include "check/sources/sampler_adapter.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "math/simd/scalar.h"
+#include "math/spherical.h"
+
+namespace crescent::inline subjects {
+
+std::optional<double> CaseDiskLight::distance(Vec3d wi) const {
+    const double c = dot(center, normal), v = dot(wi, normal);
+    if (!(v < 0 && c < 0)) return {};
+    const Vec3d off = wi * c - center * v;
+    if (!(dot(off, off) <= sqr(radius * v))) return {};
+    return c / v;
+}
+
+std::optional<double> CaseAreaLight::distance(Vec3d wi) const {
+    const Vec3d here{};
+    return std::visit(
+        [&](const auto& light) -> std::optional<double> {
+            const double t = light.shines_on(here) ? light.body().intersect(here, wi).t : never;
+            return t < never ? std::optional(t) : std::nullopt;
+        },
+        form);
+}
+
+double CaseAreaLight::power() const {
+    return radiance * std::visit([](const auto& light) { return light.disk_area(); }, form);
+}
+
+std::optional<CaseLighting::Met> CaseLighting::first_met(Vec3d wi) const {
+    std::optional<Met> first;
+    const auto look = [&](const auto& lights) {
+        for (const auto& light : lights)
+            if (const std::optional<double> d = light.distance(wi); d && (!first || *d < first->distance))
+                first = Met{*d, light.radiance};
+    };
+    look(disks);
+    look(lamps);
+    return first;
+}
+
+double CaseLighting::operator()(Vec3d wi) const {
+    if (wi.z <= 0) return 0;
+    const std::optional<Met> met = first_met(wi);
+    return met ? met->radiance : fill;
+}
+
+std::string CheckCase::text() const {
+    const bool none = subject && subject->traits().wo == Traits::Asked::none;
+    std::string s = none ? std::string(without_wo) : fmt::format("w_o {:g} deg", theta_deg);
+    if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
+    for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
+    for (const std::string& part : {brdf, lighting})
+        if (!part.empty()) s += ", " + part;
+    return s;
+}
+
+Vec3d tilt(double theta_deg, double azimuth_deg) {
+    const math::SinCos theta = math::sincos(theta_deg * pi / 180);
+    return math::spherical(theta.sin, theta.cos, azimuth_deg * pi / 180);
+}
+
+}  // namespace crescent::inline subjects

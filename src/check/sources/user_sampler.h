@@ -1,0 +1,385 @@
+// How a user's sampler takes directions and random numbers and gives its draws back, read off the signatures
+// of its members: scalars, arrays, spans, pointers, and structs that are built from so many numbers with braces.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <functional>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent::user {
+
+/// Result and parameters of a member that is not overloaded.
+template <class M> struct Signature;
+template <class R, bool is_const_, class... A> struct Told {
+    using Result = R;
+    using Parameters = std::tuple<A...>;
+    static constexpr bool is_const = is_const_;
+};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...)> : Told<R, false, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...) const> : Told<R, true, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...) noexcept> : Told<R, false, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...) const noexcept> : Told<R, true, A...> {};
+template <class R, class... A> struct Signature<R (*)(A...)> : Told<R, true, A...> {};
+template <class R, class... A> struct Signature<R (*)(A...) noexcept> : Told<R, true, A...> {};
+/// Data members that can be called: lambdas, function pointers; a std::function, which may hold what is not const.
+template <class C>
+concept Called = std::is_class_v<C> && requires { &C::operator(); };
+template <class S, Called C> struct Signature<C S::*> : Signature<decltype(&C::operator())> {};
+template <class S, class R, class... A> struct Signature<R (*S::*)(A...)> : Told<R, true, A...> {};
+template <class S, class R, class... A> struct Signature<std::function<R(A...)> S::*> : Told<R, false, A...> {};
+template <class M>
+concept HasSignature = requires { typename Signature<M>::Parameters; };
+
+/// The sampler itself, of one that is handed over behind a pointer: T*, unique_ptr, shared_ptr.
+template <class S>
+concept Pointing = std::is_pointer_v<S> || requires(const S s) {
+    typename S::element_type;
+    s.get();
+    *s;
+};
+template <class S> struct Sampler {
+    using Type = S;
+    static S& of(S& s) { return s; }
+};
+template <Pointing S> struct Sampler<S> {
+    using Type = std::remove_reference_t<decltype(*std::declval<S&>())>;
+    static Type& of(S& s) { return *s; }
+};
+/// What can be copied of a sampler that is looked at: itself, or a pointer to it.
+template <class S> auto handed(const S& s) {
+    if constexpr (Pointing<S>) return &*s;
+    else return s;
+}
+template <class S> using SamplerOf = std::remove_const_t<typename Sampler<S>::Type>;
+
+/// Turns into whichever number a struct of the sampler's own is built from.
+struct Anything {
+    double v = 0;
+    template <std::floating_point T> operator T() const { return static_cast<T>(v); }
+};
+template <class C, int n> consteval bool is_built_from() {
+    return []<std::size_t... i>(std::index_sequence<i...>) { return requires(Anything a) { C{((void)i, a)...}; }; }(
+               std::make_index_sequence<n>{});
+}
+
+template <class C> using Bare = std::remove_cvref_t<C>;
+template <class C>
+concept Number = std::floating_point<Bare<C>>;
+/// const T*: how many it points to is not written there.
+template <class C>
+concept Pointer = std::is_pointer_v<Bare<C>> && std::is_const_v<std::remove_pointer_t<Bare<C>>> &&
+    std::floating_point<std::remove_cv_t<std::remove_pointer_t<Bare<C>>>>;
+template <class C> struct SpanOf : std::false_type {};
+template <class T, std::size_t n> struct SpanOf<std::span<T, n>> : std::bool_constant<std::is_const_v<T>> {
+    using Value = std::remove_const_t<T>;
+    static constexpr int extent = n == std::dynamic_extent ? 0 : static_cast<int>(n);
+};
+template <class C>
+concept Span = SpanOf<Bare<C>>::value;
+/// Written through: V& or V*.
+template <class C>
+concept Written = (std::is_lvalue_reference_v<C> && !std::is_const_v<std::remove_reference_t<C>>) ||
+    (std::is_pointer_v<Bare<C>> && !std::is_const_v<std::remove_pointer_t<Bare<C>>>);
+
+/// How many numbers a parameter holds; 0: it does not say; -1: it holds none.
+template <class C> consteval int size_of() {
+    using B = Bare<C>;
+    if constexpr (Written<C>) return -1;
+    else if constexpr (Number<C>) return 1;
+    else if constexpr (Pointer<C>) return 0;
+    else if constexpr (Span<C>) return SpanOf<B>::extent;
+    else if constexpr (std::is_class_v<B>) {
+        if constexpr (is_built_from<B, 9>()) return -1;
+        else {
+            return []<int... n>(std::integer_sequence<int, n...>) {
+                int most = -1;
+                ((is_built_from<B, n + 2>() ? most = n + 2 : 0), ...);
+                return most;
+            }(std::make_integer_sequence<int, 7>{});
+        }
+    } else return -1;
+}
+
+/// A parameter filled with numbers; it lives as long as the call.
+template <class C> struct Filled {
+    Bare<C> value;
+    explicit Filled(std::span<const double> v)
+        : value(make(v, std::make_index_sequence<static_cast<std::size_t>(size_of<C>())>{})) {}
+    const Bare<C>& get() const { return value; }
+
+private:
+    template <std::size_t... i> static Bare<C> make(std::span<const double> v, std::index_sequence<i...>) {
+        return Bare<C>{Anything{v[i]}...};
+    }
+};
+template <Number C> struct Filled<C> {
+    Bare<C> value;
+    explicit Filled(std::span<const double> v) : value(static_cast<Bare<C>>(v[0])) {}
+    Bare<C> get() const { return value; }
+};
+template <class T> struct Stored {
+    std::array<T, PrimarySample::most> value{};
+    explicit Stored(std::span<const double> v) {
+        for (std::size_t i = 0; i < v.size() && i < value.size(); ++i) value[i] = static_cast<T>(v[i]);
+    }
+};
+template <Pointer C> struct Filled<C> : Stored<std::remove_cv_t<std::remove_pointer_t<Bare<C>>>> {
+    using Stored<std::remove_cv_t<std::remove_pointer_t<Bare<C>>>>::Stored;
+    auto get() const { return this->value.data(); }
+};
+template <Span C> struct Filled<C> : Stored<typename SpanOf<Bare<C>>::Value> {
+    std::size_t count;
+    explicit Filled(std::span<const double> v) : Stored<typename SpanOf<Bare<C>>::Value>(v), count(v.size()) {}
+    Bare<C> get() const { return Bare<C>(this->value.data(), count); }
+};
+
+/// How many numbers [0], [1] ... reach; 0: the type does not say.
+template <class V> consteval std::size_t length_of() {
+    if constexpr (std::is_array_v<V>) return std::extent_v<V>;
+    else if constexpr (requires { std::tuple_size<V>::value; }) return std::tuple_size_v<V>;
+    else if constexpr (SpanOf<V>::value) return static_cast<std::size_t>(SpanOf<V>::extent);
+    else return 0;
+}
+template <class V>
+concept Xyz = requires(const V v) {
+    static_cast<double>(v.x);
+    static_cast<double>(v.y);
+    static_cast<double>(v.z);
+};
+template <class V>
+concept Indexed = requires(const V v) { static_cast<double>(v[0]); };
+/// A direction that is given back: {x, y, z}, or at least three in a row.
+template <class V>
+concept Three = Xyz<V> || (Indexed<V> && (length_of<V>() == 0 || length_of<V>() >= 3));
+
+template <Three V> Vec3d direction(const V& v) {
+    if constexpr (Xyz<V>) return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+    else return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+template <class P>
+concept Scalar = requires(const P p) { static_cast<double>(p); } || requires(const P p) { static_cast<double>(p.v); };
+template <Scalar P> double number_of(const P& p) {
+    if constexpr (requires { p.v; }) return static_cast<double>(p.v);
+    else return static_cast<double>(p);
+}
+template <class P>
+concept Rgb3 = requires(const P p) {
+    static_cast<double>(p.r);
+    static_cast<double>(p.g);
+    static_cast<double>(p.b);
+};
+/// Three channels: an array of three, or a struct {r, g, b} or {x, y, z}.
+template <class P>
+concept Coloured = !Scalar<P> && (Rgb3<P> || Xyz<P> || (Three<P> && length_of<P>() <= 3));
+/// What f and a weight may be.
+template <class P>
+concept Channels = Scalar<P> || Coloured<P>;
+template <Channels P> Vec3d colour(const P& p) {
+    if constexpr (Scalar<P>) return {number_of(p), number_of(p), number_of(p)};
+    else if constexpr (Rgb3<P>) return {static_cast<double>(p.r), static_cast<double>(p.g), static_cast<double>(p.b)};
+    else return direction(p);
+}
+template <class D>
+concept Optional = requires(const D d) {
+    d.has_value();
+    *d;
+};
+
+// ---- Calls of a user's sampler: which parameter is w_o, which are random numbers, what is written through, and
+// what a draw says.
+//
+//   sample(wo, u)   sample(wo, uc, u)   sample(wo, u, wi&, pdf&)   sample(u), of a sampler without w_o
+//
+// Numbers go to the first parameter that holds two or more of them, then to the others in their order: uc of (wo,
+// uc, u) is the third.
+
+template <class S>
+concept HasSample = requires { &S::sample; } && HasSignature<decltype(&S::sample)>;
+template <class S>
+concept HasPdf = requires { &S::pdf; } && HasSignature<decltype(&S::pdf)>;
+template <class S>
+concept HasF = requires { &S::f; } && HasSignature<decltype(&S::f)>;
+
+/// A class that inherits a name from both of its bases cannot say which it means: so a name shows that S has it, though
+/// it be overloaded, private or a template, which would else pass for a sampler without.
+struct Names {
+    int sample, pdf, f;
+};
+template <class S> struct Named : S, Names {};
+template <class S>
+concept Derivable = std::is_class_v<S> && !std::is_final_v<S>;
+template <class S> consteval bool names_pdf() {
+    if constexpr (Derivable<S>) return !requires { &Named<S>::pdf; };
+    else return HasPdf<S>;
+}
+template <class S> consteval bool names_f() {
+    if constexpr (Derivable<S>) return !requires { &Named<S>::f; };
+    else return HasF<S>;
+}
+template <class S>
+concept HasTraits = requires { &S::traits; } || requires(S s) { s.traits(); };
+template <class S> using OfSample = Signature<decltype(&S::sample)>;
+template <class S> using OfPdf = Signature<decltype(&S::pdf)>;
+template <class S> using OfF = Signature<decltype(&S::f)>;
+template <class S> using SampleParameters = typename OfSample<S>::Parameters;
+
+template <class T> inline constexpr std::size_t count_of = std::tuple_size_v<T>;
+template <class T, std::size_t i> using At = std::tuple_element_t<i, T>;
+
+/// Parameters of a tuple that are not written through; those that are stand at the end.
+template <class T> consteval std::size_t read_of() {
+    return []<std::size_t... i>(std::index_sequence<i...>) {
+        return (std::size_t{0} + ... + (Written<At<T, i>> ? 0 : 1));
+    }(std::make_index_sequence<count_of<T>>{});
+}
+template <class T> consteval std::size_t written_of() { return count_of<T> - read_of<T>(); }
+
+/// A pointer to u says by S::numbers how many there are, else two.
+template <class S, class C> consteval int numbers_in() {
+    constexpr int n = size_of<C>();
+    if constexpr (n != 0) return n;
+    else if constexpr (requires { S::numbers; }) return static_cast<int>(S::numbers);
+    else return 2;
+}
+template <class C>
+concept Direction = size_of<C>() == 3 || size_of<C>() == 0 || size_of<C>() == 4;  // the fourth of a padded one is 0
+
+/// sample(u): w_o is not asked for.
+template <class S> consteval bool without_wo() { return read_of<SampleParameters<S>>() == 1; }
+
+/// Which numbers parameter `i` of sample gets: the first of them, and how many.
+struct Share {
+    int first = 0, count = 0;
+};
+template <class S> consteval auto shares() {
+    using T = SampleParameters<S>;
+    constexpr std::size_t reads = read_of<T>(), from = without_wo<S>() ? 0 : 1;
+    std::array<Share, reads + 1> out{};
+    int next = 0;
+    [&]<std::size_t... i>(std::index_sequence<i...>) { ((out[i].count = numbers_in<S, At<T, i>>()), ...); }(
+        std::make_index_sequence<reads>{});
+    for (int pass = 0; pass < 2; ++pass)  // those with two or more members first
+        for (std::size_t i = from; i < reads; ++i) {
+            if ((out[i].count > 1) != (pass == 0)) continue;
+            out[i].first = next;
+            next += out[i].count;
+        }
+    out[reads].count = next;
+    return out;
+}
+template <class S> consteval int numbers() { return shares<S>()[read_of<SampleParameters<S>>()].count; }
+
+/// What is written through stands as a value; handed over as it is wanted.
+template <class C> using Value = std::remove_cv_t<std::remove_pointer_t<Bare<C>>>;
+template <class C> decltype(auto) hand(Value<C>& v) {
+    if constexpr (std::is_pointer_v<Bare<C>>) return &v;
+    else return (v);
+}
+
+template <class S, class C, std::size_t i> Filled<C> filled(Vec3d wo, const PrimarySample& u) {
+    constexpr Share share = shares<S>()[i];
+    const std::array<double, 4> w = {wo.x, wo.y, wo.z, 0};
+    if constexpr (i == 0 && !without_wo<S>())
+        return Filled<C>(std::span<const double>(w).first(size_of<C>() == 4 ? 4 : 3));
+    std::array<double, PrimarySample::most> v{};
+    for (int k = 0; k < share.count; ++k) v[static_cast<std::size_t>(k)] = u[share.first + k];
+    return Filled<C>(std::span<const double>(v).first(static_cast<std::size_t>(share.count)));
+}
+
+/// f, a weight or nothing of a draw that says so by its members.
+template <class D> Draw described(const D& d) {
+    Draw out{direction(d.wi), 1};
+    if constexpr (requires { d.pdf; }) out.pdf = number_of(d.pdf);
+    const auto weigh = [&](Vec3d w, bool coloured) { out.weights = w, out.weight = coloured ? luminance(w) : w.x; };
+    if constexpr (requires { d.weight; }) weigh(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
+    else if constexpr (requires { colour(d.f); }) {
+        if (out.pdf > 0) weigh(colour(d.f) * (std::fabs(out.wi.z) / out.pdf), Coloured<Bare<decltype(d.f)>>);
+    }
+    double q = 0;
+    if constexpr (requires {
+                      { d.delta } -> std::convertible_to<double>;
+                  })
+        q = std::is_same_v<Bare<decltype(d.delta)>, bool> ? (d.delta ? out.pdf : 0) : static_cast<double>(d.delta);
+    else if constexpr (requires { d.IsSpecular(); }) q = d.IsSpecular() ? out.pdf : 0;
+    else if constexpr (requires { d.specular; }) q = d.specular ? out.pdf : 0;
+    if (q > 0) out.delta = q, out.pdf = 0;
+    return out;
+}
+template <class D> Draw drawn(const D& d) {
+    if constexpr (Optional<D>) return d.has_value() ? drawn(*d) : Draw{{0, 0, 1}, 0};
+    else return described(d);
+}
+template <class D> struct Inner {
+    using Type = D;
+};
+template <Optional D> struct Inner<D> {
+    using Type = Bare<decltype(*std::declval<const D&>())>;
+};
+template <class S> using Result = typename Inner<Bare<typename OfSample<S>::Result>>::Type;
+template <class D>
+concept TellsDelta = requires(const D d) {
+    { d.delta } -> std::convertible_to<double>;
+} || requires(const D d) { d.IsSpecular(); } || requires(const D d) { d.specular; };
+template <class D>
+concept TellsWeight = requires(const D d) { d.weight; } || requires(const D d) { d.f; };
+
+/// bool or void, with wi and pdf written through, and then a weight.
+template <class S, class... C>
+Draw written(S& s, Vec3d wo, const PrimarySample& u, std::type_identity<std::tuple<C...>>) {
+    using T = std::tuple<C...>;
+    constexpr std::size_t reads = read_of<T>();
+    std::tuple<Value<C>...> store{};
+    bool is_drawn = true;
+    [&]<std::size_t... i, std::size_t... k>(std::index_sequence<i...>, std::index_sequence<k...>) {
+        const auto given = std::make_tuple(filled<S, At<T, i>, i>(wo, u)...);
+        const auto call = [&] {
+            return s.sample(std::get<i>(given).get()..., hand<At<T, reads + k>>(std::get<reads + k>(store))...);
+        };
+        if constexpr (std::convertible_to<typename OfSample<S>::Result, bool>) is_drawn = static_cast<bool>(call());
+        else call();
+    }(std::make_index_sequence<reads>{}, std::make_index_sequence<written_of<T>()>{});
+    if (!is_drawn) return {{0, 0, 1}, 0};
+    Draw out{direction(std::get<reads>(store)), number_of(std::get<reads + 1>(store))};
+    if constexpr (written_of<T>() > 2) {
+        const auto& weight = std::get<reads + 2>(store);
+        out.weights = colour(weight);
+        out.weight = Coloured<Bare<decltype(weight)>> ? luminance(out.weights) : out.weights.x;
+    }
+    return out;
+}
+
+template <class S> Draw sample(S& s, Vec3d wo, const PrimarySample& u) {
+    using T = SampleParameters<S>;
+    if constexpr (written_of<T>() > 0) return written(s, wo, u, std::type_identity<T>{});
+    else
+        return [&]<std::size_t... i>(std::index_sequence<i...>) {
+            return drawn(s.sample(filled<S, At<T, i>, i>(wo, u).get()...));
+        }(std::make_index_sequence<count_of<T>>{});
+}
+
+/// pdf and f: of (wo, wi), or of wi alone.
+template <class T, class Call> decltype(auto) with_pair(const Pair& p, Call&& call) {
+    const auto four = [](Vec3d w) { return std::array<double, 4>{w.x, w.y, w.z, 0}; };
+    const auto take = []<class C>(std::type_identity<C>, const std::array<double, 4>& w) {
+        return Filled<C>(std::span<const double>(w).first(size_of<C>() == 4 ? 4 : 3));
+    };
+    const std::array<double, 4> wo = four(p.wo), wi = four(p.wi);
+    if constexpr (count_of<T> == 1) return call(take(std::type_identity<At<T, 0>>{}, wi).get());
+    else return call(take(std::type_identity<At<T, 0>>{}, wo).get(), take(std::type_identity<At<T, 1>>{}, wi).get());
+}
+template <class S> double pdf(S& s, const Pair& p) {
+    return with_pair<typename OfPdf<S>::Parameters>(p, [&](const auto&... w) { return number_of(s.pdf(w...)); });
+}
+template <class S> Vec3d f(S& s, const Pair& p) {
+    return with_pair<typename OfF<S>::Parameters>(p, [&](const auto&... w) { return colour(s.f(w...)); });
+}
+
+}  // namespace crescent::user

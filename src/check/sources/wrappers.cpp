@@ -1,0 +1,225 @@
+// Answers are kept by the bits of (w_o, w_i); draws by the bits of w_o and u. Only what is new is asked, in the order
+// in which it came. A sampler that throws leaves nothing behind of that call.
+#include "check/sources/wrappers.h"
+
+#include <algorithm>
+#include <bit>
+#include <fmt/format.h>
+#include <unordered_map>
+
+#include "base/text.h"
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent::inline subjects {
+
+namespace {
+
+struct Key {
+    std::array<std::uint64_t, 6> bits;
+    explicit Key(const Pair& p)
+        : bits{std::bit_cast<std::uint64_t>(p.wo.x), std::bit_cast<std::uint64_t>(p.wo.y),
+              std::bit_cast<std::uint64_t>(p.wo.z), std::bit_cast<std::uint64_t>(p.wi.x),
+              std::bit_cast<std::uint64_t>(p.wi.y), std::bit_cast<std::uint64_t>(p.wi.z)} {}
+    bool operator==(const Key&) const = default;
+};
+
+struct KeyHash {
+    std::size_t operator()(const Key& key) const {
+        std::uint64_t h = 0x9e3779b97f4a7c15u;
+        for (std::uint64_t b : key.bits) h = (h ^ (b >> 29) ^ b) * 0xbf58476d1ce4e5b9u;
+        return static_cast<std::size_t>(h ^ (h >> 32));
+    }
+};
+
+template <class Value> using Kept = std::unordered_map<Key, Value, KeyHash>;
+
+/// Answers from what is kept; `ask` is called once, with the pairs that are new, in their order.
+template <class Value, class Ask>
+void answer(Kept<Value>& kept, std::span<const Pair> at, std::span<Value> out, const Ask& ask) {
+    std::vector<Pair> fresh;
+    for (const Pair& p : at)
+        if (kept.try_emplace(Key(p)).second) fresh.push_back(p);
+    std::vector<Value> values(fresh.size());
+    try {
+        if (!fresh.empty()) ask(std::span<const Pair>(fresh), std::span<Value>(values));
+    } catch (...) {
+        for (const Pair& p : fresh) kept.erase(Key(p));
+        throw;
+    }
+    for (std::size_t i = 0; i < fresh.size(); ++i) kept[Key(fresh[i])] = values[i];
+    for (std::size_t i = 0; i < at.size(); ++i) out[i] = kept[Key(at[i])];
+}
+
+bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
+
+/// What one trial asks, whichever others ask the same sampler meanwhile.
+class Counted : public ForwardingAdapter {
+public:
+    using ForwardingAdapter::ForwardingAdapter;
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        answers_ += u.size();
+        inner().sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().pdf(t, at, out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().exact_pdf(t, at, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().f(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        answers_ += at.size();
+        inner().f_channels(at, out);
+    }
+    QueryUsage spending() const override {
+        const QueryUsage of_all = inner().spending();
+        return {answers_, of_all.seconds, of_all.allowed};
+    }
+
+private:
+    mutable std::uint64_t answers_ = 0;
+};
+
+class AskedOnce : public ForwardingAdapter {
+public:
+    AskedOnce(std::shared_ptr<const SamplerAdapter> sampler, bool draws)
+        : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), keeps_draws_(draws) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        if (!keeps_draws_) return inner().sample(t, wo, u, out);
+        for (const Drawn& d : drawn_)
+            if (d.technique == t && Key({wo, wo}) == Key({d.wo, d.wo}) && std::ranges::equal(d.u, u, same)) {
+                std::ranges::copy(d.draws, out.begin());
+                return;
+            }
+        inner().sample(t, wo, u, out);
+        drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        if (!keeps_draws_ || t > 1) return inner().pdf(t, at, out);
+        answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
+            [&](std::span<const Pair> a, std::span<double> o) { inner().pdf(t, a, o); });
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        if (t > 1) return inner().exact_pdf(t, at, out);
+        answer<double>(pdf_[static_cast<std::size_t>(t)], at, out,
+            [&](std::span<const Pair> a, std::span<double> o) { inner().exact_pdf(t, a, o); });
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        if (inner().traits().channels == 1)
+            return answer<double>(f_, at, out, [&](auto a, auto o) { inner().f(a, o); });
+        std::vector<Vec3d> by_channel(at.size());
+        f_channels(at, by_channel);
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = luminance(by_channel[i]);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        answer<Vec3d>(channels_, at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
+    }
+    void true_f(std::span<const Pair> at, std::span<double> out) const override {
+        if (has_true_f()) inner().true_f(at, out);
+        else f(at, out);
+    }
+    const SamplerAdapter& anew() const { return inner(); }
+
+private:
+    struct Drawn {
+        int technique;
+        Vec3d wo;
+        std::vector<PrimarySample> u;
+        std::vector<Draw> draws;
+    };
+    bool keeps_draws_;
+    mutable std::vector<Drawn> drawn_;
+    mutable std::array<Kept<double>, 2> plain_pdf_;  // by technique
+    mutable std::array<Kept<double>, 2> pdf_;        // by technique
+    mutable Kept<double> f_;
+    mutable Kept<Vec3d> channels_;
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> cached(std::shared_ptr<const SamplerAdapter> sampler, bool draws) {
+    return std::make_shared<AskedOnce>(std::move(sampler), draws);
+}
+
+Side PerDirectionCache::of(const CheckCase& trial, std::uint32_t stream) {
+    Side out{trial, stream};
+    if (!trial.subject->limited()) return out;
+    if (!trial.subject->serial()) return out.trial.subject = cached(trial.subject), out;  // of many threads
+    const std::array<double, 3> wo = {trial.wo.x, trial.wo.y, trial.wo.z};
+    if (asked_ != trial.subject || wo != wo_)
+        asked_ = trial.subject, wo_ = wo, stream_ = stream, kept_ = cached(trial.subject, true);
+    out.stream = stream_;
+    out.trial.subject = kept_;
+    return out;
+}
+
+const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
+    const auto* kept = dynamic_cast<const AskedOnce*>(&sampler);
+    return kept ? kept->anew() : sampler;
+}
+
+// ---- A fault is thrown again with the side in front and with its kind kept: too slow, given up before, or new.
+
+namespace {
+
+constexpr std::string_view opening = "sampler ";  // no fault of a sampler itself begins so
+
+class LabelledAdapter : public ForwardingAdapter {
+public:
+    LabelledAdapter(std::shared_ptr<const SamplerAdapter> sampler, const std::string& side)
+        : ForwardingAdapter(std::move(sampler)),
+          who_(fmt::format("{}{} ({}): ", opening, side, printable(inner().name(), 40))) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        ask([&] { inner().sample(t, wo, u, out); });
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        ask([&] { inner().pdf(t, at, out); });
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        ask([&] { inner().exact_pdf(t, at, out); });
+    }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        ask([&] { inner().mis_weight(t, at, out); });
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        ask([&] { inner().f(at, out); });
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        ask([&] { inner().f_channels(at, out); });
+    }
+    void true_f(std::span<const Pair> at, std::span<double> out) const override {
+        ask([&] { inner().true_f(at, out); });
+    }
+
+private:
+    std::string who_;
+
+    std::string told(const SamplerError& fault) const {
+        const std::string_view what = fault.what();
+        return what.starts_with(opening) ? std::string(what) : who_ + std::string(what);
+    }
+    template <class Call> void ask(Call&& call) const {
+        try {
+            call();
+        } catch (const SamplerTimeout& fault) {
+            throw SamplerTimeout(told(fault));
+        } catch (const SamplerExited& fault) { throw SamplerExited(told(fault)); } catch (const SamplerError& fault) {
+            throw SamplerError(told(fault));
+        }
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> named_side(
+    std::shared_ptr<const SamplerAdapter> sampler, const std::string& side) {
+    if (!sampler->can_draw() || !sampler->limited()) return sampler;
+    return std::make_shared<LabelledAdapter>(std::move(sampler), side);
+}
+
+}  // namespace crescent::inline subjects

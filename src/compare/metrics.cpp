@@ -1,0 +1,335 @@
+// RenderStats -> meters with their doubt. Intervals are t intervals over renders, 95 %, cut at 0 where the meter cannot
+// be below it; of the squared bias by the jackknife, of counts by count_interval(). docs/compare.md has the coverage
+// that was measured.
+#include "compare/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "compare/compare.h"
+#include "compare/flip.h"
+#include "compare/plan.h"
+#include "compare/renders.h"
+#include "compare/wording.h"
+#include "math/functions.h"
+#include "math/tail.h"
+#include "output/tone_map.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+using Values = std::vector<double>;
+
+template <class Read> Values over_renders(const ArmStats& arm, std::size_t region, Read read) {
+    Values out;
+    for (const auto& render : arm.regions) out.push_back(read(render[region]));
+    return out;
+}
+
+/// What is said of a mean over renders; `transform` rises (sqrt for RMSE).
+template <class Transform> MeterValue value_of(const MeanInterval& m, bool heavy, Transform transform) {
+    MeterValue out{transform(m.mean), {}, ""};
+    if (m.n < 2) out.why = "one render has no interval";
+    else if (heavy) out.why = "heavy tail";
+    else out.interval = {transform(m.low), transform(m.high)};
+    return out;
+}
+
+template <class Transform> MeterValue mean_of(const Values& values, bool heavy, Transform transform) {
+    return value_of(mean_interval(values, confidence), heavy, transform);
+}
+
+double same(double v) { return v; }
+double at_least_0(double v) { return std::max(0.0, v); }
+double root_of(double v) { return std::sqrt(at_least_0(v)); }
+
+MeterValue missing(std::string why) { return {{}, {}, std::move(why)}; }
+
+double mean_variance(const MeanFilm& film, const PixelSet& set) {
+    double sum = 0;
+    for (const std::uint32_t i : set.pixels) sum += film.variance(i);
+    return sum / static_cast<double>(set.pixels.size());
+}
+
+MeterValue variance(const ArmStats& arm, const PixelSet& set, std::size_t region, bool heavy) {
+    const double k = static_cast<double>(arm.files.size());
+    if (arm.files.size() >= 2) {
+        Values each = over_renders(arm, region, [&](const RegionStats& r) { return r.spread * k / (k - 1); });
+        MeterValue out = mean_of(each, heavy, at_least_0);
+        if (arm.files.size() == 2) out.interval.reset(), out.why = "two renders spread alike: no interval";
+        return out;
+    }
+    const double told = mean_variance(arm.film, set);
+    if (std::isnan(told)) return missing("one render without a variance channel has no variance");
+    return {told, {}, "as the renderer wrote it; one render has no interval"};
+}
+
+/// Squared bias without the variance: the mean of e_k e_l over pairs of renders, less the reference's own error. Two
+/// renders that both err greatly in one pixel may be rare, and their absence looks like certainty: the standard error
+/// is never taken to be less than that of independent pixels of equal variance, sqrt(2 / (K (K - 1) pixels)) variance.
+MeterValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t region, double reference, bool heavy) {
+    const double k = static_cast<double>(arm.files.size());
+    if (arm.files.size() < 2) return missing("bias and variance part from two renders on");
+    double sum = 0, squares = 0;
+    for (const auto& render : arm.regions) sum += render[region].with_sum, squares += render[region].mse;
+    const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - reference; };
+    MeterValue out{statistic(sum, squares, k), {}, ""};
+    if (heavy) out.why = "heavy tail";
+    else if (arm.files.size() < 3) out.why = "three renders or more have an interval";
+    if (!out.why.empty()) return out;
+    const double least_se =
+        std::sqrt(2 / (k * (k - 1) * static_cast<double>(set.pixels.size()))) * mean_variance(arm.film, set);
+    Values pseudo;
+    for (const auto& render : arm.regions) {
+        const RegionStats& r = render[region];
+        const double without = statistic(sum - 2 * r.with_sum + r.mse, squares - r.mse, k - 1);
+        pseudo.push_back(k * *out.value - (k - 1) * without);
+    }
+    const MeanInterval m = mean_interval(pseudo, confidence);
+    const double half = std::max(m.high - m.mean, student_quantile(0.5 + confidence / 2, k - 1) * least_se);
+    out.interval = {*out.value - half, *out.value + half};
+    return out;
+}
+
+/// `transform` of a meter by a known factor: rising, or falling (1/x).
+template <class Transform> MeterValue made_of(const MeterValue& from, const Transform& transform) {
+    if (!from.value) return missing(from.why);
+    if (!(*from.value > 0)) return missing("the variance is 0");
+    MeterValue out{transform(*from.value), {}, from.why};
+    if (!from.interval || !(from.interval->first > 0)) return out;
+    const double a = transform(from.interval->first), b = transform(from.interval->second);
+    out.interval = {std::min(a, b), std::max(a, b)};
+    return out;
+}
+
+void costs(const MeterValue& var, const Cost& cost, RegionResult& out) {
+    const auto by = [&](const std::optional<double>& each, const char* why) {
+        return each ? made_of(var, [&](double v) { return v * *each; }) : missing(why);
+    };
+    const char* no_time = "no render time: give --seconds";
+    out.meters.emplace_back("efficiency",
+        cost.seconds ? made_of(var, [&](double v) { return 1 / (v * *cost.seconds); }) : missing(no_time));
+    out.meters.emplace_back("unit_time", by(cost.seconds, no_time));
+    out.meters.emplace_back("sample_var", by(cost.spp, "no samples a pixel: give --spp"));
+}
+
+/// Renders from which the largest error would be a twentieth of the sum: the largest of n grows as n^k, their sum as n.
+std::optional<double> needed(const RegionResult& r, double renders) {
+    const double k = r.tail ? std::max(0.5, r.tail->k) : 0.5;
+    if (!(k < 1)) return {};
+    return std::ceil(renders * math::pow(std::max(1.0, r.largest_share / 0.05), 1 / (1 - k)));
+}
+
+void tail_of(const ArmStats& arm, std::size_t region, RegionResult& out) {
+    out.tail = fit_pooled_tail(std::span<const float>(arm.largest[region]));
+    double sum = 0;
+    for (const auto& render : arm.regions) sum += render[region].mse > 0 ? render[region].mse : render[region].spread;
+    sum *= static_cast<double>(out.pixels);
+    if (sum > 0 && !arm.largest[region].empty())
+        out.largest_share = static_cast<double>(arm.largest[region].front()) / sum;
+    if (out.heavy()) out.renders_needed = needed(out, static_cast<double>(arm.files.size()));
+}
+
+/// What the renderer says of its own variance beside what its renders spread.
+std::optional<double> told_over_measured(const ArmStats& arm, const PixelSet& set) {
+    if (arm.film.told_variance.empty() || arm.film.count < 2) return {};
+    double told = 0, measured = 0;
+    for (const std::uint32_t i : set.pixels)
+        told += static_cast<double>(arm.film.told_variance[i]), measured += arm.film.variance(i);
+    return measured > 0 ? std::optional(told / static_cast<double>(arm.film.count) / measured) : std::nullopt;
+}
+
+/// A value that is not finite is none: nothing compares with it.
+void keep_finite(MeterValue& m) {
+    if (m.value && !std::isfinite(*m.value)) m = missing(fmt::format("it is {}, not a finite number", *m.value));
+    if (m.interval && !(std::isfinite(m.interval->first) && std::isfinite(m.interval->second)))
+        m.interval.reset(), m.why = "its interval is not finite";
+}
+
+RegionResult without_pixels(const PixelSet& set, const std::vector<QuantityWord>& words) {
+    RegionResult out;
+    out.region = set.name;
+    for (const QuantityWord& word : words)
+        out.meters.emplace_back(std::string(word.word), missing("no pixel is finite in every render"));
+    return out;
+}
+
+}  // namespace
+
+const MeterValue& RegionResult::meter(const std::string& name) const {
+    static const MeterValue none;
+    for (const auto& [key, value] : meters)
+        if (key == name) return value;
+    return none;
+}
+
+bool RegionResult::mean_heavy() const { return (tail && tail->k >= 1) || largest_share > heavy_share; }
+
+bool RegionResult::heavy() const { return (tail && tail->k >= 0.5) || largest_share > heavy_share; }
+
+const RegionResult& ArmResult::region(const std::string& wanted) const {
+    const auto it =
+        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == wanted; });
+    ensure(it != regions.end(), "a region that was measured");
+    return *it;
+}
+
+double reference_variance(const RenderStats& all, std::size_t region) {
+    const ArmStats& reference = *all.reference;
+    const double told = mean_variance(reference.film, all.regions[region]) / static_cast<double>(reference.film.count);
+    if (!std::isnan(told)) return told;
+    double least = HUGE_VAL;  // a bias adds to what an arm's roughness says: the least of them is nearest
+    for (const ArmStats& arm : all.arms)
+        if (arm.film.count > 1 || !arm.film.told_variance.empty())
+            least = std::min(least, roughness(all, arm, all.regions[region]));
+    return std::isfinite(least) ? least : 0;
+}
+
+RegionResult measure_region(
+    const RenderStats& all, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips) {
+    const PixelSet& set = all.regions[region];
+    if (set.pixels.empty()) return without_pixels(set, compare_words());
+    RegionResult out;
+    out.region = set.name, out.pixels = set.pixels.size();
+    tail_of(arm, region, out);
+    const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = all.reference.has_value();
+    const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
+        out.meters.emplace_back(name,
+            referred ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
+    };
+    against("rmse", [](const RegionStats& r) { return r.mse; }, root_of, heavy);
+    const MeterValue var = variance(arm, set, region, heavy);
+    out.meters.emplace_back("var", var);
+    out.meters.emplace_back("bias2",
+        referred ? squared_bias(arm, set, region, reference_variance(all, region), heavy) : missing("no reference"));
+    against("relmse", [](const RegionStats& r) { return r.relmse; }, at_least_0, heavy);
+    against("mape", [](const RegionStats& r) { return r.mape; }, at_least_0, mean_heavy);
+    const Values fireflies = over_renders(arm, region, [](const RegionStats& r) { return r.fireflies; });
+    out.meters.emplace_back("fireflies",
+        referred ? value_of(count_interval(fireflies, static_cast<double>(out.pixels), confidence), false, same)
+                 : missing("no reference"));
+    out.meters.emplace_back(
+        "y_mean", mean_of(over_renders(arm, region, [](const RegionStats& r) { return r.y; }), mean_heavy, same));
+    const auto picture = [&](const char* name, const std::optional<double>& flip) {
+        out.meters.emplace_back(name,
+            flip ? MeterValue{*flip, {}, "of the first render"} : missing(referred ? "not asked for" : "no reference"));
+    };
+    picture("flip", flips.hdr), picture("flip_ldr", flips.ldr);
+    costs(var, cost, out);
+    out.power = arm.power[region];
+    out.colour = noise_colour(out.power);
+    out.told_ratio = told_over_measured(arm, set);
+    for (auto& [name, value] : out.meters) keep_finite(value);
+    return out;
+}
+
+// ---- FLIP of each arm's first render beside the reference: of radiance (HDR), and of the two photographs (LDR).
+
+namespace {
+
+double mean_over(const std::vector<float>& map, const PixelSet& set) {
+    double sum = 0;
+    for (const std::uint32_t i : set.pixels) sum += static_cast<double>(map[i]);
+    return sum / static_cast<double>(set.pixels.size());
+}
+
+/// Display-ready linear channels of a photograph, as plates show it, for LDR-FLIP.
+std::array<std::vector<float>, 3> photograph(
+    std::span<const float> r, std::span<const float> g, std::span<const float> b, double exposure) {
+    std::array<std::vector<float>, 3> out;
+    for (auto& plane : out) plane.resize(r.size());
+    for (std::size_t i = 0; i < r.size(); ++i) {
+        const auto shown = [&](float x) { return std::max(0.0, exposure * static_cast<double>(x)); };
+        const Rgb rgb = neutral({shown(r[i]), shown(g[i]), shown(b[i])});
+        for (std::size_t c = 0; c < 3; ++c) out[c][i] = static_cast<float>(rgb[c]);
+    }
+    return out;
+}
+
+/// FLIP filters: a value that is not finite would spread to its neighbours.
+void blacken(Render& image, const std::vector<bool>& bad) {
+    for (std::size_t i = 0; i < bad.size(); ++i)
+        if (bad[i]) image.r[i] = image.g[i] = image.b[i] = 0;
+}
+
+}  // namespace
+
+std::vector<Flips> measure_flip(
+    const ComparePlan& plan, const RenderStats& all, std::size_t a, ProgressMonitor& monitor) {
+    std::vector<Flips> out(all.regions.size());
+    if (!all.reference || !plan.flip) return out;
+    monitor.begin("FLIP", 1);
+    Render ref = in_rec709(all, all.reference->film);
+    Render test = in_rec709(all, all.source.read(all.arms[a].files[0].path, plan.arms[a].layer));
+    for (Render* image : {&test, &ref}) blacken(*image, all.bad);
+    const std::vector<float> hdr = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
+        {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
+    const auto seen = photograph(test.r, test.g, test.b, plan.exposure),
+               wanted = photograph(ref.r, ref.g, ref.b, plan.exposure);
+    const std::vector<float> ldr = ldr_flip({all.width, all.height, wanted[0], wanted[1], wanted[2]},
+        {all.width, all.height, seen[0], seen[1], seen[2]}, plan.pixels_per_degree);
+    for (std::size_t r = 0; r < all.regions.size(); ++r)
+        out[r] = {mean_over(hdr, all.regions[r]), mean_over(ldr, all.regions[r])};
+    monitor.advance(1);
+    return out;
+}
+
+// ---- Means and squared deviations of Y, R, G and B over renders that come one at a time (Welford 1962).
+
+namespace {
+
+bool is_grey(const Render& render) {
+    const auto same = [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    return std::equal(render.r.begin(), render.r.end(), render.g.begin(), same) &&
+        std::equal(render.r.begin(), render.r.end(), render.b.begin(), same);
+}
+
+void add_value(MeanPlane& plane, std::size_t i, float x, double n) {
+    const double value = static_cast<double>(x), off = value - plane.mean[i];
+    plane.mean[i] += off / n;
+    plane.m2[i] += off * (value - plane.mean[i]);
+}
+
+}  // namespace
+
+void MeanFilm::add(const Render& render, double variance_scale) {
+    if (count == 0) {
+        const std::vector<double> zero(render.size());
+        planes.assign(1, {zero, zero});
+        told_variance.assign(render.variance.size(), 0);
+    }
+    if (planes.size() == 1 && !is_grey(render)) planes.resize(colour_quantities, MeanPlane(planes[0]));
+    if (render.variance.size() != told_variance.size() || variance_scale == 0)
+        told_variance.clear();  // not every file has one
+    ++count;
+    rounding = std::max(rounding, render.rounding);
+    const double n = static_cast<double>(count);
+    const std::vector<float>* channels[] = {&render.r, &render.g, &render.b};
+    const auto width = static_cast<std::size_t>(render.width);
+    parallel_for(std::size_t{0}, static_cast<std::size_t>(render.height), [&](std::size_t row) {
+        for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+            add_value(planes[0], i, render.y(i), n);
+            for (std::size_t q = 1; q < planes.size(); ++q) add_value(planes[q], i, (*channels[q - 1])[i], n);
+            if (!told_variance.empty()) told_variance[i] += render.variance[i] * static_cast<float>(variance_scale);
+        }
+    });
+}
+
+std::vector<float> MeanFilm::radiance(std::size_t channel) const {
+    const std::vector<double>& mean = of(channel + 1).mean;
+    std::vector<float> out(mean.size());
+    std::transform(mean.begin(), mean.end(), out.begin(), [](double x) { return static_cast<float>(x); });
+    return out;
+}
+
+double MeanFilm::variance(std::size_t i, std::size_t quantity) const {
+    if (count >= 2) return of(quantity).m2[i] / static_cast<double>(count - 1);
+    const bool known = !told_variance.empty() && (quantity == 0 || planes.size() == 1);
+    return known ? static_cast<double>(told_variance[i]) / static_cast<double>(count) : std::nan("");
+}
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,398 @@
+// First pass: every render is read, checked against the others and added to its arm's mean.
+#include "compare/passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <functional>
+#include <glob.h>
+#include <span>
+
+#include "base/parallel.h"
+#include "compare/file_warnings.h"
+#include "compare/shared_seeds.h"
+#include "compare/spectrum.h"
+#include "math/hypotheses.h"
+#include "math/tail.h"
+
+namespace crescent::inline comparing {
+
+Tiles::Tiles(int width, int height) {
+    const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
+    size = std::max(8, static_cast<int>(std::ceil(wanted)));
+    across = (width + size - 1) / size, down = (height + size - 1) / size;
+}
+
+Box Tiles::box(std::size_t tile, int width, int height) const {
+    const int i = static_cast<int>(tile) % across * size, j = static_cast<int>(tile) / across * size;
+    return {i, j, std::min(width, i + size) - 1, std::min(height, j + size) - 1};
+}
+
+namespace {
+
+/// "seed%04d.exr" as a pattern: any digits stand where %d, %4d or %04d does. The text before and after is kept as it
+/// is.
+struct Digits {
+    std::string before, after;
+};
+std::optional<Digits> digits_in(const std::string& pattern) {
+    const std::size_t percent = pattern.find('%');
+    if (percent == std::string::npos) return {};
+    const std::size_t end = pattern.find_first_not_of("0123456789", percent + 1);
+    if (end == std::string::npos || pattern[end] != 'd') return {};
+    return Digits{pattern.substr(0, percent), pattern.substr(end + 1)};
+}
+
+std::vector<std::string> globbed(const std::string& pattern) {
+    std::error_code ignored;
+    if (std::filesystem::exists(pattern, ignored)) return {pattern};  // "render[1].exr" may be a name
+    glob_t found{};
+    const int failed = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
+    std::vector<std::string> paths;
+    for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+    ::globfree(&found);
+    return paths;
+}
+
+std::vector<std::string> matching(const std::string& pattern) {
+    const std::optional<Digits> digits = digits_in(pattern);
+    if (!digits) return globbed(pattern);
+    std::vector<std::string> paths = globbed(digits->before + "*" + digits->after);
+    if ((digits->before + digits->after).find_first_of("*?[") != std::string::npos) return paths;
+    std::erase_if(paths, [&](const std::string& path) {  // what stands for the * is digits alone
+        const std::size_t from = digits->before.size(), to = path.size() - digits->after.size();
+        return to <= from || path.find_first_not_of("0123456789", from) < to;
+    });
+    return paths;
+}
+
+}  // namespace
+
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& at) {
+    std::vector<std::string> out;
+    for (const std::string& pattern : patterns) {
+        const std::vector<std::string> paths = matching(pattern);
+        if (paths.empty()) throw InputError(at, fmt::format("expected files that match '{}', found none", pattern));
+        out.insert(out.end(), paths.begin(), paths.end());
+    }
+    std::sort(out.begin(), out.end());
+    for (std::size_t i = 1; i < out.size(); ++i)
+        if (out[i] == out[i - 1]) throw InputError(at, fmt::format("the file '{}' is named twice", out[i]));
+    return out;
+}
+
+namespace {
+
+std::vector<std::uint64_t> numbers_in(const std::string& path) {
+    const std::string name = std::filesystem::path(path).replace_extension().string();  // folders may tell seeds
+    std::vector<std::uint64_t> out;
+    for (std::size_t i = 0; i < name.size();) {
+        if (name[i] < '0' || name[i] > '9') {
+            ++i;
+            continue;
+        }
+        std::uint64_t value = 0;
+        for (; i < name.size() && name[i] >= '0' && name[i] <= '9'; ++i)
+            value = value * 10 + static_cast<std::uint64_t>(name[i] - '0');
+        out.push_back(value);
+    }
+    return out;
+}
+
+bool all_equal(const Render& render) {
+    const auto same = [](const std::vector<float>& p) {
+        return std::all_of(p.begin(), p.end(), [&](float v) { return v == p[0]; });
+    };
+    return same(render.r) && same(render.g) && same(render.b);
+}
+
+}  // namespace
+
+void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer,
+    const std::string& name, const std::optional<double>& spp) {
+    each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
+        fit(render);
+        look(render, to);
+        RenderFile file{render.file, fmt::format("{:016x}", render.hash), render.layer, render.variance_channels,
+            render.sample_channel, render.spp, render.seconds, numbers_in(render.file)};
+        known(file, name);
+        const std::optional<double>& samples = spp ? spp : render.spp;
+        if (render.per_sample && !samples)
+            warnings_.add(render.file,
+                fmt::format("{} is the variance of one sample, and nothing says how many there are: give --spp",
+                    render.variance_channels));
+        to.film.add(render, !render.per_sample ? 1 : samples ? 1 / *samples : 0);
+        to.files.push_back(std::move(file));
+    });
+}
+
+void FirstPass::fit(const Render& render) {
+    if (all_.bad.empty()) {
+        all_.width = render.width, all_.height = render.height;
+        all_.bad.assign(render.size(), false);
+    }
+    ensure(render.width == all_.width && render.height == all_.height, "renders of a view have one size");
+}
+
+void FirstPass::look(const Render& render, ArmStats& to) {
+    std::uint64_t bad = 0, negative = 0;
+    for (std::size_t i = 0; i < render.size(); ++i) {
+        const bool finite = std::isfinite(render.r[i]) && std::isfinite(render.g[i]) && std::isfinite(render.b[i]);
+        if (!finite) {
+            if (to.not_finite.empty()) to.not_finite.assign(render.size(), 0);
+            ++bad, all_.bad[i] = true, ++to.not_finite[i];
+        }
+        negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
+    }
+    for (const std::string& note : render.notes) warnings_.add(render.file, note);
+    if (bad) warnings_.add(render.file, "not finite: left out of every meter", bad);
+    if (negative) warnings_.add(render.file, "with a negative channel", negative);
+    if (render.size() > 1 && bad < render.size() && all_equal(render))
+        warnings_.add(render.file, "all pixels are equal");
+}
+
+void FirstPass::known(const RenderFile& file, const std::string& arm) {
+    const auto [before, fresh] = seen_.emplace(file.hash, std::pair{file.path, arm});
+    if (fresh) return;
+    const auto& [path, other] = before->second;
+    if (other == arm)
+        throw InputError(
+            {file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
+    warnings_.add(fmt::format("{} of {}", file.path, arm), fmt::format("the same pixels as {} of {}", path, other), 0,
+        fmt::format("the same pixels as {}", other));
+}
+
+// ---- Second pass: with means known, what each render says of each region and tile. Sums run over chunks of pixels and
+// rows of tiles, which are merged in their order: equal on any number of threads.
+
+namespace {
+
+constexpr double epsilon = 0.01;         // of relMSE and MAPE, as Rousselle et al. 2011 have it
+constexpr std::size_t chunk = 1u << 15;  // pixels
+
+/// The largest values of many, falling.
+class Largest {
+public:
+    explicit Largest(std::size_t keep) : keep_(keep) {}
+    /// What is not above this would not be kept.
+    float least() const { return heap_.size() < keep_ ? -1 : keep_ ? heap_.front() : HUGE_VALF; }
+    void add(float x) {
+        if (!(x > least())) return;
+        heap_.push_back(x);
+        std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+        if (heap_.size() > keep_) std::pop_heap(heap_.begin(), heap_.end(), std::greater<>()), heap_.pop_back();
+    }
+    std::vector<float> falling() const {
+        std::vector<float> out = heap_;
+        std::sort(out.begin(), out.end(), std::greater<>());
+        return out;
+    }
+
+private:
+    std::size_t keep_;
+    std::vector<float> heap_;
+};
+
+/// Mean of all but the largest `trim` of the values.
+double trimmed_mean(std::vector<float>& values, double trim) {
+    const auto keep = values.size() - static_cast<std::size_t>(trim * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(keep), values.end());
+    double sum = 0;
+    for (std::size_t i = 0; i < keep; ++i) sum += static_cast<double>(values[i]);
+    return sum / static_cast<double>(keep);
+}
+
+/// Sums over one chunk of a region; errors above `least` are kept for the tail.
+struct Part {
+    RegionStats sum;
+    std::vector<float> large;
+};
+
+/// The same of one quantity; squared deviations from the mean are kept.
+struct QuantityPart {
+    double sum = 0;
+    std::vector<float> large;
+};
+
+/// A pixel's deviations from its mean over renders, the largest of either sign.
+struct Outliers {
+    double rise = 0, fall = 0;
+};
+
+class SecondPass {
+public:
+    SecondPass(const ComparePlan& plan, const RenderStats& all, const MeanFilm* reference)
+        : plan_(plan), all_(all), reference_(reference), samples_(seed_samples(all)) {}
+
+    void render(const Render& render, ArmStats& arm, std::vector<Largest>& largest,
+        std::vector<std::vector<Largest>>& deviations) {
+        y_.resize(render.size());
+        parallel_for(std::size_t{0}, (y_.size() + chunk - 1) / chunk, [&](std::size_t c) {
+            for (std::size_t i = c * chunk; i < std::min(y_.size(), (c + 1) * chunk); ++i) y_[i] = render.y(i);
+        });
+        std::vector<RegionStats> regions;
+        for (std::size_t r = 0; r < all_.regions.size(); ++r) {
+            regions.push_back(region(all_.regions[r], arm.film, largest[r]));
+            spectrum(all_.regions[r], arm, arm.power[r]);
+        }
+        arm.regions.push_back(std::move(regions));
+        const std::span<const float> values[] = {y_, render.r, render.g, render.b};
+        for (std::size_t q = 0; q < all_.quantities; ++q) quantity(values[q], arm, q, deviations[q]);
+        if (!arm.not_finite.empty()) arm.failed_groups.push_back(failed_groups(render, all_));
+        arm.sampled.push_back(residuals(y_, arm.film, samples_));
+    }
+
+private:
+    double y(std::size_t i) const { return static_cast<double>(y_[i]); }
+
+    Part part(const PixelSet& set, std::size_t begin, const MeanFilm& film, float least) const {
+        Part out;
+        RegionStats& sum = out.sum;
+        const std::size_t end = std::min(set.pixels.size(), begin + chunk);
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = set.pixels[k];
+            const double spread = (y(i) - film.y()[i]) * (y(i) - film.y()[i]);
+            sum.y += y(i), sum.spread += spread;
+            double squared = spread;
+            if (reference_) {
+                const double ref = reference_->y()[i], e = y(i) - ref;
+                squared = e * e;
+                sum.mse += squared, sum.with_sum += e * static_cast<double>(film.count) * (film.y()[i] - ref);
+                sum.fireflies += std::fabs(e) > plan_.firefly_k * ref;
+                sum.relmse += squared / (ref * ref + epsilon);
+                sum.mape += std::fabs(e) / (std::fabs(ref) + epsilon);
+            }
+            if (const auto x = static_cast<float>(squared); x > least) out.large.push_back(x);
+        }
+        return out;
+    }
+
+    RegionStats region(const PixelSet& set, const MeanFilm& film, Largest& largest) const {
+        std::vector<Part> parts((set.pixels.size() + chunk - 1) / chunk);
+        const float least = largest.least();
+        parallel_for(
+            std::size_t{0}, parts.size(), [&](std::size_t c) { parts[c] = part(set, c * chunk, film, least); });
+        RegionStats out;
+        for (const Part& p : parts) {
+            out.y += p.sum.y, out.spread += p.sum.spread, out.mse += p.sum.mse, out.with_sum += p.sum.with_sum;
+            out.relmse += p.sum.relmse, out.mape += p.sum.mape, out.fireflies += p.sum.fireflies;
+            for (const float x : p.large) largest.add(x);
+        }
+        const double count = static_cast<double>(set.pixels.size());
+        if (count == 0) return out;
+        out.y /= count, out.spread /= count, out.mse /= count, out.with_sum /= count;
+        out.relmse /= count, out.mape /= count;
+        if (reference_ && plan_.trim > 0) trim(set, out);
+        return out;
+    }
+
+    void trim(const PixelSet& set, RegionStats& out) const {
+        std::vector<float> relative, absolute;
+        for (const std::uint32_t i : set.pixels) {
+            const double ref = reference_->y()[i], e = y(i) - ref;
+            relative.push_back(static_cast<float>(e * e / (ref * ref + epsilon)));
+            absolute.push_back(static_cast<float>(std::fabs(e) / (std::fabs(ref) + epsilon)));
+        }
+        out.relmse = trimmed_mean(relative, plan_.trim), out.mape = trimmed_mean(absolute, plan_.trim);
+    }
+
+    /// The error's spectrum: about the mean of the renders, which leaves (K - 1)/K of it, or about the reference.
+    void spectrum(const PixelSet& set, const ArmStats& arm, std::vector<double>& power) const {
+        const MeanFilm* about = arm.film.count > 1 ? &arm.film : reference_;
+        if (!set.box || !about) return;
+        const double renders = static_cast<double>(arm.film.count);
+        const double scale = arm.film.count > 1 ? std::sqrt(renders / (renders - 1)) : 1;
+        add_spectrum(power, *set.box, [&](int x, int row) {
+            const auto i =
+                static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
+            return all_.bad[i] ? 0.0 : scale * (y(i) - about->y()[i]);
+        });
+    }
+
+    /// Mean and largest squared deviations of one quantity in a region.
+    double region(std::span<const float> values, const PixelSet& set, const MeanPlane& plane, Largest& largest) const {
+        std::vector<QuantityPart> parts((set.pixels.size() + chunk - 1) / chunk);
+        const float least = largest.least();
+        parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
+            for (std::size_t k = c * chunk; k < std::min(set.pixels.size(), (c + 1) * chunk); ++k) {
+                const double value = static_cast<double>(values[set.pixels[k]]),
+                             off = value - plane.mean[set.pixels[k]];
+                parts[c].sum += value;
+                if (const auto x = static_cast<float>(off * off); x > least) parts[c].large.push_back(x);
+            }
+        });
+        double sum = 0;
+        for (const QuantityPart& p : parts) {
+            sum += p.sum;
+            for (const float x : p.large) largest.add(x);
+        }
+        return sum / static_cast<double>(set.pixels.size());
+    }
+
+    /// A pixel's deviation that would be an outlier among its K (Grubbs 1950) is a rare event: noise that one sample in
+    /// many brings. The largest of them bounds what renders that met none may have missed.
+    TileReading tile(
+        std::span<const float> values, const Box& box, const MeanPlane& plane, double lone, Outliers& rare) const {
+        TileReading out;
+        double pixels = 0;
+        for (int j = box.y0; j <= box.y1; ++j) {
+            for (int x = box.x0; x <= box.x1; ++x) {
+                const auto i =
+                    static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
+                if (all_.bad[i]) continue;
+                const double value = static_cast<double>(values[i]), off = value - plane.mean[i], spread = off * off;
+                out.mean += value, out.spread += spread, pixels += 1;
+                out.largest = std::max(out.largest, spread);
+                if (spread < lone * plane.m2[i]) continue;
+                rare.rise = std::max(rare.rise, off), rare.fall = std::max(rare.fall, -off);
+            }
+        }
+        out.mean /= pixels, out.spread /= pixels, out.largest /= pixels;
+        return out;
+    }
+
+    void quantity(std::span<const float> values, ArmStats& arm, std::size_t q, std::vector<Largest>& largest) const {
+        const MeanPlane& plane = arm.film.of(q);
+        QuantityReadings& to = arm.quantities[q];
+        std::vector<double> means;
+        for (std::size_t r = 0; r < all_.regions.size(); ++r)
+            means.push_back(region(values, all_.regions[r], plane, largest[r]));
+        to.regions.push_back(std::move(means));
+        std::vector<TileReading> tiles(all_.tiles.count());
+        std::vector<Outliers> rare(tiles.size());
+        const double lone = lone_share(arm.film.count);
+        parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+            tiles[t] = tile(values, all_.tiles.box(t, all_.width, all_.height), plane, lone, rare[t]);
+        });
+        to.tiles.push_back(std::move(tiles));
+        for (const Outliers& o : rare) to.rise = std::max(to.rise, o.rise), to.fall = std::max(to.fall, o.fall);
+    }
+
+    const ComparePlan& plan_;
+    const RenderStats& all_;
+    const MeanFilm* reference_;
+    const SeedSamples samples_;
+    std::vector<float> y_;
+};
+
+}  // namespace
+
+void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSource& source, ArmStats& arm,
+    const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor) {
+    SecondPass pass(plan, all, reference);
+    std::vector<Largest> largest;
+    for (const PixelSet& set : all.regions) largest.emplace_back(tail_length(set.pixels.size() * arm.files.size()) + 1);
+    std::vector<std::vector<Largest>> deviations(all.quantities, largest);
+    arm.power.assign(all.regions.size(), {});
+    arm.quantities.assign(all.quantities, {});
+    std::vector<std::string> paths;
+    for (const RenderFile& file : arm.files) paths.push_back(file.path);
+    each_render(
+        source, paths, layer, monitor, [&](const Render& render) { pass.render(render, arm, largest, deviations); });
+    for (const Largest& values : largest) arm.largest.push_back(values.falling());
+    for (std::size_t q = 0; q < all.quantities; ++q)
+        for (const Largest& values : deviations[q]) arm.quantities[q].largest.push_back(values.falling());
+}
+
+}  // namespace crescent::inline comparing

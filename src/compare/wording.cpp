@@ -1,0 +1,454 @@
+// Variances of means over k renders are a pixel's over k. Where one file says nothing of its noise, half the mean
+// square difference of neighbours stands in for it, less the other side's noise, times how much more there is at low
+// frequencies than at high ones.
+#include "compare/wording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+#include "base/vec.h"
+#include "compare/compare.h"
+#include "compare/metrics.h"
+#include "compare/plan.h"
+#include "math/functions.h"
+#include "math/tail.h"
+#include "output/format.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+/// Sums over pixels that are visited row by row, from the left.
+class Visit {
+public:
+    explicit Visit(const BiasPair& sides) : Visit(sides.all, sides.a, sides.b, sides.quantity) {
+        if (sides.differences) paired_ = &sides.differences->film;
+    }
+    Visit(const RenderStats& all, const ArmStats& a, const ArmStats& b, std::size_t quantity)
+        : all_(all), a_(a.film), b_(b.film), quantity_(quantity) {}
+
+    void pixel(std::size_t i) {
+        if (all_.bad[i]) return;
+        const double a = a_.of(quantity_).mean[i], b = b_.of(quantity_).mean[i], d = a - b;
+        out_.pixels += 1, out_.mean_a += a, out_.mean_b += b;
+        const double own_a = a_.variance(i, quantity_), own_b = b_.variance(i, quantity_);
+        out_.a += paired_ ? paired_->variance(i, quantity_) : own_a, out_.b += paired_ ? 0 : own_b;
+        out_.own += own_a + own_b;
+        const bool neighbours = pairs_started_ && last_ + 1 == i && i % static_cast<std::size_t>(all_.width) != 0;
+        if (neighbours) rough_ += (d - before_) * (d - before_) / 2, pairs_ += 1;
+        last_ = i, before_ = d, pairs_started_ = true;
+    }
+    /// `low`: how much more noise there is over a whole set than between neighbours.
+    SetVariance done(double low) const {
+        SetVariance out = out_;
+        for (double* sum : {&out.a, &out.b, &out.own, &out.mean_a, &out.mean_b}) *sum /= out.pixels;
+        const double of_a = std::isnan(out.a) ? 0 : out.a / static_cast<double>(a_.count);
+        if (std::isnan(out.b)) out.b = pairs_ > 0 ? std::max(0.0, rough_ / pairs_ - of_a) * low : 0;
+        if (!paired_) out.own = out.a + out.b;
+        return out;
+    }
+
+private:
+    const RenderStats& all_;
+    const MeanFilm &a_, &b_;
+    const MeanFilm* paired_ = nullptr;
+    const std::size_t quantity_;
+    SetVariance out_;
+    std::size_t last_ = 0;
+    bool pairs_started_ = false;
+    double before_ = 0, rough_ = 0, pairs_ = 0;
+};
+
+MeanInterval floored_at(MeanInterval m, double variance_of_one) {
+    if (m.n > 1 && variance_of_one > 0) m.se = std::max(m.se, std::sqrt(variance_of_one / static_cast<double>(m.n)));
+    return m;
+}
+
+/// One file: its error is what its pixels' errors make of it, and counts as known, not as estimated.
+MeanInterval one_file(double mean, const SetVariance& noise) {
+    return {mean, 0, 0, std::sqrt(noise.b / noise.pixels), 1000000};
+}
+
+double low_over_high(const std::vector<double>& power) {
+    if (power.empty()) return 1;
+    const auto half = power.begin() + spectrum_bins / 2;
+    const double high = std::accumulate(half, power.end(), 0.0) / static_cast<double>(power.end() - half);
+    return high > 0 ? std::max(1.0, power.front() / high) : 1;
+}
+
+/// 0 where one file says nothing of them.
+std::vector<double> tile_variances(const ArmStats& arm, std::size_t quantity) {
+    const auto& tiles = arm.quantities[quantity].tiles;
+    std::vector<double> out(tiles[0].size());
+    const double k = static_cast<double>(arm.files.size());
+    for (const auto& render : tiles)
+        for (std::size_t t = 0; t < out.size(); ++t) out[t] += k > 1 ? render[t].spread / (k - 1) : 0;
+    return out;
+}
+
+/// The same rule as RegionResult::mean_heavy, of the deviations from the mean of one quantity.
+bool heavy_deviations(const RenderStats& all, const ArmStats& arm, std::size_t quantity, std::size_t region) {
+    const std::vector<float>& largest = arm.quantities[quantity].largest[region];
+    const auto tail = fit_pooled_tail(std::span<const float>(largest));
+    double sum = 0;
+    for (const std::uint32_t i : all.regions[region].pixels) sum += arm.film.of(quantity).m2[i];
+    const double share = sum > 0 && !largest.empty() ? static_cast<double>(largest.front()) / sum : 0;
+    return (tail && tail->k >= 1) || share > heavy_share;
+}
+
+bool one_pixel_decides(const ArmStats& arm, std::size_t quantity, std::size_t tile) {
+    double sum = 0, largest = 0;
+    for (const auto& render : arm.quantities[quantity].tiles)
+        sum += render[tile].spread, largest = std::max(largest, render[tile].largest);
+    return sum > 0 && largest > heavy_share * sum;
+}
+
+}  // namespace
+
+BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& measured,
+    std::size_t first, std::size_t second, std::size_t of, const PairedRenders* paired)
+    : all(readings),
+      a(readings.arms[first]),
+      b(second < readings.arms.size() ? readings.arms[second] : *readings.reference),
+      arm(measured.arms[first]),
+      quantity(of) {
+    const Rgb weights = luminance_weights_of(all.primaries);  // a channel may be 1 / weight times as bright as Y
+    referred = second >= readings.arms.size();
+    brightest = plan.brightest.value_or(0);
+    if (const double weight = quantity > 0 ? weights[quantity - 1] : 1; weight > 0) brightest /= weight;
+    if (!referred) other = &measured.arms[second];
+    const RegionResult& frame = arm.region(whole_frame);
+    dependent = frame.colour == NoiseColour::correlated;
+    if (other) dependent |= other->region(whole_frame).colour == NoiseColour::correlated;
+    if (dependent) low_frequencies = low_over_high(frame.power);
+    tile_a = tile_variances(a, quantity), tile_b = tile_variances(b, quantity);
+    if (!paired) return;
+    pairs = &paired->pairs, differences = &paired->differences;
+    tile_paired = tile_variances(*differences, quantity);
+}
+
+std::vector<double> BiasPair::region_means(const ArmStats& side, std::size_t region) const {
+    std::vector<double> out;
+    for (const auto& render : side.quantities[quantity].regions) out.push_back(render[region]);
+    return paired_of(side, std::move(out));
+}
+
+std::vector<double> BiasPair::tile_means(const ArmStats& side, std::size_t tile) const {
+    std::vector<double> out;
+    for (const auto& render : side.quantities[quantity].tiles) out.push_back(render[tile].mean);
+    return paired_of(side, std::move(out));
+}
+
+std::vector<double> BiasPair::paired_of(const ArmStats& side, std::vector<double> each) const {
+    if (!pairs) return each;
+    std::vector<double> out;
+    for (const auto& [i, j] : *pairs) out.push_back(each[&side == &a ? i : j]);
+    return out;
+}
+
+double BiasPair::renders_of(const ArmStats& side) const {
+    return static_cast<double>(pairs ? pairs->size() : side.files.size());
+}
+
+std::string BiasPair::heavy_in(std::size_t region) const {
+    if (differences) return heavy_deviations(all, *differences, quantity, region) ? "the differences of the pairs" : "";
+    for (const ArmResult* result : {&arm, other}) {
+        if (!result) continue;
+        const bool heavy = quantity == 0 ? result->regions[region].mean_heavy()
+                                         : heavy_deviations(all, result == &arm ? a : b, quantity, region);
+        if (heavy) return result->name;
+    }
+    return "";
+}
+
+bool BiasPair::lone_pixel_in(std::size_t tile) const {
+    if (differences) return one_pixel_decides(*differences, quantity, tile);
+    return one_pixel_decides(a, quantity, tile) || (other && one_pixel_decides(b, quantity, tile));
+}
+
+SetVariance BiasPair::noise_of(const Box& box) const {
+    Visit visit(*this);
+    for (int j = box.y0; j <= box.y1; ++j)
+        for (int i = box.x0; i <= box.x1; ++i)
+            visit.pixel(
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(i));
+    return visit.done(low_frequencies);
+}
+
+SetVariance BiasPair::noise_of(const PixelSet& set) const {
+    Visit visit(*this);
+    for (const std::uint32_t i : set.pixels) visit.pixel(i);
+    return visit.done(low_frequencies);
+}
+
+Welch BiasPair::test(
+    const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const {
+    if (pairs) {
+        std::vector<double> each;
+        for (std::size_t k = 0; k < pairs->size(); ++k) each.push_back(va[k] - vb[k]);
+        const MeanInterval mean = mean_interval(each, confidence);
+        return paired_test(floored ? floored_at(mean, noise.a / noise.pixels) : mean);
+    }
+    MeanInterval ours = mean_interval(va, confidence);
+    MeanInterval theirs = vb.size() > 1 ? mean_interval(vb, confidence) : one_file(vb[0], noise);
+    if (floored) ours = floored_at(ours, noise.a / noise.pixels);
+    if (floored && vb.size() > 1) theirs = floored_at(theirs, noise.b / noise.pixels);
+    return welch_test(ours, theirs);
+}
+
+double BiasPair::rare_event(double difference) const {
+    const QuantityReadings& read = (difference < 0 ? a : b).quantities[quantity];
+    if (!differences) return std::max(brightest, read.rise);
+    const QuantityReadings& paired = differences->quantities[quantity];  // what b meets and a does not is a fall
+    return std::max(brightest, difference < 0 ? paired.rise : paired.fall);
+}
+
+double BiasPair::unseen(double difference, double pixels, double level) const {
+    const ArmStats& lower = difference < 0 ? a : b;
+    if (lower.files.size() < 2) return 0;
+    return -math::log(level) * rare_event(difference) / (pixels * renders_of(lower));
+}
+
+std::optional<MissedEvents> BiasPair::needed(const Found& place, double pixels, double level) const {
+    const bool ours = place.a < place.b;
+    const ArmStats& lower = ours ? a : b;
+    if (lower.files.size() < 2) return {};
+    MissedEvents out{ours ? arm.name : other ? other->name : the_reference, 0, 0, 0};
+    out.one_in = pixels * renders_of(lower) / -math::log(level);
+    out.size = std::fabs(place.a - place.b) * out.one_in;
+    const double mean = std::min(place.a, place.b);
+    out.of_mean = mean > 0 ? out.size / mean : 0;
+    return out;
+}
+
+double BiasPair::blind(double mean_a, double mean_b, double pixels, double variance, double level) const {
+    constexpr double roundings = 4;
+    constexpr double reordered = 0x1p-18;  // of a float sum of up to 64 like terms, each rounded to 2^-24
+    const double rounded = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
+    const double left = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
+    const double arithmetic = differences ? reordered * (std::fabs(mean_a) + std::fabs(mean_b)) : 0;
+    return std::max({unseen(mean_a - mean_b, pixels, level),
+        roundings * rounded * std::max(left, 1 / std::sqrt(pixels)), arithmetic});
+}
+
+double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set) {
+    Visit visit(all, arm, *all.reference, 0);
+    for (const std::uint32_t i : set.pixels) visit.pixel(i);
+    return visit.done(1).b;
+}
+
+// ---- What was found about means, in one sentence.
+
+namespace {
+
+std::string relative(double a, double b) {
+    if (!(b > 0)) return fmt::format("{} beside {}", figures(a, 2), figures(b, 2));
+    if (a / b >= 2) return fmt::format("{} times", figures(a / b, 2));
+    return (a < b ? "−" : "+") + percent(std::fabs(a / b - 1), 2);
+}
+
+std::string place(const Found& f) {
+    if (f.box.x0 == f.box.x1 && f.box.y0 == f.box.y1) return fmt::format("({}, {})", f.box.x0, f.box.y0);
+    return fmt::format("x {}–{} y {}–{}", f.box.x0, f.box.x1, f.box.y0, f.box.y1);
+}
+
+/// "R " before what is said of a channel; nothing of Y.
+std::string of_channel(std::size_t quantity) {
+    return quantity == 0 ? "" : fmt::format("{} ", quantity_names[quantity]);
+}
+
+std::string places(const std::vector<Found>& found, std::uint64_t all) {
+    std::vector<std::string> out;
+    for (const Found& f : found)
+        out.push_back(fmt::format("{} ({}{})", place(f), of_channel(f.quantity), relative(f.a, f.b)));
+    return fmt::format("{}{}", fmt::join(out, ", "), all > found.size() ? " and more" : "");
+}
+
+/// " in R", or " (12 most in R, 4 in B)": in which quantity places differ the most, where it is not Y alone.
+std::string by_quantity(const std::vector<std::uint64_t>& by) {
+    std::vector<std::string> out;
+    for (std::size_t q = 0; q < by.size(); ++q)
+        if (by[q]) out.push_back(fmt::format("{} {}in {}", by[q], out.empty() ? "most " : "", quantity_names[q]));
+    if (out.empty() || (out.size() == 1 && by[0])) return "";
+    if (out.size() > 1) return fmt::format(" ({})", fmt::join(out, ", "));
+    const auto q = std::find_if(by.begin(), by.end(), [](std::uint64_t n) { return n > 0; }) - by.begin();
+    return fmt::format(" in {}", quantity_names[q]);
+}
+
+void mean_difference(const BiasResult& b, const std::string& region, const std::string& name, const MeanTest& t,
+    std::vector<std::string>& out) {
+    if (t.differs)
+        out.push_back(fmt::format("mean {} in {} is {} where {} has {} ({}, p = {:.2g})", name, region, figures(t.a),
+            b.b, figures(t.b), relative(t.a, t.b), t.welch.p));
+}
+
+std::vector<std::string> differences(const RenderStats& all, const BiasResult& b) {
+    std::vector<std::string> out;
+    if (b.non_finite.differs()) out.push_back(failing_pixels(all, b));
+    for (const MeanTest& t : b.regions) {
+        mean_difference(b, t.region, quantity_names[0], t, out);
+        for (const MeanTest& channel : t.channels) mean_difference(b, t.region, channel.region, channel, out);
+    }
+    if (b.tiles.different)
+        out.push_back(fmt::format("{} of {} tiles differ{}: {}", b.tiles.different, b.tiles.tested,
+            by_quantity(b.tiles_by), places(b.tiles_found, b.tiles.different)));
+    if (b.pixels_different)
+        out.push_back(fmt::format("{} of {} pixels differ{}: {}", b.pixels_different, b.pixels_tested,
+            by_quantity(b.pixels_by), places(b.pixels_found, b.pixels_different)));
+    return out;
+}
+
+std::string counted(std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string renders_of(std::uint32_t least, std::uint32_t most, std::size_t of) {
+    if (most == 0) return "in none";
+    if (least == of) return of == 1 ? "in its render" : fmt::format("in all {} renders", of);
+    if (least == most) return fmt::format("in {} of {} renders", most, of);
+    return fmt::format("in {} to {} of {} renders", least, most, of);
+}
+
+std::string failing(const FailingPixels& pixels, const std::string& name, std::size_t renders, const std::string& other,
+    std::size_t other_renders, int width) {
+    return fmt::format("{} of {} {} not finite {}, and {} of {}: {}", counted(pixels.pixels.size(), "pixel"), name,
+        pixels.pixels.size() == 1 ? "is" : "are", renders_of(pixels.least, pixels.most, renders),
+        renders_of(pixels.other_least, pixels.other_most, other_renders), other, places_of(pixels, width));
+}
+
+/// Pixels that are not finite and are no difference.
+std::string excluded(const BiasResult& b) {
+    std::string out;
+    if (b.non_finite.both)
+        out += fmt::format(" {} not finite on both sides {} left out.", counted(b.non_finite.both, "pixel"),
+            b.non_finite.both == 1 ? "is" : "are");
+    if (b.non_finite.one)
+        out += fmt::format(" {} not finite on one side, in so few renders that the rates may be equal, {} left out.",
+            counted(b.non_finite.one, "pixel"), b.non_finite.one == 1 ? "is" : "are");
+    if (b.non_finite.undecided)
+        out += fmt::format(
+            " {} of those not finite in half of the renders of one side or more and in none of the other: whether the "
+            "rates are equal, more renders would show.",
+            b.non_finite.undecided == 1 ? "1 is" : fmt::format("{} are", b.non_finite.undecided));
+    return out;
+}
+
+/// Renders that share their random numbers, and what was made of it.
+std::string seeds(const BiasResult& b) {
+    if (b.shared.empty()) return "";
+    const auto smaller = [](const SeedPair& x, const SeedPair& y) { return x.correlation < y.correlation; };
+    const auto [least, most] = std::minmax_element(b.shared.begin(), b.shared.end(), smaller);
+    const std::string low = figures(least->correlation, 2), high = figures(most->correlation, 2);
+    const std::string found = fmt::format(" {} of {} and {} share random numbers (their noise correlates by {}): ",
+        b.all_shared ? "The renders" : counted(b.shared.size(), "pair") + " of renders", b.a, b.b,
+        low == high ? low : low + " to " + high);
+    if (b.paired && b.all_shared) return found + "they were compared in pairs.";
+    if (b.paired) return found + "these were compared, in pairs.";
+    return found + "a test of pairs would be no sharper, so all were compared as if independent.";
+}
+
+/// A t-test does not see events that no render met; how rare and bright they would have to be is for the reader to
+/// judge.
+std::string unless(const BiasResult& b) {
+    if (!b.unless) return {};
+    const std::string times =
+        b.unless->of_mean > 0 ? fmt::format(", {} times its mean there,", figures(b.unless->of_mean, 2)) : "";
+    return fmt::format(
+        " Without a bias {} would have to meet events brighter than {}{} in fewer than one of {:.0f} "
+        "pixels, none of which its renders met.",
+        b.unless->arm, figures(b.unless->size, 2), times, std::max(1.0, b.unless->one_in));
+}
+
+}  // namespace
+
+std::string failing_pixels(const RenderStats& all, const BiasResult& b) {
+    const std::size_t renders_a = all.arms[b.arm_a].files.size(),
+                      renders_b = (b.arm_b < all.arms.size() ? all.arms[b.arm_b] : *all.reference).files.size();
+    std::vector<std::string> out;
+    if (!b.non_finite.a.pixels.empty())
+        out.push_back(failing(b.non_finite.a, b.a, renders_a, b.b, renders_b, all.width));
+    if (!b.non_finite.b.pixels.empty())
+        out.push_back(failing(b.non_finite.b, b.b, renders_b, b.a, renders_a, all.width));
+    const bool everywhere = (b.non_finite.a.pixels.empty() || b.non_finite.a.least == renders_a) &&
+        (b.non_finite.b.pixels.empty() || b.non_finite.b.least == renders_b);
+    for (const FailedGroups& g : b.non_finite.groups)
+        if (g.differs && !everywhere)
+            out.push_back(
+                fmt::format("in {} {} of such pixels over all renders of {} and {} over those of {} (p = {:.2g})",
+                    g.region, counted(g.a, "group"), b.a, g.b, b.b, g.p));
+    return fmt::format("{}", fmt::join(out, "; "));
+}
+
+namespace {
+
+std::string smallest_seen(const MeanTest& t) {
+    double channel = 0;
+    for (const MeanTest& c : t.channels) channel = std::max(channel, c.why.empty() ? c.smallest : 0);
+    return channel > 0
+        ? fmt::format("{} of mean Y or {} of a channel in {}", percent(t.smallest, 2), percent(channel, 2), t.region)
+        : fmt::format("{} of mean Y in {}", percent(t.smallest, 2), t.region);
+}
+
+std::string single(const BiasResult& b) {
+    const SingleDifference& s = *b.single;
+    return fmt::format(
+        "{} and {} are one render each: {} of {} pixels differ, the RMS of the difference of Y is {}, the largest "
+        "difference of a channel is {} at ({}, {}); whether that is noise cannot be said with fewer than two renders "
+        "of each",
+        b.a, b.b, s.different, s.pixels, figures(s.rms, 3), figures(s.largest, 3), s.at.x0, s.at.y0);
+}
+
+}  // namespace
+
+std::string sentence_of(const RenderStats& all, const BiasResult& b, double alpha) {
+    if (b.identical)
+        return fmt::format("{} and {} are identical: the same pixels in every render.{}", b.a, b.b, excluded(b));
+    const std::string notes = excluded(b) + seeds(b);
+    if (b.differs())
+        return fmt::format(
+            "{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(all, b), "; "), unless(b), notes);
+    if (b.single) return single(b) + "." + notes;
+    std::vector<std::string> seen, not_seen;
+    for (const MeanTest& t : b.regions) {
+        if (!t.doubt.empty()) not_seen.push_back(fmt::format("{}: {}", t.region, t.doubt));
+        else if (t.why.empty()) seen.push_back(smallest_seen(t));
+        else not_seen.push_back(fmt::format("{}: {}", t.region, t.why));
+        for (const MeanTest& c : t.channels)
+            if (t.why.empty() && !c.why.empty())
+                not_seen.push_back(fmt::format("{} in {}: {}", c.region, t.region, c.why));
+    }
+    std::string out = seen.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
+                                   : fmt::format(
+                                         "No difference between {} and {} was found; one of {} would have been, "
+                                         "nine times out of ten (alpha {})",
+                                         b.a, b.b, fmt::join(seen, ", "), figures(alpha, 2));
+    if (!not_seen.empty()) out += fmt::format("; not tested: {}", fmt::join(not_seen, "; "));
+    return out + "." + notes;
+}
+
+std::vector<std::string> found_about_means(const CompareResult& result) {
+    constexpr std::size_t few = 6;
+    const auto quiet = [](const BiasResult& b) {
+        return !b.differs() && !b.identical && !b.non_finite.any() && b.shared.empty() &&
+            std::all_of(
+                b.regions.begin(), b.regions.end(), [](const MeanTest& t) { return t.why.empty() && t.doubt.empty(); });
+    };
+    std::vector<std::string> out;
+    std::size_t rest = 0;
+    double smallest = 0;
+    for (const BiasResult& b : result.bias) {
+        if (result.bias.size() <= few || !quiet(b)) out.push_back(b.sentence);
+        else ++rest, smallest = std::max(smallest, b.regions.back().smallest);
+    }
+    if (rest)
+        out.push_back(
+            fmt::format("In {} of {} pairs no difference was found; one of {} of mean Y in {} would have been in each "
+                        "of them, nine "
+                        "times out of ten.",
+                rest, result.bias.size(), percent(smallest, 2), result.bias[0].regions.back().region));
+    return out;
+}
+
+}  // namespace crescent::inline comparing

@@ -1,9 +1,0 @@
-// The kernels for one plain float at a time: no intrinsics; the others are compared with it.
-#define CRESCENT_ISA scalar
-#include "estimator/kernel_body.h"
-
-namespace crescent::inline estimator {
-
-KernelTable scalar_kernels() { return scalar::kernels_of<float>("scalar", Arms{}); }
-
-}  // namespace crescent::inline estimator

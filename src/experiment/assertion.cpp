@@ -1,0 +1,279 @@
+// A check written out, and held: five ways to compare two doubles.
+#include "experiment/assertion.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "experiment/parser.h"
+#include "render/film_metrics/all.h"
+
+namespace crescent::inline experiment {
+
+std::string to_string(const ParsedQuantity& q) {
+    if (q.number) return fmt::format("{}", *q.number);
+    std::string text = q.word;
+    if (!q.region.empty()) text += "." + q.region;
+    if (q.subject.empty()) return text;
+    text += "(" + q.subject;
+    if (q.n > 0) text += fmt::format(", n={}", q.n);
+    if (q.s > 0) text += fmt::format(", s={}", q.s);
+    return text + ")";
+}
+
+std::string to_string(const Comparison& c) {
+    return fmt::format("{} {} {}", to_string(c.left), c.op, to_string(c.right));
+}
+
+bool holds(double left, std::string_view op, double right) {
+    if (std::isnan(left) || std::isnan(right)) return false;
+    if (op == "<") return left < right;
+    if (op == "<=") return left <= right;
+    if (op == ">") return left > right;
+    if (op == ">=") return left >= right;
+    return op == "==" && left == right;
+}
+
+// ---- Text -> ParsedQuantity, by recursive descent over one line.
+
+namespace {
+
+std::vector<std::string> all_words(const std::vector<QuantityWord>& known) {
+    std::vector<std::string> words;
+    for (const QuantityWord& w : known) words.emplace_back(w.word);
+    return words;
+}
+
+class Parser {
+public:
+    Parser(std::string_view text, std::string& why, const std::vector<QuantityWord>& words)
+        : rest_(text), why_(why), words_(words) {}
+
+    std::optional<Comparison> comparison() {
+        Comparison c;
+        if (!side(c.left)) return {};
+        blanks();
+        for (const std::string_view op : {"<=", ">=", "==", "<", ">"})
+            if (c.op.empty() && rest_.starts_with(op)) c.op = op;
+        if (c.op.empty()) return fail("<, <=, >, >= or =="), std::nullopt;
+        rest_.remove_prefix(c.op.size());
+        if (!side(c.right) || !end()) return {};
+        return c;
+    }
+
+    std::optional<ParsedQuantity> quantity() {
+        ParsedQuantity q;
+        if (!side(q) || !end()) return {};
+        return q;
+    }
+
+private:
+    static bool is_word(char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-';
+    }
+    void blanks() {
+        while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
+    }
+    bool take(char c) {
+        blanks();
+        if (rest_.empty() || rest_.front() != c) return false;
+        rest_.remove_prefix(1);
+        return true;
+    }
+    bool fail(std::string_view expected) {
+        blanks();
+        why_ = rest_.empty() ? fmt::format("expected {} at the end", expected)
+                             : fmt::format("expected {}, found '{}'", expected, rest_.substr(0, 40));
+        return false;
+    }
+    bool end() {
+        blanks();
+        return rest_.empty() || fail("nothing more");
+    }
+    std::string word() {
+        blanks();
+        const auto length =
+            static_cast<std::size_t>(std::find_if_not(rest_.begin(), rest_.end(), is_word) - rest_.begin());
+        const std::string taken(rest_.substr(0, length));
+        rest_.remove_prefix(length);
+        return taken;
+    }
+    bool number(double& to) {
+        blanks();
+        std::string_view text = rest_.starts_with('+') ? rest_.substr(1) : rest_;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), to);
+        if (error != std::errc{} || !std::isfinite(to)) return fail("a finite number");
+        rest_ = std::string_view(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
+        return true;
+    }
+
+    bool side(ParsedQuantity& q) {
+        blanks();
+        if (rest_.empty()) return fail("a quantity or a number");
+        if (std::string_view("0123456789+-.").find(rest_.front()) != std::string_view::npos)
+            return number(q.number.emplace());
+        const std::string name = word();
+        const std::size_t dot = name.find('.');
+        q.word = name.substr(0, dot);
+        if (dot != std::string::npos) q.region = name.substr(dot + 1);
+        const auto known =
+            std::find_if(words_.begin(), words_.end(), [&](const QuantityWord& w) { return w.word == q.word; });
+        if (known == words_.end()) {
+            const std::vector<std::string> valid = all_words(words_);
+            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "),
+                hint(q.word, valid));
+            return false;
+        }
+        if (known->of_region != !q.region.empty()) {
+            const bool whole_image = known->of_region && known->subject == QuantityOf::compared;
+            why_ = fmt::format("expected {}{}, found '{}'", form_of(*known),
+                whole_image ? ", where REGION is a region, a mask or 'frame', the whole image" : "",
+                name.substr(0, 64));
+            return false;
+        }
+        return known->subject == QuantityOf::none || brackets(q, *known);
+    }
+
+    bool brackets(ParsedQuantity& q, const QuantityWord& known) {
+        if (!take('(')) return fail(fmt::format("'(' as in {}", form_of(known)));
+        q.subject = word();
+        if (q.subject.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
+        while (known.subject == QuantityOf::run && take(','))
+            if (!argument(q)) return false;
+        return take(')') || fail(known.subject == QuantityOf::compared ? "')', for films have neither n nor s" : "')'");
+    }
+
+    bool argument(ParsedQuantity& q) {
+        const std::string name = word();
+        if ((name != "n" && name != "s") || !take('=')) return fail("n= or s=");
+        double value = 0;
+        if (!number(value)) return false;
+        if (!(value > 0) || (name == "n" && (value > 16777216 || value != std::floor(value)))) {
+            why_ = fmt::format("expected {}, found {}", name == "n" ? "n from 1 to 16777216" : "s above 0", value);
+            return false;
+        }
+        if (name == "n" ? q.n > 0 : q.s > 0) {
+            why_ = fmt::format("expected one {}=, found two", name);
+            return false;
+        }
+        if (name == "n") q.n = static_cast<std::uint64_t>(value);
+        else q.s = value;
+        return true;
+    }
+
+    std::string_view rest_;
+    std::string& why_;
+    const std::vector<QuantityWord>& words_;
+};
+
+template <class T> std::string missing(const std::vector<T>& all, const char* what, const std::string& name) {
+    std::vector<std::string> names;
+    for (const T& one : all) names.push_back(one.name);
+    if (std::count(names.begin(), names.end(), name)) return "";
+    return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64),
+        names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
+}
+
+/// Null where there is no such word.
+const QuantityWord* word_of(const ParsedQuantity& q) {
+    const auto& words = quantity_words();
+    const auto known = std::ranges::find(words, q.word, &QuantityWord::word);
+    return known == words.end() ? nullptr : &*known;
+}
+
+std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
+    if (std::string why = missing(e.arms, "arm", q.subject); !why.empty()) return why;
+    const ArmPlan& arm = *e.find_arm(q.subject);
+    if (arm.n.empty()) return "";
+    if (q.n == 0) q.n = word_of(q)->of_single_samples ? arm.n.back() : e.n_of(arm);
+    if (!std::count(arm.n.begin(), arm.n.end(), q.n))
+        return fmt::format("the arm '{}' has no rung n = {}: expected one of {}", arm.name, q.n, listed(arm.n, ", "));
+    return why_not_run(e, q.subject, q.n, q.s);
+}
+
+}  // namespace
+
+const std::vector<QuantityWord>& quantity_words() {
+#define CRESCENT_OF_REGION(name, Type) {#name, true, QuantityOf::run, Type::info.means, Type::info.of_single_samples},
+#define CRESCENT_OF_FRAME(name, Type) {#name, false, QuantityOf::run, Type::info.means, Type::info.of_single_samples},
+    static const std::vector<QuantityWord> words = {
+        CRESCENT_REGION_METRICS(CRESCENT_OF_REGION){
+            "tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
+        CRESCENT_FRAME_METRICS(CRESCENT_OF_FRAME){
+            "furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
+        {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
+        {"shape_pixels", false, QuantityOf::shape, "pixels in which the camera sees a shape"},
+        {"region_pixels", false, QuantityOf::region, "pixels of a region's box"},
+        {"geometry_pixels", false, QuantityOf::none, "pixels in which the camera sees any shape"},
+        {"plate_bytes", false, QuantityOf::plate, "size of a plate's PNG file"},
+    };
+#undef CRESCENT_OF_REGION
+#undef CRESCENT_OF_FRAME
+    return words;
+}
+
+std::string form_of(const QuantityWord& word) {
+    static constexpr std::string_view brackets[] = {
+        "", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)", "(ARM)"};
+    static_assert(
+        std::size(brackets) == std::size_t(QuantityOf::compared) + 1, "a form for each subject of a quantity");
+    return fmt::format(
+        "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
+}
+
+std::optional<ParsedQuantity> parse_quantity(
+    std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
+    return Parser(text, why, words).quantity();
+}
+std::optional<Comparison> parse_comparison(
+    std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
+    return Parser(text, why, words).comparison();
+}
+
+std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
+    if (q.number) return "";
+    if (!q.region.empty())
+        if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
+    const QuantityWord* known = word_of(q);
+    switch (known ? known->subject : QuantityOf::none) {
+        case QuantityOf::none:
+        case QuantityOf::compared: return "";
+        case QuantityOf::run: return resolve_run(q, e);
+        case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.subject);
+        case QuantityOf::shape: return missing(e.shapes, "shape", q.subject);
+        case QuantityOf::region: return missing(e.regions, "region", q.subject);
+        case QuantityOf::plate: return missing(e.plates, "plate", q.subject);
+    }
+    return "";
+}
+
+// ---- Every check of the file, parsed; its quantities are written out in full.
+
+namespace {
+
+bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
+
+void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path) {
+    std::string why;
+    std::optional<Comparison> check = parse_comparison(plan.text, why);
+    if (check && is_number(*check)) check.reset(), why = "expected a quantity on one side at least, found two numbers";
+    if (check)
+        if (why = resolve_quantity(check->left, context.e); why.empty())
+            why = resolve_quantity(check->right, context.e);
+    if (why.empty() && plan.median && (check->left.word == "tail" || check->right.word == "tail"))
+        why = "expected over = \"seed\": tails are measured at the experiment's seed alone";
+    if (!why.empty()) return context.report(path, fmt::format("{}: {}", path, why));
+    plan.check = *std::move(check);
+}
+
+}  // namespace
+
+void resolve_assertions(ParseContext& context) {
+    for (AssertionPlan& plan : context.e.assertions) {
+        const std::string path = fmt::format("assertions.{}.check", plan.name);
+        if (context.is_valid(path)) resolve(context, plan, path);
+    }
+}
+
+}  // namespace crescent::inline experiment

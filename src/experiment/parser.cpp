@@ -1,0 +1,448 @@
+// Mistakes found so far, each under the path of the value that it spoils.
+#include "experiment/parser.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <tuple>
+
+#include "experiment/experiment.h"
+#include "experiment/queries.h"
+#include "samplers/info.h"
+
+namespace crescent::inline experiment {
+
+void ParseContext::report(const std::string& path, const SourceLocation& at, const std::string& message) {
+    diagnostics.push_back({at, message});
+    invalid_paths.insert(path);
+}
+
+void ParseContext::report(const std::string& path, const std::string& message) {
+    report(path, e.place_of(path), message);
+}
+
+// ---- The table walked over the tree: which tables and keys there are, which are missing, what each value is.
+
+namespace {
+
+constexpr std::size_t most_elements = 4096;  // of a family of tables; a film counts shapes in 16 bits
+
+bool file_safe(std::string_view name) {
+    const auto plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
+    return !name.empty() && name.size() <= 64 && plain(static_cast<unsigned char>(name[0])) &&
+        std::all_of(name.begin(), name.end(), [&](unsigned char c) { return plain(c) || c == '.' || c == '-'; });
+}
+
+bool one_line(std::string_view name) {
+    return !name.empty() && name.size() <= 200 &&
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
+}
+
+std::string join(const std::string& path, std::string_view name) {
+    return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
+}
+
+std::string where(const std::string& path) { return path.empty() ? "the file" : "[" + path + "]"; }
+
+class TreeReader {
+public:
+    explicit TreeReader(ParseContext& context) : draft_(context) {}
+
+    void table(
+        const Section& section, const Node& node, const std::string& path, const SourceLocation& at, void* object) {
+        const std::string kind = kind_of(section, node);
+        unknown_keys(section, node, path, kind);
+        for (const Key& key : section.keys) {
+            if (!has_kind(key, kind)) continue;
+            const Member* member = node.find(key.name);
+            if (member) value(key, member->value, join(path, key.name), object);
+            else if (key.need == Requirement::required) missing_key(key, path, at, kind);
+            else if (key.need == Requirement::defaulted) default_value(key, join(path, key.name), object);
+        }
+        for (const Section& sub : section.sections) family(sub, node, join(path, sub.name), at, object);
+    }
+
+    std::vector<std::string> siblings;  // names beside the table that is being read
+
+private:
+    static std::string kind_of(const Section& section, const Node& node) {
+        const Key* key = section.find_key("kind");
+        const Member* member = node.find("kind");
+        if (!key || !member || member->value.kind != Node::Kind::text) return "";
+        return std::count(key->words.begin(), key->words.end(), member->value.text) ? member->value.text : "";
+    }
+
+    void unknown_keys(const Section& section, const Node& node, const std::string& path, const std::string& kind) {
+        for (const Member& member : node.members) {
+            const Key* key = section.find_key(member.key);
+            if ((key && has_kind(*key, kind)) || section.find_section(member.key)) continue;
+            if (section.many == Multiplicity::titled && in_list_ && member.key == "name") continue;
+            const std::vector<std::string> valid = words_of(section, kind);
+            const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
+                                          : fmt::format("unknown key '{}'", member.key.substr(0, 64));
+            draft_.report(join(path, member.key), member.at,
+                fmt::format(
+                    "{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
+        }
+    }
+
+    void missing_key(const Key& key, const std::string& path, const SourceLocation& at, const std::string& kind) {
+        if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is needed
+        const std::string name = path.substr(path.rfind('.') + 1);
+        const bool made_by_override = at.line == 0 && !siblings.empty();
+        draft_.report(join(path, key.name), at,
+            fmt::format("missing key '{}' in {}: expected {}{}", key.name, where(path), expectation(key),
+                made_by_override ? hint(name, siblings) : ""));
+    }
+
+    void value(const Key& key, const Node& node, const std::string& path, void* object) {
+        place(node, path);
+        store(key, node, path, object);
+    }
+
+    void place(const Node& node, const std::string& path) {
+        draft_.e.places[path] = node.at;
+        if (node.is_array())
+            for (std::size_t i = 0; i < node.members.size() && i < most_elements; ++i)
+                draft_.e.places[fmt::format("{}.{}", path, i)] = node.members[i].value.at;
+    }
+
+    void store(const Key& key, const Node& node, const std::string& path, void* object) {
+        Value value;
+        if (!read_value(draft_, key, node, path, value)) return;
+        key.slot.store(object, value);
+        if (key.type == Type::sampler || key.type == Type::arm || key.type == Type::shape)
+            draft_.references.push_back({key.type, path, value.text});
+    }
+
+    void default_value(const Key& key, const std::string& path, void* object) {
+        if (key.type == Type::sampler) {  // the arm's own name, where nothing stands in its place
+            const auto& arm = *static_cast<const ArmPlan*>(object);
+            if (arm.exec || arm.plugin) return;
+            Node name;
+            name.kind = Node::Kind::text;
+            name.text = static_cast<const ArmPlan*>(object)->name;
+            return store(key, name, path, object);
+        }
+        store(key, read_toml(fmt::format("default = {}", key.default_value), "default").members.front().value, path,
+            object);
+    }
+
+    /// A table, or all tables of a family.
+    void family(const Section& section, const Node& parent, const std::string& path, const SourceLocation& parent_at,
+        void* object) {
+        const Member* member = parent.find(section.name);
+        if (!member) return absent(section, path, parent_at, object);
+        const Node& node = member->value;
+        draft_.e.places[path] = member->at;
+        const bool listed = section.many == Multiplicity::list || section.many == Multiplicity::titled;
+        if (!node.is_table() && !(listed && node.is_array()))
+            return draft_.report(
+                path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
+        if (section.many == Multiplicity::list && node.is_table())
+            return draft_.report(
+                path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
+        if (section.many == Multiplicity::one)
+            return table(section, node, path, member->at,
+                section.family.add ? section.family.add(object, "", member->at) : object);
+        if (section.need == Requirement::required && node.members.empty())
+            return draft_.report(
+                path, member->at, fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
+        elements(section, node, path, object);
+    }
+
+    static std::string form(const Section& section, const std::string& path) {
+        if (section.many == Multiplicity::one) return fmt::format("a table [{}]", path);
+        if (section.many == Multiplicity::list) return "a list of tables";
+        return fmt::format("tables [{}.NAME]", path);
+    }
+
+    void absent(const Section& section, const std::string& path, const SourceLocation& parent_at, void* object) {
+        if (section.need == Requirement::required)
+            return draft_.report(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
+        const bool all_default = std::none_of(
+            section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Requirement::required; });
+        if (section.many == Multiplicity::one && all_default)
+            table(section, Node{}, path, parent_at,
+                section.family.add ? section.family.add(object, "", parent_at) : object);
+    }
+
+    void elements(const Section& section, const Node& node, const std::string& path, void* object) {
+        if (node.members.size() > most_elements)
+            return draft_.report(path, node.at,
+                fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
+        std::vector<std::string> names;
+        for (const Member& member : node.members) names.push_back(member.key);
+        titles_.clear();
+        for (std::size_t i = 0; i < node.members.size(); ++i) {
+            const Member& member = node.members[i];
+            siblings = names;
+            std::erase(siblings, member.key);
+            element(section, node, member, path, i, object);
+        }
+        siblings.clear();
+    }
+
+    void element(const Section& section, const Node& node, const Member& member, const std::string& path,
+        std::size_t index, void* object) {
+        const std::string label = node.is_array() ? fmt::format("{}.{}", path, index) : join(path, member.key);
+        if (!member.value.is_table())
+            return draft_.report(label, node.is_array() ? member.value.at : member.at,
+                fmt::format("{}: expected {}, found {}", label,
+                    node.is_array() ? "a table" : fmt::format("a table [{}]", label), describe(member.value)));
+        std::string name = member.key;
+        SourceLocation at = member.at;
+        if (section.many == Multiplicity::titled && node.is_array() && !title(member, path, index, name, at)) return;
+        const std::string own =
+            section.many == Multiplicity::list ? fmt::format("{}.{}", path, index) : join(path, name);
+        if (section.many == Multiplicity::named && !file_safe(name))
+            draft_.report(own, at,
+                fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
+                            "letter, digit or '_' first: names become file names",
+                    name.substr(0, 64), where(path)));
+        if (section.many == Multiplicity::titled && !one_line(name))
+            draft_.report(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
+        draft_.e.places[own] = at;
+        in_list_ = node.is_array();
+        table(section, member.value, own, at, section.family.add(object, name, at));
+    }
+
+    /// The name of a table in a list; false where it has none that is new.
+    bool title(
+        const Member& member, const std::string& path, std::size_t index, std::string& name, SourceLocation& at) {
+        const Member* own = member.value.find("name");
+        at = member.value.at;
+        if (!own || own->value.kind != Node::Kind::text) {
+            draft_.report(fmt::format("{}.{}", path, index), own ? own->value.at : at,
+                fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'",
+                    path, own ? ", found " + describe(own->value) : ""));
+            return false;
+        }
+        name = own->value.text;
+        at = own->value.at;
+        const auto [first, fresh] = titles_.emplace(name, at);
+        if (!fresh)
+            draft_.report(fmt::format("{}.{}", path, index), at,
+                fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path,
+                    to_string(first->second)));
+        return fresh;
+    }
+
+    ParseContext& draft_;
+    std::map<std::string, SourceLocation> titles_;  // names of a list so far
+    bool in_list_ = false;                          // the table that is being read stands in one, and says its own name
+};
+
+}  // namespace
+
+void read_tree(ParseContext& context, const Section& table, const Node& root, void* object) {
+    const SourceLocation top{context.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
+    TreeReader(context).table(table, root, "", top, object);
+}
+
+void read_tree(ParseContext& context, const Node& root) { read_tree(context, schema(), root, &context.e); }
+
+// ---- What depends on other keys is filled in: every Lambert surface's s, every arm's ladder, the n of runs that name
+// none. Then each run that a plate or the exponent control asks for is checked to be one that the experiment makes.
+
+namespace {
+
+void resolve_s(ParseContext& context) {
+    Experiment& e = context.e;
+    if (e.exponent && context.is_valid("exponent.shape")) {
+        const Shape* shape = e.find_shape(e.exponent->shape);
+        if (shape && !shape->material.s && context.is_valid("shapes." + shape->name + ".s"))
+            context.report("exponent.shape",
+                fmt::format(
+                    "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
+    }
+    if (e.exponent) e.s_of = e.exponent->shape;
+    const double s = e.s();
+    for (Shape& shape : e.shapes)
+        if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
+    if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
+            return !context.is_valid("shapes." + x.name + ".s");
+        }))
+        return;
+    for (const ArmPlan& arm : e.arms)
+        if (const SamplerInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
+            context.report("arms." + arm.name,
+                fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
+}
+
+void resolve_ladders(ParseContext& context) {
+    for (ArmPlan& arm : context.e.arms) {
+        const std::string path = "arms." + arm.name;
+        if (!arm.n.empty() || !context.is_valid(path + ".n") || !context.is_valid("n")) continue;
+        if (context.e.n > 0) arm.n = {context.e.n};
+        else
+            context.report(path + ".n",
+                fmt::format("missing key 'n' in [{}]: expected ascending integers from 1 to "
+                            "16777216 (samples/pixel), or an n for the whole experiment",
+                    path));
+    }
+}
+
+/// The n of a run, its arm's where it names none; complains where the arm has no such rung.
+std::uint64_t rung(ParseContext& context, const std::string& path, const std::string& arm_name, std::uint64_t n) {
+    const ArmPlan* arm = context.e.find_arm(arm_name);
+    if (!arm || arm->n.empty()) return n;
+    if (n == 0) return context.e.n_of(*arm);
+    if (!std::count(arm->n.begin(), arm->n.end(), n))
+        context.report(path,
+            fmt::format(
+                "{}: the arm '{}' has no rung n = {}: expected one of {}", path, arm_name, n, listed(arm->n, ", ")));
+    return n;
+}
+
+void check_s(ParseContext& context, const std::string& path, const PlateRun& run) {
+    std::string why = why_not_run(context.e, run.arm, run.n, run.s);
+    if (!why.empty()) context.report(path, fmt::format("{}: {}", path, why));
+}
+
+void resolve_plate(ParseContext& context, PlatePlan& plate) {
+    const std::string path = "plates." + plate.name;
+    if (!context.is_valid(path + ".kind") || !context.is_valid(path + ".runs")) return;
+    const PlateInfo& kind = plate_info(plate.kind);
+    if (plate.runs.size() < kind.least || plate.runs.size() > kind.most) {
+        const std::string many =
+            kind.least == kind.most ? fmt::format("{}", kind.least) : fmt::format("{} to {}", kind.least, kind.most);
+        context.report(path + ".runs",
+            fmt::format(
+                "{}.runs: expected {} for a plate of kind {}, found {}", path, many, kind.name, plate.runs.size()));
+    }
+    std::vector<PlateRun> runs;
+    for (std::size_t i = 0; i < plate.runs.size(); ++i) {
+        PlateRun run = plate.runs[i];
+        const std::string own = fmt::format("{}.runs.{}", path, i);
+        const ArmPlan* arm = context.e.find_arm(run.arm);
+        const bool open = run.n == 0 && context.is_valid(own + ".n") && arm && !arm->n.empty();
+        if (open && plate.kind == PlateKind::ladder) {
+            for (const std::uint64_t n : arm->n) runs.push_back({run.arm, n, run.s});
+            continue;
+        }
+        const auto& control = context.e.exponent;
+        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && context.is_valid(own + ".s") && control &&
+            control->arm == run.arm) {
+            for (const double s : control->s) runs.push_back({run.arm, control->n, s});
+            continue;
+        }
+        run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(context, own + ".n", run.arm, run.n);
+        if (context.is_valid(own + ".n") && context.is_valid(own + ".s")) check_s(context, own + ".s", run);
+        runs.push_back(run);
+    }
+    plate.runs = std::move(runs);
+}
+
+}  // namespace
+
+std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s) {
+    if (s == 0 || s == e.s() || n == 0 || !e.find_arm(arm)) return "";
+    if (!e.exponent)
+        return fmt::format(
+            "no run at s = {}: expected the experiment's own s = {}; there is no [exponent] control", s, e.s());
+    const ExponentControl& control = *e.exponent;
+    if (control.arm == arm && control.n == n && std::count(control.s.begin(), control.s.end(), s)) return "";
+    return fmt::format(
+        "no run {} n={} s={}: expected the experiment's own s = {}, or a run of the exponent control: {} n={} s = {}",
+        arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
+}
+
+void resolve_runs(ParseContext& context) {
+    resolve_s(context);
+    resolve_ladders(context);
+    if (context.e.exponent) {
+        ExponentControl& control = *context.e.exponent;
+        if (context.is_valid("exponent.n")) control.n = rung(context, "exponent.n", control.arm, control.n);
+    }
+    for (PlatePlan& plate : context.e.plates) resolve_plate(context, plate);
+}
+
+// ---- A file, or text, and its overrides -> Experiment; every mistake in one InputError, in file order.
+
+namespace {
+
+ParseContext draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+    ParseContext context;
+    context.e.file = name;
+    context.e.overrides = overrides;
+    Node root = read_toml(text, name, &context.diagnostics);
+    apply_overrides(context, root, overrides);
+    read_tree(context, root);
+    check_geometry(context);
+    check_names(context);
+    resolve_runs(context);
+    resolve_assertions(context);
+    Experiment& e = context.e;
+    const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+    if (e.published) e.published = (folder / *e.published).string();
+    for (ArmPlan& arm : e.arms)
+        if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
+    return context;
+}
+
+}  // namespace
+
+/// In file order; overrides come after the file, as given.
+void throw_if_any(std::vector<Diagnostic> all) {
+    if (all.empty()) return;
+    std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted;  // equals keep their order
+    for (Diagnostic& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
+    all.clear();
+    for (auto& [key, diagnostic] : sorted) all.push_back(std::move(diagnostic));
+    throw InputError(std::move(all));
+}
+
+Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+    ParseContext context = draft_of(text, name, overrides);
+    throw_if_any(std::move(context.diagnostics));
+    return std::move(context.e);
+}
+
+Experiment load(const std::string& path, const std::vector<std::string>& overrides) {
+    for (const char* foreign : {".pbrt", ".xml", ".obj", ".ply", ".gltf", ".glb", ".usd", ".usda", ".usdz", ".blend"})
+        if (path.ends_with(foreign))
+            throw InputError({path, 0, 0},
+                "expected an experiment, a TOML file: scenes of other programs cannot be read; README.md says what a "
+                "scene "
+                "can be");
+    ParseContext context = draft_of(read_text(path, "an experiment file"), path, overrides);
+    if (context.e.published) {
+        try {
+            context.e.figures = load_published(*context.e.published);
+        } catch (const InputError& error) { context.report("published", fmt::format("published: {}", error.what())); }
+    }
+    throw_if_any(std::move(context.diagnostics));
+    return std::move(context.e);
+}
+
+Experiment with_figures(Experiment experiment) {
+    if (experiment.published && !experiment.figures) experiment.figures = load_published(*experiment.published);
+    return experiment;
+}
+
+std::string read_text(const std::string& path, std::string_view what) {
+    constexpr std::streamsize most = (std::streamsize{4} << 20) + 1;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError({path, 0, 0}, fmt::format("expected {}, found a folder", what));
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw InputError(
+            {path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
+    std::string text(static_cast<std::size_t>(most), '\0');
+    file.read(text.data(), most);
+    if (file.bad())
+        throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    if (text.size() == static_cast<std::size_t>(most))
+        throw InputError({path, 0, 0}, fmt::format("expected {} of at most 4 MiB, found more", what));
+    return text;
+}
+
+}  // namespace crescent::inline experiment

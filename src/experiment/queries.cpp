@@ -1,0 +1,111 @@
+// Where films go.
+#include "experiment/queries.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <variant>
+
+#include "samplers/info.h"
+
+namespace crescent::inline experiment {
+
+std::string film_file(std::string_view arm, double s, double own_s) {
+    return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s);
+}
+
+// ---- For each shape, the largest channel of rho_d plus rho_s against 1; reflectances have no unit. Evidence that was
+// asked for and cannot be measured.
+
+std::vector<std::string> warnings_of(const Experiment& experiment) {
+    std::vector<std::string> out;
+    for (const Shape& shape : experiment.shapes) {
+        const double albedo = std::ranges::max(shape.material.rho_d) + shape.material.rho_s;
+        if (albedo > 1)
+            out.push_back(fmt::format(
+                "{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives", shape.name, albedo));
+    }
+    if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
+        out.push_back("note_evidence measures nothing: " + why);
+    return out;
+}
+
+// ---- The note explains the Phong arm on a Phong lobe: both must be there, the lobe on the exponent control's shape
+// where there is a control.
+
+const Shape* evidence_shape(const Experiment& experiment) {
+    const auto phong = [](const Shape& shape) {
+        return shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong");
+    };
+    if (experiment.exponent) {
+        const Shape* shape = experiment.find_shape(experiment.exponent->shape);
+        return shape && phong(*shape) ? shape : nullptr;
+    }
+    const auto found = std::ranges::find_if(experiment.shapes, phong);
+    return found == experiment.shapes.end() ? nullptr : &*found;
+}
+
+std::string why_no_evidence(const Experiment& experiment) {
+    if (std::ranges::find(experiment.arms, "phong", &ArmPlan::sampler) == experiment.arms.end())
+        return "no arm has the sampler 'phong'";
+    if (evidence_shape(experiment)) return {};
+    return experiment.exponent ? "exponent.shape has no Phong lobe" : "no shape has a Phong lobe";
+}
+
+// ---- Looked up in SamplerInfo by the arm's sampler. One that is not in the list draws one direction, misses nothing
+// and tells s. Arms that miss a light miss the fill: none does where the fill is black.
+
+int techniques_of(const ArmPlan& arm) {
+    const SamplerInfo* info = find_arm_info(arm.sampler);
+    return info ? info->techniques : 1;
+}
+
+std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
+    const SamplerInfo* info = find_arm_info(arm.sampler);
+    const bool shines = experiment.fill[0] + experiment.fill[1] + experiment.fill[2] > 0;  // all that arms may miss
+    return info && shines ? std::string(info->misses) : "";
+}
+
+bool tells_s(const std::string& arm, double s, const Experiment& experiment) {
+    if (s != experiment.s()) return true;
+    const ArmPlan* plan = experiment.find_arm(arm);
+    const SamplerInfo* info = plan ? find_arm_info(plan->sampler) : nullptr;
+    return !info || info->needs_s;
+}
+
+bool any_tells_s(const Experiment& experiment) {
+    return std::ranges::any_of(
+        experiment.arms, [&](const ArmPlan& arm) { return tells_s(arm.name, experiment.s(), experiment); });
+}
+
+// ---- A kind of light is widened by its lengths (m), multiplied; a rectangle by its edges, its corner moved so that
+// the centre stays. Directions stay as they are.
+
+std::vector<LightTable> all_lights(const SceneData& scene) {
+    std::vector<LightTable> out;
+    for (const DiskLight& disk : scene.disks) out.push_back({"disks." + disk.name, disk.light()});
+    for (const Light& light : scene.lights) out.push_back({"lights." + light.name, light});
+    return out;
+}
+
+std::vector<std::string> widened(const LightTable& table, double factor) {
+    std::vector<std::string> out;
+    const auto set = [&](std::string_view key, const std::string& value) {
+        out.push_back(fmt::format("{}.{}={}", table.path, key, value));
+    };
+    const auto point = [](Vec3d v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
+    std::visit(
+        [&]<class Kind>(const Kind& kind) {
+            for (const Parameter<Kind>& parameter : Kind::parameters())
+                if (const auto* length = std::get_if<double Kind::*>(&parameter.member))
+                    set(parameter.name, fmt::format("{}", factor * kind.**length));
+            if constexpr (requires { kind.corner, kind.edge_u, kind.edge_v; }) {
+                set("corner", point(kind.corner - 0.5 * (factor - 1) * (kind.edge_u + kind.edge_v)));
+                set("edge_u", point(factor * kind.edge_u));
+                set("edge_v", point(factor * kind.edge_v));
+            }
+        },
+        table.light.form);
+    return out;
+}
+
+}  // namespace crescent::inline experiment

@@ -1,0 +1,78 @@
+// Lights of both tables under one roof, and the settings that make one wider.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiment/experiment.h"
+#include "experiment/queries.h"
+
+namespace crescent::inline experiment {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr const char* lamps = R"(
+[image]
+width = 8
+height = 8
+[camera]
+eye = [0, 1, 3]
+target = [0, 0, 0]
+vfov_deg = 40
+[shapes.floor]
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 1, 0]
+rho_d = [0.5, 0.5, 0.5]
+[disks.key]
+center = [0, 2, 0]
+normal = [0, -1, 0]
+radius = 0.1
+radiance = [9, 9, 9]
+[lights.ball]
+kind = "sphere"
+center = [1, 2, 0]
+radius = 0.25
+radiance = [9, 9, 9]
+[lights.window]
+kind = "rectangle"
+corner = [0, 1, -2]
+edge_u = [1, 0, 0]
+edge_v = [0, 0.5, 0]
+radiance = [9, 9, 9]
+[arms.cosine]
+n = 4
+)";
+
+TEST(LightTables, AreThoseOfDisksAndThenThoseOfLights) {
+    std::vector<std::string> paths;
+    for (const LightTable& table : all_lights(parse(lamps, "lamps.toml"))) paths.push_back(table.path);
+    EXPECT_THAT(paths, ElementsAre("disks.key", "lights.ball", "lights.window"));
+}
+
+TEST(LightTables, AreWidenedByTheLengthsOfTheirKind) {
+    const auto tables = all_lights(parse(lamps, "lamps.toml"));
+    EXPECT_THAT(widened(tables[0], 4), ElementsAre("disks.key.radius=0.4"));
+    EXPECT_THAT(widened(tables[1], 0.5), ElementsAre("lights.ball.radius=0.125"));
+}
+
+TEST(LightTables, AreWidenedAboutTheirCentreByWhatSetTakes) {
+    const Experiment e = parse(lamps, "lamps.toml");
+    for (const LightTable& table : all_lights(e)) {
+        const auto wide = all_lights(parse(lamps, "lamps.toml", widened(table, 4)));
+        for (const LightTable& now : wide) {
+            const double grown = now.path == table.path ? 16 : 1;
+            for (const LightTable& before : all_lights(e)) {
+                if (before.path != now.path) continue;
+                EXPECT_NEAR(now.light.power(), grown * before.light.power(), 1e-12) << now.path;
+                const auto middle = [](const Light& l) {
+                    return std::visit([](const auto& form) { return form.body().middle(); }, l.form);
+                };
+                const Vec3d moved = middle(now.light) - middle(before.light);
+                EXPECT_LT(dot(moved, moved), 1e-24) << now.path;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace crescent::inline experiment

@@ -1,0 +1,85 @@
+// Registers "gl" before main. Claims are made of the context and a 1280x720 framebuffer when it is opened, of the
+// film's framebuffer and of three blocks of random integers before the first film; films then come from Estimator.
+#include <fmt/format.h>
+
+#include "backend.h"
+#include "integers.h"
+#include "pass.h"
+
+namespace crescent::gl {
+
+namespace {
+
+AssertionResult claim(
+    const std::string& name, double measured, const char* op, double bound, const std::string& quantity) {
+    const bool pass = std::string_view(op) == "==" ? measured == bound : measured >= bound;
+    return {name, pass, measured, bound, op, fmt::format("{} {} {}", quantity, op, bound)};
+}
+
+/// Random integers that differ from the CPU's, over some blocks of both dimensions.
+double unlike_integers_here(const Context& context, std::uint32_t seed) {
+    const std::vector<IntegerBlock> blocks = {
+        {256, 64, 0, 0, seed}, {256, 64, 1, 1, seed}, {256, 64, 0x7fffffffu, 0, ~seed}};
+    const auto integers = driver_integers(context, blocks);
+    std::uint64_t unlike = 0;
+    for (std::size_t k = 0; k < blocks.size(); ++k) unlike += unlike_integers(blocks[k], integers[k]);
+    return static_cast<double>(unlike);
+}
+
+class GlKind : public BackendKind {
+public:
+    std::string name() const override { return "gl"; }
+    std::shared_ptr<Instrument> open(const BackendChoice& choice) const override {
+        return std::make_shared<GlBackend>(open_context(choice));
+    }
+    std::vector<BackendDevice> devices() const override { return egl_devices(); }
+};
+
+const bool registered = [] {
+    instrument_kinds().push_back(std::make_shared<GlKind>());
+    return true;
+}();
+
+}  // namespace
+
+GlBackend::GlBackend(std::unique_ptr<Context> context) : context_(std::move(context)), estimator_(*context_) {
+    claims_.push_back(
+        claim("the GL context is core 3.3 or later", context_->version_number(), ">=", 3.3, "GL_VERSION"));
+    claim_framebuffer("composite", 1280, 720, 1);
+}
+
+std::string GlBackend::name() const {
+    return fmt::format("GL {}, {}, {}", context_->version(), context_->renderer(), context_->kind());
+}
+
+std::vector<std::pair<std::string, std::string>> GlBackend::details() const {
+    return {{"GL_VERSION", context_->version()}, {"GL_RENDERER", context_->renderer()}, {"context", context_->kind()}};
+}
+
+void GlBackend::claim_framebuffer(const std::string& what, int width, int height, std::size_t attachments) {
+    const Framebuffer target(*context_, width, height, attachments);  // throws where it is not complete
+    const std::string name = fmt::format("the {} framebuffer {}x{}", what, width, height);
+    claims_.push_back(claim(name + " is complete RGBA32F", target.bits(), "==", 32, "bits a channel"));
+    claims_.push_back(claim(name + " has GL_FRAMEBUFFER_SRGB off", target.srgb(), "==", 0, "GL_FRAMEBUFFER_SRGB"));
+    claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
+}
+
+std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint*) {
+    const Scene& scene = view.scene();
+    if (!context_->is_current()) context_->make_current();
+    if (!claimed_film_) {
+        const Image& image = scene.image();
+        const TileBox first =
+            rectangles_of(image.width, image.height, count_lights(scene), estimator_.largest_texture()).front();
+        claim_framebuffer("film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(count_lights(scene).all()));
+        claims_.push_back(claim("the random integers are the CPU's", unlike_integers_here(*context_, job.seed), "==", 0,
+            "integers that differ"));
+        claimed_film_ = true;
+    }
+    if (job.outside)
+        throw OutputError(
+            "the GL instrument has no copy of the arm '" + job.arm + "', which is a program or a plugin: use the cpu");
+    return estimator_.films(scene, job.sampler, job.n, job.seed, monitor);
+}
+
+}  // namespace crescent::gl

@@ -1,0 +1,105 @@
+// What the contexts of EGL and OSMesa share: entry points, version 3.3 at least, the last 20 errors and messages of
+// high severity of the driver. check() asks whether the context is current, then for a reset, then glGetError().
+#include "context.h"
+
+#include <fmt/format.h>
+
+namespace crescent::gl {
+
+void DriverLog::add(const std::string& line) {
+    const std::lock_guard guard(guard_);
+    lines_.push_back(line);
+    if (lines_.size() > 20) lines_.erase(lines_.begin());
+}
+
+std::string DriverLog::text() const {
+    const std::lock_guard guard(guard_);
+    std::string out;
+    for (const std::string& line : lines_) out += "\nthe driver said: " + line;
+    return out;
+}
+
+namespace {
+
+void APIENTRY keep(
+    GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* message, const void* log) {
+    if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) return;
+    static_cast<DriverLog*>(const_cast<void*>(log))
+        ->add(std::string(
+            message, length < 0 ? std::char_traits<char>::length(message) : static_cast<std::size_t>(length)));
+}
+
+const char* reset_words(GLenum status) {
+    switch (status) {
+        case GL_GUILTY_CONTEXT_RESET: return "the driver reset the context because of what it drew";
+        case GL_INNOCENT_CONTEXT_RESET: return "the driver reset the context because of another program";
+        case GL_UNKNOWN_CONTEXT_RESET: return "the driver reset the context";
+        default: return nullptr;
+    }
+}
+
+const char* error_words(GLenum error) {
+    switch (error) {
+        case GL_INVALID_ENUM: return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
+        case GL_CONTEXT_LOST: return "GL_CONTEXT_LOST";
+        default: return "an unknown error";
+    }
+}
+
+}  // namespace
+
+void Context::take_functions(const std::function<void*(const char*)>& address_of) {
+    gl_ = functions_from(address_of);
+    if (version_number() < 3.3)
+        throw OutputError("the GL instrument needs core 3.3; the driver has " + version() + log_.text());
+    if (gl_.DebugMessageCallback) {
+        gl_.DebugMessageCallback(keep, &log_);
+        gl_.Enable(GL_DEBUG_OUTPUT);
+    }
+    static_cast<void>(gl_.GetError());  // a 3.3 context may know no GL_DEBUG_OUTPUT
+}
+
+std::string Context::word(GLenum name) const {
+    const GLubyte* text = gl_.GetString(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+double Context::version_number() const {
+    GLint major = 0, minor = 0;
+    gl_.GetIntegerv(GL_MAJOR_VERSION, &major);
+    gl_.GetIntegerv(GL_MINOR_VERSION, &minor);
+    return major + 0.1 * minor;
+}
+
+bool Context::software() const {
+    const std::string name = renderer();
+    return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos ||
+        name.find("swrast") != std::string::npos;
+}
+
+void Context::check(const char* after) const {
+    if (!is_current())
+        throw OutputError(
+            fmt::format("the GL context was lost: after {} it is no longer current{}", after, log_.text()));
+    if (gl_.GetGraphicsResetStatus)
+        if (const char* words = reset_words(gl_.GetGraphicsResetStatus()))
+            throw OutputError(fmt::format("the GL context was lost: after {}, {}{}", after, words, log_.text()));
+    if (const GLenum error = gl_.GetError(); error != GL_NO_ERROR)
+        throw OutputError(
+            fmt::format("GL failed: {} after {} on {}{}", error_words(error), after, renderer(), log_.text()));
+}
+
+std::unique_ptr<Context> open_context(const BackendChoice& choice) {
+    if (choice.context.empty() || choice.context == "egl") return open_egl(choice.device);
+    if (choice.context != "osmesa")
+        throw InputError({"--gl-context", 0, 0}, "expected egl or osmesa, not '" + choice.context + "'");
+    if (choice.device >= 0)
+        throw InputError({"--gl-device", 0, 0}, "expected with --gl-context egl: OSMesa has no devices");
+    return open_osmesa();
+}
+
+}  // namespace crescent::gl

@@ -1,0 +1,57 @@
+// Integrand + arm -> films on a GL context: src/render/ with src/gl/shaders/estimator.glsl as its kernel. Moments of a
+// draw come back as floats and are added up in double.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framebuffer.h"
+#include "pacer.h"
+#include "program.h"
+#include "site_texture.h"
+
+namespace crescent::gl {
+
+class Estimator {
+public:
+    /// `largest_texture`: pixels along a side of what is computed at once; 0: the driver's limit.
+    explicit Estimator(const Context& context, int largest_texture = 0);
+
+    /// One film per rung of n (ascending), as estimate_films() makes them.
+    std::vector<Film> films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
+        std::uint32_t seed, ProgressMonitor& monitor);
+    /// The draw that took longest so far.
+    double longest_draw_s() const;
+    int largest_texture() const { return largest_texture_; }
+
+private:
+    /// A program for one arm on one lobe, and how fast it has been.
+    struct Kernel {
+        Program program;
+        Pacer pacer;
+        Kernel(const Context& context, const ShaderSource& source) : program(context, source) {}
+    };
+
+    Kernel& kernel(const std::string& sampler, int lobe, const LightCounts& lights, const Bodies& bodies);
+    const SiteTexture& sites(const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
+    const Framebuffer& framebuffer(int width, int height, std::size_t attachments);
+    void estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
+        std::vector<Film>& films, ProgressMonitor& monitor);
+
+    const Context& context_;
+    GLuint vertex_array_ = 0;
+    int largest_texture_ = 0;
+    std::map<std::string, std::unique_ptr<Kernel>> kernels_;  // by source text
+    std::optional<Framebuffer> framebuffer_;
+    std::optional<SiteTexture> sites_;  // of the last rectangle
+    std::optional<Scene> sites_of_;     // and of this scene
+};
+
+/// The fragment shader of one arm on one lobe, its place in the list or -1.
+ShaderSource estimator_source(
+    const std::string& sampler, int lobe, const LightCounts& lights, const std::array<std::size_t, 5>& bodies);
+
+}  // namespace crescent::gl

@@ -1,0 +1,11 @@
+// The functions of simd/math.h on avx512; the flags stand in tests/CMakeLists.txt.
+#define CRESCENT_ISA avx512
+#include "math/simd/pack.h"
+// clang-format off
+#include "tests/support/math_table.h"
+
+namespace crescent::test {
+
+MathTable avx512_math() { return math_table<avx512::Pack>(); }
+
+}  // namespace crescent::test

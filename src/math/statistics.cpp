@@ -1,0 +1,258 @@
+// Two passes: the mean, then powers of what each number differs from it by.
+#include "math/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <vector>
+
+#include "base/errors.h"
+#include "math/functions.h"
+
+namespace crescent::inline stats {
+
+Spread spread(std::span<const double> x) {
+    Spread s;
+    s.n = static_cast<double>(x.size());
+    for (double v : x) {
+        s.mean += v / s.n;
+        s.largest = std::max(s.largest, v);
+    }
+    double m2 = 0, m3 = 0;
+    for (double v : x) {
+        const double d = v - s.mean;
+        m2 += d * d;
+        m3 += d * d * d;
+    }
+    s.sd = std::sqrt(m2 / std::max(s.n - 1, 1.0));
+    s.skew = s.sd > 0 ? m3 / s.n / (s.sd * s.sd * s.sd) : 0;
+    return s;
+}
+
+double johnson_t(const Spread& s, double expected) {
+    const double d = s.mean - expected;
+    if (!(s.sd > 1e-7 * std::fabs(expected)))
+        return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // every sample alike
+    const double corrected = d + s.skew * s.sd / (6 * s.n) + s.skew / (3 * s.sd) * d * d;
+    return corrected * std::sqrt(s.n) / s.sd;
+}
+
+// ---- Quantiles of a few numbers: sorted, and a straight line between two neighbours.
+
+double quantile(std::vector<double> values, double q) {
+    ensure(!values.empty(), "a quantile of something");
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return std::nan("");
+    std::sort(values.begin(), values.end());
+    const double at = q * static_cast<double>(values.size() - 1);
+    const std::size_t below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    const double t = at - static_cast<double>(below);
+    return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
+}
+
+// ---- Counts of bins beside what is due in each: by Poisson's standard deviations, and by the chi-square over all of
+// them.
+
+std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected) {
+    const auto off = [&](std::size_t i) {
+        return std::fabs(observed[i] - expected[i]) / std::sqrt(std::max(expected[i], 1.0));
+    };
+    std::size_t worst = 0;
+    for (std::size_t i = 1; i < observed.size(); ++i)
+        if (off(i) > off(worst)) worst = i;
+    return worst;
+}
+
+double unseen_share(const std::vector<double>& expected, double degrees, double draws, double level) {
+    if (!(degrees > 0)) return 1;
+    double low = degrees, high = 2 * degrees + 200;
+    for (int i = 0; i < 40; ++i) {
+        const double mid = 0.5 * (low + high);
+        (chi_squared_p(mid, degrees) > level ? low : high) = mid;
+    }
+    const double fullest = std::max(*std::max_element(expected.begin(), expected.end()), 5.0);
+    return std::min(std::sqrt((low - degrees) * fullest) / draws, 1.0);
+}
+
+// ---- Rates with exact binomial intervals.
+
+std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of) {
+    if (of == 0) return {0, 1};
+    const ShareInterval p = binomial_interval(static_cast<double>(of), static_cast<double>(hits), 0.025);
+    return {p.low, p.high};
+}
+
+std::string rate_text(std::uint64_t hits, std::uint64_t of) {
+    const auto [low, high] = rate_interval(hits, of);
+    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of,
+        of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
+}
+
+// ---- Series and continued fractions of the incomplete gamma and beta functions (Abramowitz & Stegun 6.5.29, 6.5.31,
+// 26.5.8, the fractions by the method of Lentz), with what stands before them as a density in the form of C. Loader
+// 2000, "Fast and accurate computation of binomial probabilities": Stirling's error and the deviance keep every digit
+// where logarithms of gamma functions would cancel.
+
+namespace {
+
+constexpr double two_pi = 6.283185307179586477, tiny = 1e-300, close = 1e-16;
+constexpr int most_terms = 1'000'000;
+
+/// ln Gamma(n + 1) - (n + 1/2) ln n + n - ln(2 pi)/2, n > 0.
+double stirling_error(double n) {
+    double below = 0;
+    for (; n < 16; n += 1) below += (n + 0.5) * math::log1p(1 / n) - 1;
+    const double z = 1 / (n * n);
+    const double far = 1.0 / 1260 - z * (1.0 / 1680 - z * (1.0 / 1188 - z * (691.0 / 360360)));
+    return below + (1.0 / 12 - z * (1.0 / 360 - z * far)) / n;
+}
+
+/// x ln(x/m) + m - x, without cancellation near x = m.
+double deviance(double x, double m) {
+    const double off = x - m, v = off / (x + m);
+    if (!(std::fabs(v) < 0.1)) return x * math::log(x / m) - off;
+    double sum = off * v, term = 2 * x * v;
+    for (int k = 3;; k += 2) {
+        const double next = sum + (term *= v * v) / k;
+        if (next == sum) return sum;
+        sum = next;
+    }
+}
+
+/// m^x e^-m / Gamma(x + 1).
+double poisson_density(double x, double m) {
+    return math::exp(-stirling_error(x) - deviance(x, m)) / std::sqrt(two_pi * x);
+}
+
+/// Gamma(a + b + 1)/(Gamma(a + 1) Gamma(b + 1)) x^a y^b.
+double binomial_density(double a, double b, double x, double y) {
+    const double n = a + b;
+    const double error = stirling_error(n) - stirling_error(a) - stirling_error(b);
+    return math::exp(error - deviance(a, n * x) - deviance(b, n * y)) * std::sqrt(n / (two_pi * a * b));
+}
+
+double away_from_0(double x) { return std::fabs(x) < tiny ? tiny : x; }
+
+/// 1/(b + a1/(b1 + a2/(b2 + ...))): `step(k, a, b)` gives the k-th pair.
+template <class Step> double fraction(double b, Step step) {
+    double c = 1 / tiny, d = 1 / away_from_0(b), h = d;
+    for (int k = 1; k < most_terms; ++k) {
+        double over, under;
+        step(k, over, under);
+        d = 1 / away_from_0(under + over * d);
+        c = away_from_0(under + over / c);
+        h *= d * c;
+        if (std::fabs(d * c - 1) < close) break;
+    }
+    return h;
+}
+
+double gamma_series(double a, double x) {
+    double sum = 1, term = 1;
+    for (int k = 1; k < most_terms; ++k) {
+        sum += term *= x / (a + k);
+        if (term < sum * close) break;
+    }
+    return poisson_density(a, x) * sum;
+}
+
+double gamma_fraction(double a, double x) {
+    const double f = fraction(x + 1 - a, [&](int k, double& over, double& under) {
+        over = -k * (k - a);
+        under = x + 2 * k + 1 - a;
+    });
+    return poisson_density(a, x) * a * f;
+}
+
+double beta_fraction(double a, double b, double x, double y) {
+    const double f = fraction(1, [&](int k, double& over, double& under) {
+        const int m = k / 2;
+        const double at = a + 2 * m;
+        over = k & 1 ? -(a + m) * (a + b + m) * x / (at * (at + 1)) : m * (b - m) * x / ((at - 1) * at);
+        under = 1;
+    });
+    return binomial_density(a, b, x, y) * b / (a + b) * f;
+}
+
+/// Where a function that rises over [low, high] passes a value, to the last bit.
+template <class Function> double passes(Function f, double value, double low, double high) {
+    for (;;) {
+        const double middle = low + 0.5 * (high - low);
+        if (!(middle > low && middle < high)) return middle;
+        (f(middle) < value ? low : high) = middle;
+    }
+}
+
+}  // namespace
+
+double gamma_p(double a, double x) {
+    if (!(x > 0)) return 0;
+    return x < a + 1 ? gamma_series(a, x) : 1 - gamma_q(a, x);
+}
+
+double gamma_q(double a, double x) {
+    if (!(x > 0)) return 1;
+    if (x == std::numeric_limits<double>::infinity()) return 0;
+    return x < a + 1 ? 1 - gamma_series(a, x) : gamma_fraction(a, x);
+}
+
+double beta_i(double a, double b, double x, double y) {
+    if (!(x > 0)) return 0;
+    if (!(y > 0)) return 1;
+    return x * (a + b + 2) < a + 1 ? beta_fraction(a, b, x, y) : 1 - beta_fraction(b, a, y, x);
+}
+
+double chi_squared_tail(double degrees, double x) { return gamma_q(0.5 * degrees, 0.5 * x); }
+
+double normal_two_sided(double z) { return gamma_q(0.5, 0.5 * z * z); }
+
+double student_two_sided(double degrees, double t) {
+    const double t2 = t * t;
+    if (t2 == std::numeric_limits<double>::infinity()) return 0;
+    return beta_i(0.5 * degrees, 0.5, degrees / (degrees + t2), t2 / (degrees + t2));
+}
+
+double student_two_sided_quantile(double degrees, double p) {
+    double high = 1;
+    while (student_two_sided(degrees, high) > p) high *= 2;
+    return passes([&](double t) { return -student_two_sided(degrees, t); }, -p, 0, high);
+}
+
+double poisson_tail(double mean, double k) { return k > 0 ? gamma_p(k, mean) : 1; }
+
+ShareInterval binomial_interval(double n, double k, double alpha) {
+    const double low = k > 0 ? passes([&](double p) { return beta_i(k, n - k + 1, p, 1 - p); }, alpha, 0, 1) : 0;
+    const double high = k < n ? passes([&](double p) { return beta_i(k + 1, n - k, p, 1 - p); }, 1 - alpha, 0, 1) : 1;
+    return {low, high};
+}
+
+// ---- Hypergeometric probabilities by the ratio of neighbours from one end, so that no factorial is formed; binomial
+// tails by the incomplete beta function.
+
+double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::uint64_t nb) {
+    const std::uint64_t k = ka + kb, low = k > nb ? k - nb : 0, high = std::min(k, na);
+    // P(i + 1)/P(i) = (na - i)(k - i) / ((i + 1)(nb - k + i + 1)). The largest is kept at 1: nothing overflows.
+    std::vector<double> weight{1};
+    const auto d = [](std::uint64_t x) { return static_cast<double>(x); };
+    for (std::uint64_t i = low; i < high; ++i) {
+        weight.push_back(weight.back() * d(na - i) * d(k - i) / (d(i + 1) * d(nb + i + 1 - k)));
+        if (weight.back() > 1)
+            for (const double top = weight.back(); double& w : weight) w /= top;
+    }
+    constexpr double slack = 1 + 1e-9;  // outcomes that are equally likely differ by rounding
+    const double seen = weight[ka - low] * slack;
+    double all = 0, extreme = 0;
+    for (const double w : weight) all += w, extreme += w <= seen ? w : 0;
+    return std::min(1.0, extreme / all);
+}
+
+double binomial_exact(std::uint64_t k, std::uint64_t n, double p) {
+    if (n == 0) return 1;
+    const double kd = static_cast<double>(k), nd = static_cast<double>(n);
+    const double above = k == 0 ? 1 : beta_i(kd, nd - kd + 1, p, 1 - p);  // P(N >= k)
+    const double below = k == n ? 1 : beta_i(nd - kd, kd + 1, 1 - p, p);  // P(N <= k)
+    return std::min(1.0, 2 * std::min(above, below));
+}
+
+}  // namespace crescent::inline stats

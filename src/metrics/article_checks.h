@@ -1,0 +1,56 @@
+// Measurements behind "Where the note is wrong": the heavy tail of the Phong arm on a Lambert surface,
+// its lost support off the normal, and what a plain t-test makes of it. All in Y of the control shape's material.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "experiment/experiment.h"
+
+namespace crescent::inline studies {
+
+/// Quantiles over replicates of the combined white furnace of the Phong arm, R = n, at N samples.
+struct FurnaceQuantiles {
+    std::string arithmetic;  // "float32", "float64"
+    int u_bits = 0;          // resolution of u: 24, 32, 53
+    std::uint64_t n = 0;
+    double q05 = 0, q25 = 0, median = 0, q75 = 0, q95 = 0;
+};
+/// What N -> infinity reads when u is never below 2^-bits: rho_s + rho_d (1 - 2^(-bits (1 - k))), k = (s-1)/(s+1).
+struct FurnaceCap {
+    int u_bits = 0;
+    double y = 0;
+};
+/// The part of Lambert x fill that the Phong arm cannot reach with R tilted by theta_R from n.
+struct LostSupport {
+    double theta_R_deg = 0;
+    double measured = 0, se = 0;  // by drawing from the cosine arm and asking the Phong pdf
+    double theory = 0;            // (1 - cos theta_R) / 2
+};
+/// How often a t-test at level alpha rejects the correct Phong arm (R = n, Lambert, true mean known).
+struct FalseRejection {
+    double s = 0, k = 0;  // k: the Pareto index (s-1)/(s+1)
+    std::uint64_t n = 0;
+    int runs = 0, rejected = 0;
+    double low = 0, high = 0;  // Clopper-Pearson 95 % of the rate
+};
+
+/// What one run measured of the published explanations, at one exponent of the Phong lobe.
+struct Evidence {
+    double s = 0, rho_d = 0, rho_s = 0, expected = 0;  // Y
+    double alpha = 0.01;
+    std::vector<FurnaceQuantiles> furnace;
+    std::vector<FurnaceCap> caps;
+    std::vector<LostSupport> lost;
+    std::vector<FalseRejection> rejections;
+};
+
+// ---- Measures what evidence.h holds.
+
+/// Nothing (empty vectors) where the experiment does not ask for it, and where it has no Phong arm or no shape with a
+/// Phong lobe.
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor);
+
+}  // namespace crescent::inline studies

@@ -1,0 +1,157 @@
+// Both sides of a check are looked up in what was measured. What was not measured is NaN, and no comparison with NaN
+// holds. An RMSE that the reference's own error is a large part of is no evidence.
+#include "metrics/assertions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.h"
+#include "math/statistics.h"
+#include "metrics/compute.h"
+#include "metrics/metrics.h"
+
+namespace crescent::inline meters {
+
+namespace {
+
+constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
+
+double of_run(const ParsedQuantity& q, const RunMetrics* run) {
+    if (!run) return unmeasured;
+    if (q.region.empty()) return meter_value(*run, q.word);
+    const RegionMetrics* region = run->region(q.region);
+    if (!region) return unmeasured;
+    if (q.word == "tail") return region->tail ? region->tail->k : unmeasured;
+    return meter_value(*run, q.word + "." + q.region);
+}
+
+double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
+    for (const FurnaceResult& furnace : metrics.furnaces)
+        if (furnace.name == q.subject)
+            return q.word == "furnace" ? furnace.measured : std::abs(furnace.measured - furnace.expected);
+    return unmeasured;
+}
+
+QuantityOf subject_of(const std::string& word) {
+    for (const QuantityWord& known : quantity_words())
+        if (known.word == word) return known.subject;
+    throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
+}
+
+/// find(key): the run of that key, for who is of one.
+template <class Find> double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment,
+    std::uint32_t seed, const PlateBytes& plate_bytes, const Find& find) {
+    if (q.number) return *q.number;
+    switch (subject_of(q.word)) {
+        case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
+        case QuantityOf::run: return of_run(q, find(RunKey{q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
+        case QuantityOf::furnace: return of_furnace(q, metrics);
+        case QuantityOf::compared: break;
+        case QuantityOf::shape: {
+            const auto it = metrics.shape_pixels.find(q.subject);
+            return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
+        }
+        case QuantityOf::region: {
+            const Region* region = experiment.find_region(q.subject);
+            return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
+        }
+        case QuantityOf::plate: {
+            const auto it = plate_bytes.find(q.subject);
+            return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
+        }
+    }
+    return unmeasured;
+}
+
+/// Is this no RMSE, or one that is long against the reference's own error in its region?
+bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, const Experiment& experiment) {
+    if (q.word != "rmse") return true;
+    const double s = q.s > 0 ? q.s : experiment.s();
+    const bool quadrature = experiment.reference.kind == ReferenceKind::quadrature;
+    for (const ReferenceQuality& r : metrics.references)
+        if (r.s == s && r.region == q.region &&
+            (quadrature ? r.quadrature_error : r.rms_standard_error.value_or(0)) > most_error_share * value)
+            return false;
+    return true;
+}
+
+/// What the checks of an experiment are held against.
+struct Measurements {
+    const Experiment& experiment;
+    const Metrics& metrics;
+    RunIndex runs;
+    const PlateBytes& plate_bytes;
+    bool drawn;  // whether any plates were to be
+
+    std::uint32_t own_seed() const { return metrics.series.empty() ? experiment.seed : metrics.series.front(); }
+    /// The seeds that a check is read at.
+    std::vector<std::uint32_t> seeds(bool median) const {
+        if (!median || runs.seeds().empty()) return {own_seed()};
+        return metrics.series.empty() ? runs.seeds() : metrics.series;
+    }
+};
+
+bool is_of_a_run(const ParsedQuantity& q) { return !q.number && subject_of(q.word) == QuantityOf::run; }
+
+/// Which seeds of the series a check needs and this run does not have; "" where none is missing.
+std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
+    const auto& series = of.metrics.series;
+    if (!is_of_a_run(plan.check.left) && !is_of_a_run(plan.check.right)) return "";
+    const auto ran = [&](std::uint32_t seed) {
+        return std::ranges::find(of.runs.seeds(), seed) != of.runs.seeds().end();
+    };
+    if (series.empty() || of.runs.seeds().empty() || std::ranges::all_of(of.seeds(plan.median), ran)) return "";
+    return plan.median && series.size() > 1 ? "needs seeds 1 to " + std::to_string(series.size()) : "needs seed 1";
+}
+
+/// One side of a check: its value, and what is to be said of it.
+double side(ParsedQuantity q, bool over_seeds, const Measurements& of, AssertionResult& out) {
+    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may leave n out
+    std::vector<double> values;
+    for (const std::uint32_t seed : of.seeds(over_seeds))
+        values.push_back(value_of(
+            q, of.metrics, of.experiment, seed, of.plate_bytes, [&](const RunKey& key) { return of.runs.find(key); }));
+    const double value = quantile(values, 0.5);
+    if (!out.skipped.empty()) return value;
+    out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
+    if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
+    return value;
+}
+
+/// "plate_bytes(hero) > 0": what a run measures of it is above 0 wherever it ends.
+bool cannot_fail(const ParsedQuantity& left, const std::string& op, const ParsedQuantity& right) {
+    const bool always_there = left.word == "plate_bytes" || left.word == "region_pixels";
+    return !left.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");
+}
+
+}  // namespace
+
+double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
+    const PlateBytes& plate_bytes) {
+    return value_of(q, metrics, experiment, seed, plate_bytes,
+        [&](const RunKey& key) { return metrics.find(key.arm, key.n, key.s, key.seed); });
+}
+
+std::vector<AssertionResult> judge(
+    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
+    const Measurements measurements{experiment, metrics, RunIndex(metrics.runs), plate_bytes, drawn};
+    std::vector<AssertionResult> results;
+    for (const AssertionPlan& plan : experiment.assertions) {
+        AssertionResult r;
+        const auto& [left, right, op] = plan.check;
+        r.name = plan.name, r.op = op;
+        r.skipped = seeds_missing(plan, measurements);
+        r.measured = side(left, plan.median, measurements, r);
+        r.bound = side(right, plan.median, measurements, r);
+        r.cannot_fail = cannot_fail(left, op, right);
+        r.pass = r.skipped.empty() && r.reference_good && holds(r.measured, r.op, r.bound);
+        r.text = to_string(plan.check) + (plan.median ? " (medians over seeds)" : "");
+        if (!r.reference_good)
+            r.text += " (the reference is not good enough: its own error is of the size of the RMSE)";
+        results.push_back(std::move(r));
+    }
+    return results;
+}
+
+}  // namespace crescent::inline meters

@@ -1,0 +1,128 @@
+// Checks against made-up measurements whose right answers are plain.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "metrics/assertions.h"
+
+namespace crescent::inline meters {
+namespace {
+
+Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
+    Experiment e;
+    e.seed = 5;
+    Shape ball;
+    ball.name = "ball", ball.material.s = 32, ball.material.rho_s = 0.1;
+    e.shapes = {ball};
+    e.arms = {{"a", "cosine", {4, 16}, {}}, {"b", "phong", {4}, {}}};
+    e.regions = {{"H", {2, 3, 5, 4}, {}}};
+    for (const auto& [text, median] : checks) {
+        std::string why;
+        const auto c = parse_comparison(text, why);
+        EXPECT_TRUE(c) << why;
+        e.assertions.push_back({text, text, *c, median, {}});
+    }
+    return e;
+}
+
+RunMetrics run(const std::string& arm, std::uint64_t n, std::uint32_t seed, double rmse) {
+    RunMetrics r;
+    r.key = {arm, n, 32, seed};
+    r.regions = {{.region = "H", .rmse = rmse, .var = rmse * rmse, .pixels = 8, .tail = std::nullopt}};
+    r.fireflies = seed;
+    return r;
+}
+
+/// Three seeds; b is worse than a at seed 5 and better on the median.
+Metrics measured() {
+    Metrics m;
+    const double of_a[] = {2, 4, 9}, of_b[] = {3, 1, 1};
+    for (std::uint32_t i = 0; i < 3; ++i)
+        for (const std::uint64_t n : {4u, 16u})
+            m.runs.push_back(run("a", n, 5 + i, of_a[i] / static_cast<double>(n))),
+                m.runs.push_back(run("b", n, 5 + i, of_b[i] / static_cast<double>(n)));
+    m.furnaces = {{"white", "a", "combined", 64, 0.27, 0.30, 0.01, std::nullopt, 0, std::nullopt}};
+    m.shape_pixels = {{"ball", 120}};
+    m.geometry_pixels = 500;
+    return m;
+}
+
+bool verdict(const std::string& check, bool median = false, const Metrics& m = measured()) {
+    return judge(two_arms({{check, median}}), m, {{"hero", 1000}}).at(0).pass;
+}
+
+TEST(Quantities, AreReadFromTheRunTheyName) {
+    EXPECT_TRUE(verdict("rmse.H(a, n=4) == 0.5"));
+    EXPECT_TRUE(verdict("rmse.H(a, n=16) == 0.125"));
+    EXPECT_TRUE(verdict("rmse.H(b) == 0.75")) << "b has one rung";
+    EXPECT_TRUE(verdict("rmse.H(a) == 0.125")) << "no n: the highest rung, as the experiment names none";
+    EXPECT_TRUE(verdict("var.H(a, n=4, s=32) == 0.25"));
+    EXPECT_TRUE(verdict("fireflies(a) == 5"));
+    EXPECT_TRUE(verdict("furnace(white) == 0.27"));
+    EXPECT_TRUE(verdict("furnace_error(white) <= 0.0300001"));
+    EXPECT_FALSE(verdict("furnace_error(white) < 0.0299"));
+    EXPECT_TRUE(verdict("shape_pixels(ball) == 120"));
+    EXPECT_TRUE(verdict("region_pixels(H) == 8"));
+    EXPECT_TRUE(verdict("geometry_pixels >= 500"));
+    EXPECT_TRUE(verdict("plate_bytes(hero) > 0"));
+    EXPECT_FALSE(verdict("plate_bytes(rose) > 0"));
+}
+
+TEST(Assertions, OnAnRmseThatTheReferencesOwnErrorMayMakeDoNotPass) {
+    Metrics m = measured();
+    m.references.resize(1);
+    m.references[0].s = 32, m.references[0].region = "H", m.references[0].quadrature_error = 0.1,
+    m.references[0].rms_standard_error = 9;
+    EXPECT_TRUE(verdict("rmse.H(a, n=4) < 1", false, m)) << "0.5 is five times the error";
+    EXPECT_FALSE(verdict("rmse.H(a, n=16) < 1", false, m)) << "0.125 is not";
+    EXPECT_FALSE(verdict("rmse.H(a, n=16) < rmse.H(a, n=4)", false, m));
+    const AssertionResult told = judge(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
+    EXPECT_FALSE(told.reference_good);
+    EXPECT_NE(told.text.find("not good enough"), std::string::npos) << told.text;
+}
+
+TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
+    EXPECT_FALSE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)"));
+    EXPECT_TRUE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)", true));
+    const auto result = judge(two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}}), measured(), {}).at(0);
+    EXPECT_EQ(result.measured, 0.25);
+    EXPECT_EQ(result.bound, 1);
+    EXPECT_EQ(result.text, "rmse.H(b, n=4) < rmse.H(a, n=4) (medians over seeds)");
+}
+
+TEST(Assertions, AreSkippedWhereASeedThatTheyNeedWasNotRun) {
+    const auto all = two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}, {"fireflies(a) == 5", false},
+        {"furnace(white) == 0.27", true}, {"region_pixels(H) == 8", false}, {"1 > furnace(white)", true}});
+    const auto skipped = [&](const Metrics& m) {
+        std::vector<std::string> out;
+        for (const AssertionResult& a : judge(all, m, {})) {
+            out.push_back(a.skipped);
+            EXPECT_TRUE(a.pass != !a.skipped.empty()) << a.name;
+            EXPECT_FALSE(a.failed()) << a.name;
+        }
+        return out;
+    };
+    Metrics m = measured();
+    m.series = {5, 6, 7};
+    EXPECT_EQ(skipped(m), std::vector<std::string>(5));
+    m.series = {5, 6, 7, 8};
+    EXPECT_EQ(skipped(m), (std::vector<std::string>{"needs seeds 1 to 4", "", "", "", ""}));
+    m.series = {4, 5, 6, 7};
+    EXPECT_EQ(skipped(m), (std::vector<std::string>{"needs seeds 1 to 4", "needs seed 1", "", "", ""}));
+}
+
+TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
+    Metrics m = measured();
+    m.runs[0].regions[0].rmse = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(verdict("rmse.H(a, n=4) < 1e9", false, m));
+    EXPECT_FALSE(verdict("rmse.H(a, n=4) > 0", true, m));
+    EXPECT_FALSE(verdict("rmse.H(a, n=5) > 0"));
+    EXPECT_FALSE(verdict("rmse.G(a, n=4) > 0"));
+    EXPECT_FALSE(verdict("furnace(black) > 0"));
+    EXPECT_FALSE(verdict("tail.H(a, n=4) < 1"));
+    m.runs[0].regions[0].tail = Tail{0.3, 0.1, 50};
+    EXPECT_TRUE(verdict("tail.H(a, n=4) < 1", false, m));
+}
+
+}  // namespace
+}  // namespace crescent::inline meters

@@ -1,0 +1,43 @@
+// Films -> numbers. Every sum runs in double over pixels in storage order, so equal films give equal numbers.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "metrics/metrics.h"
+#include "render/film.h"
+
+namespace crescent::inline meters {
+
+/// All meters of one film against the reference, tails apart.
+RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
+    const ShapeMap& shapes);
+
+/// Root mean square of the difference of two Y planes over a box, and of one plane.
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
+double rms(const std::vector<float>& a, int width, const Box& box);
+
+/// How far two references of one exponent are apart in a region, and what that does to the RMSE of any of the films;
+/// the quadrature's part alone where there is no note's. `used` is the one that the meters use.
+ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
+
+/// A meter of the list as it stands in a band: rmse.<region>, ..., fireflies, ...
+struct MeterName {
+    std::string name;
+    const MetricInfo* info;
+};
+/// Those that have a spread over seeds, those of the regions first.
+std::vector<MeterName> meter_names(const Experiment& experiment);
+/// The value of any meter of the list by its name. Throws Bug where there is none.
+double meter_value(const RunMetrics& run, const std::string& meter);
+
+/// Spread over seeds of every meter of every run at the published seed.
+std::vector<SeedSpread> bands(
+    const Experiment& experiment, const std::vector<RunMetrics>& runs, const Published* published);
+
+/// Ladders of RMSE for every arm with at least two rungs, in every region.
+std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMetrics>& runs);
+
+}  // namespace crescent::inline meters

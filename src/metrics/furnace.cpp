@@ -1,0 +1,121 @@
+// A white sky of radiance 1 over one surface seen from straight above: the mean of X is its albedo. One pixel's
+// samples, all kept, for the tail.
+#include "metrics/furnace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/errors.h"
+#include "base/vec.h"
+#include "math/tail.h"
+#include "render/estimator.h"
+#include "render/reference/lobe_albedo.h"
+
+namespace crescent::inline studies {
+
+namespace {
+
+std::optional<Tail> tail_of(std::vector<float> x) {
+    const std::size_t length = tail_length(x.size());
+    std::erase_if(x, [](float v) { return std::isnan(v); });
+    if (length == 0 || x.size() <= length) return {};
+    std::partial_sort(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(length + 1), x.end(), std::greater<>());
+    return fit_tail(std::span<const float>(x.data(), length + 1));
+}
+
+}  // namespace
+
+FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
+    ProgressMonitor& monitor, const OutsideSamplers& outside) {
+    const auto arm = std::find_if(
+        experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
+    ensure(arm != experiment.arms.end(), "a furnace's arm is known");
+    const Shape* shape = experiment.find_shape(plan.shape);
+    ensure(shape != nullptr, "a furnace's shape is known");
+    const bool lobe_only = plan.part == FurnacePart::lobe;
+    const Surface surface = furnace_surface(experiment, *shape, lobe_only);
+    const ShadingPoints sites = furnace_sites(surface, 1);
+    FurnaceDraws out;
+    out.samples.resize(plan.n);
+    const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed,
+        isa, &monitor.stop, out.samples.data());
+    const double n = static_cast<double>(plan.n);
+    FurnaceResult& meter = out.meter;
+    meter.name = plan.name, meter.arm = plan.arm, meter.part = lobe_only ? "lobe" : "combined", meter.n = plan.n;
+    const double rho_d = luminance(surface.rho_d);
+    const double albedo = surface.rho_s > 0 ? lobe_albedo(surface.brdf, surface.s, surface.alpha, 1.0) : 0;
+    meter.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
+    meter.expected = rho_d + surface.rho_s * albedo;
+    meter.se = plan.n > 1 ? std::sqrt(m.spread[0] / (n * (n - 1))) : 0;
+    meter.bad = m.bad[0];
+    return out;
+}
+
+FurnaceResult read_furnace(FurnaceDraws draws) {
+    draws.meter.tail = tail_of(std::move(draws.samples));
+    return draws.meter;
+}
+
+std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
+    ProgressMonitor& monitor, const OutsideSamplers& outside) {
+    std::vector<FurnaceResult> out;
+    for (const FurnacePlan& plan : experiment.furnaces) {
+        out.push_back(read_furnace(draw_furnace(experiment, plan, isa, monitor, outside)));
+        if (published) out.back().published = published->furnace(plan.name);
+        monitor.check();
+    }
+    return out;
+}
+
+// ---- Sites at the origin with the world's axes for a frame, under a fill of radiance 1 and no other light. Each has
+// its own index of a pixel, so its own random numbers.
+
+Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only) {
+    Surface surface = surface_of(shape.material, scene.s());
+    if (lobe_only) surface.rho_d = {};
+    return surface;
+}
+
+ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
+    ShadingPoints sites;
+    sites.lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
+    sites.count = count;
+    const auto fill = [&](std::vector<float>& array, double value) { array.assign(count, static_cast<float>(value)); };
+    for (std::size_t i = 0; i < count; ++i) sites.pixel.push_back(static_cast<std::uint32_t>(i));
+    sites.shape.assign(count, 0);
+    fill(sites.wox, std::sqrt(1 - cos_o * cos_o)), fill(sites.woy, 0), fill(sites.woz, cos_o);
+    fill(sites.s, surface.s), fill(sites.alpha, surface.alpha);
+    fill(sites.diffuse, luminance(surface.rho_d)), fill(sites.rho_s, surface.rho_s);
+    for (auto* zero :
+        {&sites.px, &sites.py, &sites.pz, &sites.ty, &sites.tz, &sites.bx, &sites.bz, &sites.nx, &sites.ny})
+        fill(*zero, 0);
+    for (auto* one : {&sites.tx, &sites.by, &sites.nz}) fill(*one, 1);
+    fill(sites.fill_d, luminance(surface.rho_d) / pi + 0.0);  // never -0
+    fill(sites.fill_s, surface.rho_s);
+    sites.lambert.assign(count, {surface.rho_d[0] / pi, surface.rho_d[1] / pi, surface.rho_d[2] / pi});
+    sites.rho_s_exact.assign(count, surface.rho_s);
+    sites.tint.assign(count, surface.tint);
+    sites.pad();
+    return sites;
+}
+
+// ---- Four million samples over the region's pixels, 256 a pixel at most; of them all the largest.
+
+TailPlan tail_plan(const Box& box) {
+    constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
+    const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
+    const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
+    const std::size_t length = tail_length(pixels * n);
+    return {n, length == 0 ? 0 : length + 1};
+}
+
+std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const Box& box,
+    const std::string& isa, ProgressMonitor& monitor) {
+    const TailPlan plan = tail_plan(box);
+    if (plan.kept == 0) return std::nullopt;
+    std::uint64_t drawn = 0;
+    return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, box, plan.kept, isa, monitor, drawn));
+}
+
+}  // namespace crescent::inline studies

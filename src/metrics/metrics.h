@@ -1,0 +1,155 @@
+// Everything a run measured, as plain data: what the report prints and the assertions read.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "math/tail.h"
+#include "render/film.h"
+#include "render/film_metrics/all.h"
+
+namespace crescent::inline meters {
+
+#define CRESCENT_FIELD(name, Type) MeterOf<Type> name{};
+/// What is measured of one film in one region: a field for each meter of the list.
+struct RegionMetrics {
+    std::string region;
+    CRESCENT_REGION_METRICS(CRESCENT_FIELD)
+    std::uint64_t pixels = 0;  // geometry pixels in the box count alike with misses: |box|
+    std::optional<Tail> tail;  // of the samples X of the region; published seed only
+};
+
+/// All that is measured of one film; of the whole frame a field for each meter of the list.
+struct RunMetrics {
+    RunKey key;
+    std::vector<RegionMetrics> regions;
+    CRESCENT_FRAME_METRICS(CRESCENT_FIELD)
+
+    /// Null where no region has that name.
+    const RegionMetrics* region(const std::string& name) const;
+};
+#undef CRESCENT_FIELD
+
+/// Calls f(name, info, value) for each meter of a region, or of the frame, in the order of the list.
+template <class F> void for_each_metric(const RegionMetrics& of, F&& f) {
+#define CRESCENT_CALL(name, Type) f(std::string_view(#name), Type::info, of.name);
+    CRESCENT_REGION_METRICS(CRESCENT_CALL)
+}
+template <class F> void for_each_metric(const RunMetrics& of, F&& f) {
+    CRESCENT_FRAME_METRICS(CRESCENT_CALL)
+#undef CRESCENT_CALL
+}
+
+/// Spread of one number over seeds: quantiles 5 %, 50 %, 95 % (linear between order statistics).
+struct Band {
+    double q05 = 0, median = 0, q95 = 0;
+    int seeds = 0;
+    bool heavy = false;  // the tail is too heavy for the interval to mean anything
+};
+
+/// One number of one run over all seeds: "rmse.H" of "cosine n=64 s=32".
+struct SeedSpread {
+    RunKey key;           // seed: the published one
+    std::string meter;    // rmse.<region>, ..., fireflies, ...: see meter_names()
+    double measured = 0;  // at the published seed
+    Band band;
+    std::optional<double> published;
+    std::optional<double> published_rank;  // fraction of seeds below the published value
+};
+
+/// Least squares of log RMSE against log N at the published seed: RMSE ~ N^slope. Interval: 5-95 % of the same fit over
+/// seeds, or the fit's own 90 % with one seed. NaN: nothing to say, as where an RMSE is 0 or two rungs have one seed.
+struct Ladder {
+    std::string arm, region;
+    double s = 0;
+    std::vector<std::uint64_t> n;
+    std::vector<double> rmse;  // at the published seed
+    double slope = 0, low = 0, high = 0;
+    bool heavy = false;
+};
+
+/// One white furnace: what an arm reads, and what it should.
+struct FurnaceResult {
+    std::string name, arm, part;
+    std::uint64_t n = 0;
+    double measured = 0, expected = 0;  // Y
+    double se = 0;                      // standard error from the samples
+    std::optional<Tail> tail;
+    std::uint64_t bad = 0;
+    std::optional<double> published;
+};
+
+/// One assertion of the file, judged.
+struct AssertionResult {
+    std::string name;
+    bool pass = false;
+    double measured = 0, bound = 0;
+    std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
+    // Where not, an RMSE in it is no longer than a few errors of the reference: it does not pass.
+    bool reference_good = true;
+    bool cannot_fail = false;  // true of every run that ends: a plate that was drawn has bytes
+    std::string skipped{};     // why it was not judged, so that it neither holds nor fails; "": it was
+    bool failed() const { return !pass && skipped.empty(); }
+};
+
+/// How good the references are in a region at an exponent, and how far the note's is from the quadrature.
+struct ReferenceQuality {
+    double s = 0;
+    std::string region;
+    std::optional<double> rms_difference;      // of Y; here and below: none where the note's was not computed
+    std::optional<double> rms_standard_error;  // what the note's reference says of itself
+    double quadrature_error = 0;               // rms of the quadrature's own stated error
+    std::optional<double>
+        max_relative_rmse_change;  // largest relative change of any arm's RMSE here if the note's reference is used
+    double error_share = 0;        // of the reference that the meters use: its own error over the smallest RMSE here
+};
+
+/// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares
+/// 1/16.
+inline constexpr double most_error_share = 0.25;
+
+/// Every number of a run, as metrics.json holds them.
+struct Metrics {
+    std::vector<RunMetrics> runs;       // every arm, n, s, seed
+    std::vector<std::uint32_t> series;  // every seed of the experiment, of which `runs` may have a part; empty: theirs
+    std::vector<SeedSpread> bands;
+    std::vector<Ladder> ladders;
+    std::vector<FurnaceResult> furnaces;
+    std::vector<ReferenceQuality> references;
+    std::vector<AssertionResult> assertions;
+    std::map<std::string, std::uint64_t> shape_pixels;
+    std::map<std::string, std::string> film_hashes;  // "phong n=64 s=32" -> hash
+    std::uint64_t geometry_pixels = 0;
+    std::optional<std::uint32_t> published_seed;  // of the published figures, where it is known
+
+    /// Null where there is no such run.
+    const RunMetrics* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
+    /// Whether no assertion failed; one that was skipped does not.
+    bool all_hold() const;
+};
+
+// ---- Runs by key, for who looks up many of them.
+
+/// Made once of runs that stay where they are.
+class RunIndex {
+public:
+    /// Of runs that outlive it.
+    explicit RunIndex(const std::vector<RunMetrics>& runs);
+    /// Null where there is no such run.
+    const RunMetrics* find(const RunKey& key) const;
+    /// The seeds that were run, in the order of the runs.
+    const std::vector<std::uint32_t>& seeds() const { return seeds_; }
+
+private:
+    struct Hash {
+        std::size_t operator()(const RunKey& key) const;
+    };
+    std::unordered_map<RunKey, const RunMetrics*, Hash> runs_;
+    std::vector<std::uint32_t> seeds_;
+};
+
+}  // namespace crescent::inline meters

@@ -1,0 +1,111 @@
+// shortest() is std::to_chars(); the others are rounded by {fmt}, figures() to the decimals that the number's power of
+// ten leaves. Code points are counted by the bytes that begin one in UTF-8.
+#include "output/format.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <fmt/format.h>
+
+namespace crescent::inline pages {
+namespace {
+
+bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
+
+/// Where the code point number `count` begins.
+std::size_t offset_of(std::string_view text, std::size_t count) {
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < text.size(); ++i)
+        if (starts_code_point(text[i]) && seen++ == count) return i;
+    return text.size();
+}
+
+}  // namespace
+
+std::string shortest(double x) {
+    if (std::isnan(x)) return "nan";
+    if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, x);
+    return {text, end.ptr};
+}
+
+std::string figures(double x, int digits) {
+    if (!std::isfinite(x)) return shortest(x);
+    if (x == 0) return "0";
+    const double size = std::fabs(x);
+    if (size < 1e-4 || size >= 1e9) return fmt::format("{:.{}e}", x, std::max(0, digits - 2));
+    const std::string rounded = fmt::format("{:.{}e}", size, digits - 1);  // 9.99996 is 1.000e+01 to four figures
+    const int power = std::stoi(rounded.substr(rounded.find('e') + 1));
+    return fmt::format("{:.{}f}", x, size >= 1000 || power >= 3 ? 0 : std::max(0, digits - 1 - power));
+}
+
+std::string compact(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : shortest(x); }
+
+std::string figures_of(std::string_view meter, double x) {
+    if (meter == "fireflies" && std::isfinite(x))
+        return fmt::format("{}", 2 * x == std::floor(2 * x) ? x : std::round(x));
+    return figures(x);
+}
+
+std::string percent(double fraction, int digits) {
+    if (!std::isfinite(fraction)) return shortest(fraction);
+    return fmt::format("{:.{}g} %", 100 * fraction, digits);
+}
+
+std::size_t width(std::string_view utf8) {
+    return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), starts_code_point));
+}
+
+std::string clip(std::string_view utf8, std::size_t columns) {
+    const std::size_t wide = width(utf8);
+    if (wide <= columns) return std::string(utf8);
+    if (columns == 0) return {};
+    const std::size_t head = (columns - 1) / 2, tail = columns - 1 - head;
+    return std::string(utf8.substr(0, offset_of(utf8, head))) + "…" +
+        std::string(utf8.substr(offset_of(utf8, wide - tail)));
+}
+
+std::string left(std::string_view utf8, std::size_t columns) {
+    const std::string text = clip(utf8, columns);
+    return text + std::string(columns - width(text), ' ');
+}
+
+std::string right(std::string_view utf8, std::size_t columns) {
+    const std::string text = clip(utf8, columns);
+    return std::string(columns - width(text), ' ') + text;
+}
+
+std::string plural(std::uint64_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+// ---- Finite doubles go in as JSON numbers, others as the words of shortest(); nlohmann::json writes them.
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(shortest(x)); }
+
+Json numbers(const std::vector<double>& all) {
+    Json out = Json::array();
+    for (const double x : all) out.push_back(number(x));
+    return out;
+}
+
+std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+// ---- Three bytes make 24 bits and four digits; one or two left over make two or three digits, and "=" fills up.
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out((bytes.size() + 2) / 3 * 4, '=');
+    char* to = out.data();
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
+        const unsigned word = bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
+        for (std::size_t k = 0; k <= left; ++k) to[k] = digits[word >> (18 - 6 * k) & 63];
+        to += 4;
+    }
+    return out;
+}
+
+}  // namespace crescent::inline pages

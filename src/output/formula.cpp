@@ -1,0 +1,231 @@
+// Recursive descent turns TeX into a tree of nodes; the tree is written out as MathML elements, or as Pango markup with
+// brackets where a fraction on one line needs them. Values are put into the tree in place of letters.
+#include "output/formula.h"
+
+#include <cctype>
+#include <fmt/format.h>
+#include <utility>
+#include <vector>
+
+#include "base/errors.h"
+
+namespace crescent::formula {
+
+namespace {
+
+/// A piece of a formula. Its parts: of a row all, of a fraction two, of a root one, of a script base, sub and sup.
+struct Node {
+    Kind kind = Kind::row;
+    std::string text{};  // UTF-8
+    std::vector<Node> parts{};
+    bool empty() const { return kind == Kind::row && parts.empty(); }
+};
+
+class Reader {
+public:
+    explicit Reader(std::string_view tex) : tex_(tex) {}
+
+    /// Up to `end` (0: to the end of the text), which is taken.
+    Node row(char end = 0) {
+        Node out;
+        for (;;) {
+            while (at_ < tex_.size() && tex_[at_] == ' ') ++at_;
+            if (at_ == tex_.size()) {
+                ensure(end == 0, "every bracket of a formula is closed");
+                return out;
+            }
+            if (end == '|' ? starts("\\rvert") : end != 0 && tex_[at_] == end) {
+                at_ += end == '|' ? 6 : 1;
+                return out;
+            }
+            out.parts.push_back(scripted(atom()));
+        }
+    }
+
+private:
+    bool starts(std::string_view with) const { return tex_.substr(at_).starts_with(with); }
+
+    Node scripted(Node base) {
+        Node sub, sup;
+        while (at_ < tex_.size() && (tex_[at_] == '_' || tex_[at_] == '^')) {
+            const bool low = tex_[at_++] == '_';
+            (low ? sub : sup) = atom();
+        }
+        if (sub.empty() && sup.empty()) return base;
+        return {Kind::script, "", {std::move(base), std::move(sub), std::move(sup)}};
+    }
+
+    Node atom() {
+        ensure(at_ < tex_.size(), "a formula does not end where a part is due");
+        const char c = tex_[at_++];
+        const auto is = [&](int (*what)(int)) { return what(static_cast<unsigned char>(c)) != 0; };
+        if (c == '{') return row('}');
+        if (c == '(') return {Kind::paren, "", {row(')')}};
+        if (c == '\\') return command();
+        if (is(std::isalpha)) return {Kind::letter, std::string(1, c), {}};
+        if (is(std::isdigit)) {
+            std::string digits(1, c);
+            while (at_ < tex_.size() && (std::isdigit(static_cast<unsigned char>(tex_[at_])) || tex_[at_] == '.'))
+                digits += tex_[at_++];
+            return {Kind::number, digits, {}};
+        }
+        ensure(signs.find(c) != signs.npos, "a formula has no other signs");
+        return {Kind::sign, c == '-' ? "−" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c), {}};
+    }
+
+    Node command() {
+        if (tex_[at_] == ',') return ++at_, Node{Kind::space, "", {}};
+        std::string_view name = tex_.substr(at_);
+        std::size_t length = 0;
+        while (length < name.size() && std::isalpha(static_cast<unsigned char>(name[length]))) ++length;
+        name = name.substr(0, length), at_ += length;
+        while (at_ < tex_.size() && tex_[at_] == ' ') ++at_;
+        if (name == "frac") {
+            Node top = atom(), bottom = atom();
+            return {Kind::fraction, "", {std::move(top), std::move(bottom)}};
+        }
+        if (name == "sqrt") return {Kind::root, "", {atom()}};
+        if (name == "lvert") return {Kind::bars, "", {row('|')}};
+        if (name == "mathrm") {
+            const std::size_t end = tex_.find('}', at_);
+            Node word{Kind::word, std::string(tex_.substr(at_ + 1, end - at_ - 1)), {}};
+            return at_ = end + 1, word;
+        }
+        for (const Word& word : words)
+            if (word.name == name) return {word.kind, std::string(word.text), {}};
+        throw Bug(std::source_location::current(), "a formula has no word \\" + std::string(name));
+    }
+
+    std::string_view tex_;
+    std::size_t at_ = 0;
+};
+
+std::string element(std::string_view tag, const std::string& inside) {
+    return fmt::format("<{0}>{1}</{0}>", tag, inside);
+}
+
+std::string as_mathml(const Node& n) {
+    const auto part = [&](std::size_t k) { return as_mathml(n.parts[k]); };
+    switch (n.kind) {
+        case Kind::letter: return element("mi", n.text);
+        case Kind::number: return element("mn", n.text);
+        case Kind::sign: return element("mo", n.text == "·" ? "⋅" : n.text);
+        case Kind::word: return "<mi mathvariant=\"normal\">" + n.text + "</mi>";
+        case Kind::space: return "<mspace width=\"0.17em\" />";
+        case Kind::paren: return element("mrow", "<mo>(</mo>" + part(0) + "<mo>)</mo>");
+        case Kind::bars:
+            return element("mrow",
+                "<mo form=\"prefix\" stretchy=\"false\">|</mo>" + part(0) +
+                    "<mo form=\"postfix\" stretchy=\"false\">|</mo>");
+        case Kind::fraction: return element("mfrac", part(0) + part(1));
+        case Kind::root: return element("msqrt", part(0));
+        case Kind::script:
+            if (n.parts[2].empty()) return element("msub", part(0) + part(1));
+            if (n.parts[1].empty()) return element("msup", part(0) + part(2));
+            return element("msubsup", part(0) + part(1) + part(2));
+        case Kind::row: break;
+    }
+    if (n.parts.size() == 1) return part(0);
+    std::string inside;
+    for (const Node& each : n.parts) inside += as_mathml(each);
+    return element("mrow", inside);
+}
+
+bool is_sign(const Node& n, std::string_view text) { return n.kind == Kind::sign && n.text == text; }
+
+std::string as_pango(const Node& n);
+
+/// Numerator or denominator on one line: in brackets where what stands beside it would bind closer.
+std::string beside_slash(const Node& n, bool below) {
+    const Node& only = n.kind == Kind::row && n.parts.size() == 1 ? n.parts[0] : n;
+    bool brackets = below && only.kind == Kind::row && only.parts.size() > 1;
+    if (only.kind == Kind::row)
+        for (const Node& each : only.parts) brackets = brackets || is_sign(each, "+") || is_sign(each, "−");
+    const std::string line = as_pango(only);
+    return brackets ? "(" + line + ")" : line;
+}
+
+std::string row_as_pango(const Node& n) {
+    const bool close = n.parts.size() == 3 && is_sign(n.parts[1], "+") && n.parts[2].kind == Kind::number;  // s+1
+    std::string out;
+    for (std::size_t k = 0; k < n.parts.size(); ++k) {
+        const Node& each = n.parts[k];
+        const bool wide =
+            each.kind == Kind::sign && each.text != "·" && each.text != "," && each.text != "/" && k > 0 && !close;
+        const bool after_word = k > 0 && n.parts[k - 1].kind == Kind::word && each.kind != Kind::paren;
+        if (wide || (after_word && each.kind != Kind::sign)) out += ' ';
+        out += as_pango(each);
+        if (wide || is_sign(each, ",")) out += ' ';
+    }
+    return out;
+}
+
+std::string as_pango(const Node& n) {
+    switch (n.kind) {
+        case Kind::space: return " ";
+        case Kind::paren: return "(" + as_pango(n.parts[0]) + ")";
+        case Kind::bars: return "|" + as_pango(n.parts[0]) + "|";
+        case Kind::fraction: return beside_slash(n.parts[0], false) + "/" + beside_slash(n.parts[1], true);
+        case Kind::root: return "√(" + as_pango(n.parts[0]) + ")";
+        case Kind::script: {
+            std::string out = as_pango(n.parts[0]);
+            const bool positive_part = is_sign(n.parts[1], "+");  // (x)_+ : plates say where p is 0 by the picture
+            if (!n.parts[1].empty() && !positive_part) out += element("sub", as_pango(n.parts[1]));
+            if (!n.parts[2].empty()) out += element("sup", as_pango(n.parts[2]));
+            return out;
+        }
+        case Kind::row: return row_as_pango(n);
+        default: return n.text;
+    }
+}
+
+void put_in(Node& n, const Value& value) {
+    const auto is_letter = [&](const Node& each) {
+        return each.kind == Kind::letter && each.text == std::string_view(&value.letter, 1);
+    };
+    for (std::size_t k = 0; k + 2 < n.parts.size() && n.kind == Kind::row; ++k)
+        if (is_letter(n.parts[k]) && is_sign(n.parts[k + 1], "+") && n.parts[k + 2].text == "1") {
+            n.parts[k] = {Kind::number, value.plus_one, {}};
+            n.parts.erase(n.parts.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                n.parts.begin() + static_cast<std::ptrdiff_t>(k) + 3);
+        }
+    for (std::size_t k = 1; k < n.parts.size() && n.kind == Kind::row; ++k)  // 2s is 2·40, and not 240
+        if (is_letter(n.parts[k]) && n.parts[k - 1].kind == Kind::number)
+            n.parts.insert(n.parts.begin() + static_cast<std::ptrdiff_t>(k), Node{Kind::sign, "·", {}});
+    for (Node& each : n.parts) put_in(each, value);
+    if (is_letter(n)) n = {Kind::number, value.number, {}};
+}
+
+}  // namespace
+
+namespace {
+
+Node read(std::string_view tex) {
+    if (!is_formula(tex))
+        throw Bug(std::source_location::current(),
+            "a formula that is not in the words of base/formula_words.h: " + std::string(tex));
+    return Reader(tex).row();
+}
+
+}  // namespace
+
+std::string mathml(std::string_view tex) { return as_mathml(read(tex)); }
+
+std::string pango(std::string_view tex, const Value& value) {
+    Node all = read(tex);
+    if (value.letter != 0) put_in(all, value);
+    return as_pango(all);
+}
+
+std::string html(std::string_view words_and_tex) {
+    std::string out;
+    for (bool tex = false;; tex = !tex) {
+        const std::size_t end = words_and_tex.find('$');
+        const std::string_view part = words_and_tex.substr(0, end);
+        out += tex ? "<math>" + mathml(part) + "</math>" : std::string(part);
+        if (end == std::string_view::npos) return out;
+        words_and_tex.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace crescent::formula

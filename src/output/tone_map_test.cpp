@@ -1,0 +1,93 @@
+// sRGB against values of the standard, bytes against the rounded encoding; Neutral against values worked out from its
+// specification, and that greys rise and hues stay; photographs of NaN, infinite and negative radiance.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "output/tone_map.h"
+
+namespace crescent::inline color {
+namespace {
+
+TEST(Srgb, EncodesTheValuesOfTheStandard) {
+    EXPECT_NEAR(srgb_encode(0.5), 0.735356983, 1e-9);
+    EXPECT_NEAR(srgb_encode(0.18), 0.461356130, 1e-9);
+    EXPECT_NEAR(srgb_decode(0.5), 0.214041140, 1e-9);
+    EXPECT_DOUBLE_EQ(srgb_encode(0), 0);
+    EXPECT_DOUBLE_EQ(srgb_encode(1), 1);
+}
+
+TEST(Srgb, ItsTwoPiecesMeetAt0031308) {
+    double below = srgb_encode(0.0031308), above = srgb_encode(std::nextafter(0.0031308, 1.0));
+    EXPECT_NEAR(below, 0.0404499, 1e-7);
+    EXPECT_NEAR(above, below, 1e-7);
+}
+
+TEST(Srgb, DecodingUndoesEncodingAndBothClamp) {
+    for (int i = 0; i <= 1000; ++i) EXPECT_NEAR(srgb_decode(srgb_encode(i / 1000.0)), i / 1000.0, 1e-7);
+    EXPECT_DOUBLE_EQ(srgb_encode(-3), 0);
+    EXPECT_DOUBLE_EQ(srgb_encode(3), 1);
+}
+
+TEST(Srgb, AByteIsTheRoundedEncoding) {
+    for (int i = -10; i <= 100010; ++i) {
+        double x = i / 100000.0;
+        ASSERT_EQ(int(srgb_byte(x)), int(std::lround(255 * srgb_encode(x)))) << x;
+    }
+    EXPECT_EQ(srgb_byte(std::nan("")), 0);
+}
+
+TEST(Neutral, BelowTheStartOfCompressionItTakesAwayFourPerCent) {
+    Rgb out = neutral({0.5, 0.3, 0.2});
+    EXPECT_DOUBLE_EQ(out[0], 0.46);
+    EXPECT_DOUBLE_EQ(out[1], 0.26);
+    EXPECT_DOUBLE_EQ(out[2], 0.16);
+    EXPECT_NEAR(neutral({0.8, 0.8, 0.8})[0], 0.76, 1e-12);
+}
+
+TEST(Neutral, TheToeIsAParabolaThatMeetsTheLineAtEightPerCent) {
+    EXPECT_DOUBLE_EQ(neutral({0, 0, 0})[0], 0);
+    EXPECT_NEAR(neutral({0.04, 0.04, 0.04})[0], 0.01, 1e-12);  // 6.25 x^2
+    EXPECT_NEAR(neutral({0.08, 0.08, 0.08})[0], 0.04, 1e-12);
+    EXPECT_NEAR(neutral({0.0799999, 0.08, 0.08})[1], 0.04, 1e-6);
+}
+
+TEST(Neutral, CompressesAsTheSpecificationComputes) {
+    EXPECT_NEAR(neutral({1, 1, 1})[1], 1 - 0.0576 / 0.44, 1e-12);
+    Rgb red = neutral({1, 0, 0});  // new peak 0.88, white by 1 - 1/(0.15 * 0.12 + 1)
+    EXPECT_NEAR(red[0], 0.88, 1e-12);
+    EXPECT_NEAR(red[1], 0.88 * (1 - 1 / 1.018), 1e-12);
+    EXPECT_DOUBLE_EQ(red[1], red[2]);
+}
+
+TEST(Neutral, GreysRiseTowardsOneAndNeverReachPastIt) {
+    double last = -1;
+    for (double x = 0; x < 1000; x = x * 1.01 + 1e-3) {
+        double y = neutral({x, x, x})[0];
+        ASSERT_GT(y, last) << x;
+        ASSERT_LT(y, 1) << x;
+        last = y;
+    }
+    EXPECT_GT(neutral({1e6, 0, 0})[1], 0.999);  // far above white every colour is white
+}
+
+TEST(Neutral, KeepsTheHue) {
+    Rgb in{4.0, 2.0, 0.5}, out = neutral(in);
+    EXPECT_NEAR((out[1] - out[2]) / (out[0] - out[2]), (in[1] - in[2]) / (in[0] - in[2]), 1e-12);
+}
+
+TEST(Photograph, IsExposureThenNeutralThenSrgb) {
+    Srgb8 c = photograph({0.25, 0.15, 0.1}, 2);
+    EXPECT_EQ(c[0], std::lround(255 * srgb_encode(0.46)));
+    EXPECT_EQ(c[2], std::lround(255 * srgb_encode(0.16)));
+}
+
+TEST(Photograph, ShowsWhatIsNotANumberAndTakesNegativeLightForNone) {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(photograph({0, std::nan(""), 0}, 1), not_a_number_colour);
+    EXPECT_EQ(photograph({0, 0, inf}, 1), not_a_number_colour);
+    EXPECT_EQ(photograph({-1, -1, -1}, 1), (Srgb8{0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace crescent::inline color

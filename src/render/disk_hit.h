@@ -1,0 +1,104 @@
+// Which light a direction meets first, and whether something stands before it. Local frame for the disks, world
+// for the occluders; templates over the number type, the same bits for every pack width.
+#pragma once
+
+#include "render/shading_points.h"
+#include "samplers/sampler.h"
+
+namespace crescent::inline estimator {
+
+/// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where no emitting side does,
+/// r2 < 0 and nothing meets it.
+template <class F> struct FacingDisk {
+    Vec3<F> c, n;  // from the surface to the centre; the normal
+    F k, r2;       // c.n; radius squared
+
+    FacingDisk() = default;
+    explicit FacingDisk(const LocalDisk<F>& disk) {
+        const F sign = select(disk.along > number<F>(0), number<F>(-1), number<F>(1));
+        c = disk.to_center;
+        n = disk.normal * sign;
+        k = disk.along * sign;
+        r2 = select(disk.faces(), sqr(disk.radius), number<F>(-1));
+    }
+};
+
+/// Does w meet the disk? With v = w.n the ray meets its plane at (k/v) w, so |k w - v c| <= r |v| needs no division;
+/// the distance, where it does, is k/v.
+template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, Vec3<F> w, F& v) {
+    v = dot(w, disk.n);
+    const Vec3<F> off = w * disk.k - disk.c * v;
+    return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
+}
+
+/// As meets_disk for what an arm drew: where it aimed at disk k it knows whether it meets it. `alone`: there is no
+/// other.
+template <class F, class D>
+CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
+    if constexpr (requires { drawn.met; }) {
+        if (alone) {
+            v = dot(drawn.wi, disk.n);
+            return drawn.met & (v < number<F>(0));
+        }
+        const auto tested = meets_disk(disk, drawn.wi, v), own = drawn.disk == number<F>(static_cast<double>(k));
+        return (own & drawn.met & (v < number<F>(0))) | (tested & !own);
+    } else {
+        return meets_disk(disk, drawn.wi, v);
+    }
+}
+
+/// As meets_disk for a light that is no disk, at index k of all; t: how far it is.
+template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, const D& drawn, std::size_t k, F& t) {
+    MaskOf<F> met = drawn.wi.x > drawn.wi.x, shines = met;
+    with_light_kind(light.kind, [&]<class Kind>() {
+        met = Kind::meets(light, drawn.wi, t);
+        shines = Kind::shines(light);
+    });
+    if constexpr (requires { drawn.met; }) {
+        const auto own = drawn.disk == number<F>(static_cast<double>(k));
+        return (own & drawn.met & shines) | (met & !own);
+    }
+    return met;
+}
+
+/// Disks on one ray: the nearer is met, and of two as near as rounding can tell the one that stands first in the file.
+template <class F> CRESCENT_INLINE MaskOf<F> is_nearer(F t, F than) { return t < than * number<F>(1 - 1e-5); }
+
+/// A cone from the surface that holds a disk: a first, cheap question to a direction. It never excludes one that meets
+/// the disk, for directions that are unit to 1e-6.
+template <class F> struct DiskCone {
+    Vec3<F> axis;
+    F cos;  // of its half-angle, less what rounding can do; 2 where no emitting side faces the surface
+
+    DiskCone() = default;
+    explicit DiskCone(const FacingDisk<F>& disk) { *this = DiskCone(disk.c, disk.r2, !(disk.r2 < number<F>(0))); }
+    /// Of a ball about c.
+    DiskCone(Vec3<F> c, F r2, MaskOf<F> shines) {
+        const F one = number<F>(1), d2 = dot(c, c);
+        const auto outside = d2 > r2;
+        axis = c * (one / sqrt(larger(d2, number<F>(1e-30))));
+        cos = select(
+            outside, sqrt(larger(one - r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5), number<F>(-2));
+        cos = select(shines, cos, number<F>(2));
+    }
+    CRESCENT_INLINE MaskOf<F> holds(Vec3<F> w) const { return dot(w, axis) > cos; }
+};
+
+template <class F> Vec3<F> broadcast(const std::array<float, 3>& a) { return {F(a[0]), F(a[1]), F(a[2])}; }
+
+/// Does the body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from
+/// either end it does not: a body that touches the surface point or the light hides nothing there.
+template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
+    const F lo = distance * number<F>(1e-5), hi = distance * number<F>(1 - 1e-5);
+    const PackedBody<F> packed = {
+        broadcast<F>(body.a), broadcast<F>(body.b), broadcast<F>(body.c), F(body.radius), F(body.offset)};
+    MaskOf<F> out = lo > hi;
+    const auto among = [&]<class... Kind>(KindList<Kind...>) {
+        std::size_t kind = 0;
+        ((kind++ == body.kind ? void(out = Kind::blocks(packed, o, d, lo, hi)) : void()), ...);
+    };
+    among(Bodies{});
+    return out;
+}
+
+}  // namespace crescent::inline estimator

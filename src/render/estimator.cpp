@@ -1,0 +1,319 @@
+// A kernel gives sums over a tile's sites for each rung; they become pixels here. Tiles go to threads in any order, and
+// what they write does not meet: the same bits however many threads there are.
+#include "render/estimator.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "base/vec.h"
+
+namespace crescent::inline estimator {
+
+namespace {
+
+void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
+    std::vector<std::byte> memory(memory_of_light * call.sites->light_count());
+    call.memory = memory.data();
+    if (arm.outside) return estimate_outside(*arm.outside, call);
+    const int index = arm_index(arm.sampler);
+    ensure(index >= 0, "the parser lets only known samplers through");
+    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.sites->lobe + 1)](call);
+}
+
+/// Sums of one site over its film's n samples -> the film's pixel.
+class FilmResolve {
+public:
+    FilmResolve(const Scene& scene, const ShadingPoints& sites, const Moments& m, Film& film)
+        : scene_(scene), sites_(sites), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
+
+    void pixel(std::size_t i) const {
+        const std::size_t at = sites_.pixel[i];
+        const Rgb mean = radiance(i);
+        const double y = luminance(mean);
+        film_.r[at] = static_cast<float>(mean[0]);
+        film_.g[at] = static_cast<float>(mean[1]);
+        film_.b[at] = static_cast<float>(mean[2]);
+        film_.y[at] = static_cast<float>(y);
+        film_.second_moment[at] = static_cast<float>(over_n(m_.spread[i]) + y * y);
+        film_.var[at] = film_.n > 1 ? static_cast<float>(m_.spread[i] / (n_ * (n_ - 1))) : 0.0f;
+        film_.largest[at] = m_.largest[i];
+        film_.horizon[at] = m_.horizon[i];
+        film_.light_hits[at] = m_.hits[i];
+    }
+
+private:
+    /// x / n: by a product, which is faster, where that has the same bits.
+    double over_n(double x) const { return is_power_of_2_ ? x * inverse_n_ : x / n_; }
+
+    Rgb radiance(std::size_t i) const {
+        double fill_g = m_.g[i], fill_lobe = m_.g_lobe[i];
+        Rgb diffuse{}, lobe{};
+        for (std::size_t k = 0; k < m_.light_g.size(); ++k) {
+            fill_g -= m_.light_g[k][i];
+            fill_lobe -= m_.light_g_lobe[k][i];
+            for (std::size_t c = 0; c < 3; ++c) {
+                diffuse[c] += scene_.lights()[k].radiance[c] * m_.light_g[k][i];
+                lobe[c] += scene_.lights()[k].radiance[c] * m_.light_g_lobe[k][i];
+            }
+        }
+        Rgb out{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
+            lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
+            const double lobes = sites_.rho_s_exact[i] * (sites_.tint[i][c] * lobe[c]);
+            out[c] = over_n(sites_.lambert[i][c] * diffuse[c] + lobes);
+        }
+        return out;
+    }
+
+    const Scene& scene_;
+    const ShadingPoints& sites_;
+    const Moments& m_;
+    Film& film_;
+    double n_, inverse_n_ = 1 / n_;
+    bool is_power_of_2_ = std::has_single_bit(film_.n);
+};
+
+}  // namespace
+
+void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film) {
+    const FilmResolve finish(scene, sites, moments, film);
+    for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
+}
+
+void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
+    const std::function<double(std::size_t)>& work) {
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
+        if (monitor.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
+        const double units = work(k);
+        if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
+        monitor.advance(units);
+        if (checkpoint) checkpoint->add(k, units);
+    });
+    monitor.check();
+}
+
+std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, const std::vector<std::uint64_t>& n,
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
+    const Image& image = view.scene().image();
+    const std::vector<TileBox>& tiles = view.tiles();
+    std::vector<Film> films(n.size());
+    parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
+        films[r] = Film(image.width, image.height, n[r]);
+        films[r].directions = directions_per_sample(arm.sampler);
+    });
+    std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
+    if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));
+    PerThread<std::vector<Moments>> scratch(
+        [&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
+    for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
+        std::vector<Moments>& moments = scratch.local();
+        double samples = 0;
+        const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
+        for (const ShadingPoints& sites : *groups) {
+            for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
+            run_kernel(isa, arm, {&sites, n, seed, moments, &monitor.stop, nullptr});
+            for (std::size_t r = 0; r < n.size(); ++r) {
+                resolve_film(view.scene(), sites, moments[r], films[r]);
+                bad[r][k] += std::accumulate(moments[r].bad.begin(),
+                    moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
+            }
+            samples += static_cast<double>(sites.count) * static_cast<double>(n.back());
+        }
+        return samples;
+    });
+    for (std::size_t r = 0; r < n.size(); ++r)
+        films[r].invalid = std::accumulate(bad[r].begin(), bad[r].end(), std::uint64_t{0});
+    return films;
+}
+
+ShapeMap shape_map(const Scene& scene) {
+    const Image& image = scene.image();
+    ShapeMap map{image.width, image.height, {}};
+    map.shape.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), -1);
+    parallel_for(0, image.height, [&](int j) {
+        for (int i = 0; i < image.width; ++i)
+            if (const auto hit = scene.primary(i, j))
+                map.shape[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) +
+                    static_cast<std::size_t>(i)] = static_cast<std::int16_t>(hit->shape);
+    });
+    return map;
+}
+
+Moments estimate_sites(const ShadingPoints& sites, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
+    const std::string& isa, const std::atomic<bool>* stop, float* samples) {
+    std::array<Moments, 1> moments;
+    moments[0].resize(sites.pixel.size(), sites.light_count());
+    const std::array<std::uint64_t, 1> rungs = {n};
+    run_kernel(isa, arm, {&sites, rungs, seed, moments, stop, samples});
+    return std::move(moments[0]);
+}
+
+namespace {
+
+/// The largest `count` of what many threads give, whatever their order.
+class Largest {
+public:
+    explicit Largest(std::size_t count) : count_(count) {}
+
+    /// Changes `samples`. NaN is counted by the kernels and has no size.
+    void add(std::vector<float>& samples) {
+        const float least = least_.load(std::memory_order_relaxed);
+        const std::size_t drawn = samples.size();
+        std::erase_if(samples, [least](float x) { return !(x > least); });
+        const Guard guard(lock_);
+        drawn_ += drawn;
+        all_.insert(all_.end(), samples.begin(), samples.end());
+        if (all_.size() <= count_) return;
+        const auto last = all_.begin() + static_cast<std::ptrdiff_t>(count_) - 1;
+        std::nth_element(all_.begin(), last, all_.end(), std::greater<>());
+        all_.resize(count_);
+        least_.store(all_.back(), std::memory_order_relaxed);
+    }
+
+    std::uint64_t drawn() const { return drawn_; }
+    std::vector<float> in_order() && {
+        std::sort(all_.begin(), all_.end(), std::greater<>());
+        return std::move(all_);
+    }
+
+private:
+    std::size_t count_;
+    Mutex lock_;
+    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // nothing up to this is among them any more
+    std::vector<float> all_;
+    std::uint64_t drawn_ = 0;
+};
+
+}  // namespace
+
+std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
+    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn) {
+    std::vector<TileBox> tiles;
+    for (const TileBox& t : tiles_of(box.width(), box.height()))
+        tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
+    Largest largest(count);
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
+        for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
+            if (monitor.stop.load(std::memory_order_relaxed)) return;
+            std::vector<float> samples(sites.count * n);
+            estimate_sites(sites, arm, n, seed, isa, &monitor.stop, samples.data());
+            largest.add(samples);
+        }
+    });
+    monitor.check();
+    drawn = largest.drawn();
+    return std::move(largest).in_order();
+}
+
+}  // namespace crescent::inline estimator
+
+// ---- The draws of many sites are fetched in one batch, and then handed one after another to the scalar kernel as if
+// an arm had drawn them. A draw that cannot be used becomes a NaN pdf, which kernels count as bad.
+
+#define CRESCENT_ISA scalar
+#include "render/kernel_body.h"
+
+namespace crescent::inline estimator {
+
+namespace {
+
+/// Rows that are fetched at once, which stay in a core's cache; a site of more samples is fetched in parts. The same
+/// for any number of threads.
+constexpr std::uint64_t longest_batch = 8192;
+
+/// The arm of the kernels: hands out what was drawn, sample after sample.
+template <class F> struct Prefetched {
+    mutable const Drawn<F>* next;
+    explicit Prefetched(const Drawn<F>* first) : next(first) {}
+    Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> /*u*/) const { return *next++; }
+};
+
+/// Usable are a direction of unit length to 1e-4 and a pdf that is above 0 and finite also in single precision, in
+/// which the estimate is made. pdf 0: nothing was drawn.
+Drawn<float> usable(const Vec3<double>& wi, double p) {
+    if (p == 0) return {{0, 0, 1}, {0}};
+    const double length2 = wi.x * wi.x + wi.y * wi.y + wi.z * wi.z;
+    const auto pdf = static_cast<float>(p);
+    const bool good = std::fabs(length2 - 1) <= 2e-4 && pdf > 0 && pdf <= std::numeric_limits<float>::max();
+    if (!good) return {{0, 0, 1}, {std::numeric_limits<float>::quiet_NaN()}};
+    return {{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}, {pdf}};
+}
+
+/// Appends the random numbers of `n` samples of a pixel from `first` on, `count` a sample: the first two are those of
+/// every arm, the rest come from blocks that no arm uses.
+void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, std::uint64_t n, std::size_t count,
+    std::vector<double>& u) {
+    const std::size_t from = u.size();
+    u.resize(from + n * count);
+    for (std::size_t k = 0; k < count; k += 2) {
+        const auto block = static_cast<std::uint32_t>(k == 0 ? 0 : k / 2 + 1);
+        double* row = &u[from + k];
+        const auto put = [&](std::uint32_t x, std::uint32_t y) {
+            row[0] = static_cast<double>(unit_float<float>(x));
+            if (k + 1 < count) row[1] = static_cast<double>(unit_float<float>(y));
+            row += count;
+        };
+        for (std::uint64_t j = first; j < first + n;) {  // as crescent::draw(), two samples from one hash
+            const auto h = draws<std::uint32_t>(pixel, static_cast<std::uint32_t>(j >> 1), block, seed);
+            if (!(j & 1)) put(h.x, h.y), ++j;
+            if (j < first + n) put(h.z, h.w), ++j;
+        }
+    }
+}
+
+using SiteKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
+
+template <class L> void estimate_site(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
+    scalar::LightRoom<float> room(*call.sites, call.memory);
+    scalar::estimate_pack<Prefetched<float>, L, scalar::Lights<float>, float>(
+        call, at, room, [&](const ShadingPoint<float>&) { return Prefetched<float>(drawn); });
+}
+
+/// [lobe + 1]
+template <template <class> class... L> constexpr std::array<SiteKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
+    return {estimate_site<NoLobe<float>>, estimate_site<L<float>>...};
+}
+
+}  // namespace
+
+void estimate_outside(const ExternalSampler& sampler, const KernelCall& call) {
+    const ShadingPoints& sites = *call.sites;
+    const std::uint64_t n = call.rungs.back();
+    const auto numbers = static_cast<std::size_t>(sampler.numbers());
+    const SiteKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(sites.lobe + 1)];
+    const std::uint64_t sites_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
+    std::vector<OutsideRun> runs;
+    std::vector<double> u, pdf;
+    std::vector<Vec3<double>> wi;
+    std::vector<Drawn<float>> drawn;
+    for (std::size_t i = 0; i < sites.count; i += sites_a_batch) {
+        const std::size_t end = std::min<std::size_t>(sites.count, i + sites_a_batch);
+        drawn.clear();
+        for (std::uint64_t first = 0; first < n; first += longest_batch) {
+            if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
+            const std::uint64_t count = std::min(longest_batch, n - first);
+            runs.clear(), u.clear();
+            for (std::size_t at = i; at < end; ++at) {
+                const Vec3<double> wo{double(sites.wox[at]), double(sites.woy[at]), double(sites.woz[at])};
+                runs.push_back({wo,
+                    {double(sites.s[at]), double(sites.alpha[at]), double(sites.diffuse[at]), sites.rho_s_exact[at]},
+                    static_cast<std::size_t>(count)});
+                add_numbers(sites.pixel[at], call.seed, first, count, numbers, u);
+            }
+            wi.resize(runs.size() * count), pdf.resize(wi.size());
+            sampler.draw({runs, u}, {wi, pdf});
+            for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
+        }
+        for (std::size_t at = i; at < end; ++at) kernel(call, at, drawn.data() + (at - i) * n);
+    }
+}
+
+}  // namespace crescent::inline estimator

@@ -1,0 +1,25 @@
+// Films as OpenEXR: one file an arm and exponent, one part a rung, 32-bit float, scanlines top-down as viewers expect.
+//   R G B            mean radiance, W/(sr m^2), linear Rec.709
+//   luminance.Y      mean luminance X;  second_moment.Y  mean of X^2;  variance.Y  variance of the mean of X
+//   largest.Y        largest single X;  horizon.Y, hits.Y  counts (unsigned)
+// A reference has R G B, luminance.Y and error.Y (its own standard error of Y).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/film.h"
+
+namespace crescent::inline films {
+
+/// What goes into the header as string attributes: (name, text).
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes films (part name, film) to one file. Throws OutputError.
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const Film*>>& parts,
+    const Attributes& attributes);
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
+    const Attributes& attributes);
+
+}  // namespace crescent::inline films

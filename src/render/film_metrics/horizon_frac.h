@@ -1,0 +1,22 @@
+// horizon_frac: of the directions drawn at geometry pixels, two a sample for an arm of two techniques, the part that
+// falls under the horizon.
+#pragma once
+
+#include "render/film_metrics/measure.h"
+
+namespace crescent::inline measures {
+
+struct HorizonFracMeter {
+    static constexpr MetricInfo info = {
+        .means = "part of the directions drawn at geometry pixels that fall under the horizon",
+        .label = "horizon share"};
+    double under = 0, geometry = 0;
+    void add(const FilmPixel& p, const FilmFacts&) {
+        if (p.geometry) ++geometry, under += p.horizon;
+    }
+    double value(const FilmFacts& f) const {
+        return geometry > 0 ? under / (geometry * static_cast<double>(f.n * f.directions)) : 0;
+    }
+};
+
+}  // namespace crescent::inline measures

@@ -1,0 +1,42 @@
+// What a meter sees of a film, and what it says of itself. A meter takes the pixels of a box, row by row from the
+// bottom-left, and then tells its value; its sums run in double, so that equal films give equal numbers.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+namespace crescent::inline measures {
+
+/// One pixel of a film beside the reference. Y in W/(sr m^2).
+struct FilmPixel {
+    double y = 0, reference = 0;
+    double var = 0;         // variance of the mean of Y
+    double largest = 0;     // single sample
+    double horizon = 0;     // directions drawn at or under the horizon
+    bool geometry = false;  // the camera sees a shape there
+    double difference() const { return y - reference; }
+};
+
+/// What is the same for every pixel.
+struct FilmFacts {
+    double pixels = 0;  // of the box
+    std::uint64_t n = 0;
+    std::uint64_t directions = 1;  // drawn a sample
+    std::uint64_t bad = 0;         // samples of the whole film
+    double firefly_k = 0;
+};
+
+/// What a meter says of itself.
+struct MetricInfo {
+    std::string_view means;
+    std::string_view label{};        // markup, where the report writes it otherwise than its name
+    bool in_tables = true;           // of the report and the terminal
+    bool from_two_samples = false;   // one sample a pixel leaves it unknown
+    bool of_single_samples = false;  // the highest rung holds those of all others; it has no spread over seeds
+};
+
+/// What a meter's value is: double, or an integer where it counts.
+template <class Meter> using MeterOf = decltype(std::declval<const Meter&>().value(FilmFacts{}));
+
+}  // namespace crescent::inline measures

@@ -1,0 +1,18 @@
+// rmse: root mean square error of Y against the reference, over a region.
+#pragma once
+
+#include <cmath>
+
+#include "render/film_metrics/measure.h"
+
+namespace crescent::inline measures {
+
+struct RmseMeter {
+    static constexpr MetricInfo info = {
+        .means = "root mean square error of Y against the reference over a region", .label = "RMSE"};
+    double squares = 0;
+    void add(const FilmPixel& p, const FilmFacts&) { squares += p.difference() * p.difference(); }
+    double value(const FilmFacts& f) const { return std::sqrt(squares / f.pixels); }
+};
+
+}  // namespace crescent::inline measures

@@ -1,0 +1,13 @@
+// rmse_frame: the same over the whole frame, which lumps the regions together: a footnote, never a headline.
+#pragma once
+
+#include "render/film_metrics/rmse.h"
+
+namespace crescent::inline measures {
+
+struct RmseFrameMeter : RmseMeter {
+    static constexpr MetricInfo info = {
+        .means = "root mean square error of Y over the whole frame", .label = "whole-frame RMSE", .in_tables = false};
+};
+
+}  // namespace crescent::inline measures

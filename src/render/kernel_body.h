@@ -1,0 +1,234 @@
+// The estimator, once, for any number type: lanes are pixels, samples follow one another, one pass gives every rung.
+// Included once an instruction set by kernel_<isa>.cpp, in that set's own namespace.
+//
+// Sums run in float over at most 16 samples (relative error < 1e-6) and in double from there on. Blocks begin at
+// multiples of 16 whatever the rungs, so a rung is the same prefix whichever other rungs are asked for.
+#pragma once
+
+#include <concepts>
+
+#include "math/simd/random.h"
+#include "render/kernel_lights.h"
+#include "samplers/all.h"
+#include "scene/lobes/all.h"
+
+namespace crescent::inline estimator {
+namespace CRESCENT_ISA {
+
+inline constexpr std::uint64_t block_length = 16;
+
+/// What a kernel asks of a scene's emitters beside the fill: room in its memory, the emitters as one pack of pixels
+/// sees them, what a sample gathers from them on top of the fill, and totals in double of what was gathered.
+template <class E, class F>
+concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t, typename E::Room&> &&
+    std::constructible_from<typename E::Totals, typename E::Room&> &&
+    requires(E emitters, const E& seen, ShadingPoint<F>& site, typename E::Totals totals, Moments& out) {
+        { seen.first() } -> std::same_as<typename E::First>;
+        seen.show(site);
+        totals.take(emitters);
+        totals.write(seen, out);
+    };
+
+/// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
+/// only samples that meet an emitter touch, so that it can live in registers.
+template <class F> struct RunningSums {
+    F g = number<F>(0), g_lobe = number<F>(0);
+    F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
+    F pivot = number<F>(
+        0);  // the smaller of the first two X (outliers are large), then the mean of the first 16, 64, 256, ...
+    F largest = number<F>(0);
+    UintOf<F> horizon{0u}, bad{0u};
+};
+
+/// A pack's constants that every sample reads. By value, so that they stay in registers: what `gather` can reach must
+/// be loaded again after each call.
+template <class E, class F> struct Constants {
+    Vec3<F> wo;
+    F fill_d, fill_s;
+    UintOf<F> pixel;
+    typename E::First first;
+};
+
+/// One pack of pixels: its emitters and the step that takes one sample.
+template <class A, class L, class E, class F> struct Lane : E {
+    static_assert(Emitters<E, F>);
+    using U = UintOf<F>;
+    using E::sites, E::at;
+    ShadingPoint<F> site;
+
+    Lane(const ShadingPoints& all, std::size_t first, typename E::Room& room) : E(all, first, room) {
+        site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
+            load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at)};
+        this->show(site);
+    }
+
+    Constants<E, F> constants() const {
+        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at),
+            load_lanes<F>(sites.pixel, at), this->first()};
+    }
+
+    /// X of one drawn direction, adding what it carries to the sums.
+    template <class D> [[gnu::always_inline]] F accumulate(
+        RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& drawn, F weight) {
+        const F zero = number<F>(0);
+        const F cos = drawn.wi.z;
+        const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
+        const auto up = !(down | (drawn.pdf.v == zero));
+        to.horizon = plus_one_where(down, to.horizon);
+        const F g = select(up, weight * (cos / drawn.pdf.v), zero);
+        const F lobe = select(up, brdf(c.wo, drawn.wi), zero);
+        F x = g * c.fill_d;
+        to.g = to.g + g;
+        if constexpr (L::present) {
+            to.g_lobe = to.g_lobe + g * lobe;
+            x = g * (c.fill_d + lobe * c.fill_s);
+        }
+        return this->gather(c.first, drawn, g, lobe, x, up);
+    }
+
+    [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<E, F>& c, const A& arm, const L& brdf,
+        const Vec4u<U>& h, bool odd, std::uint64_t j, const KernelCall& call) {
+        const Vec2<F> u =
+            odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
+        F x;
+        if constexpr (requires { A::techniques; }) {
+            const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
+            const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)}
+                                  : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
+            const auto a = arm.template sample_technique<0>(c.wo, u);
+            const auto b = arm.template sample_technique<1>(c.wo, v);
+            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
+            x = x + accumulate(to, c, brdf, b, arm.template weight<1>(c.wo, b));
+        } else {
+            x = accumulate(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
+        }
+        const F off = x - to.pivot;
+        to.off = to.off + off;
+        to.square = to.square + off * off;
+        to.largest = larger(x, to.largest);
+        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
+        // arises from nothing that a site holds (shading_points.cpp).
+        to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
+        if (call.samples) record_sample(x, call.samples, j, call.rungs.back());
+    }
+
+    void record_sample(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
+        float lanes[Lanes<F>::count];
+        store(x, lanes);
+        for (std::size_t l = 0; l < Lanes<F>::count && at + l < sites.count; ++l) samples[(at + l) * n + j] = lanes[l];
+    }
+};
+
+/// Double totals of one pack.
+template <class F> struct Totals {
+    static constexpr std::size_t count = Lanes<F>::count;
+    double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
+
+    /// Takes the block's sums over and clears them.
+    void take(RunningSums<F>& p) {
+        add_lanes(p.g, g);
+        add_lanes(p.g_lobe, g_lobe);
+        add_lanes(p.off, off);
+        add_lanes(p.square, square);
+        p.g = p.g_lobe = p.off = p.square = number<F>(0);
+    }
+    /// Takes the second moment about the mean of the n samples so far from here on, where the block's sums are clear.
+    [[gnu::noinline]] F turn(F about, double n) {
+        float pivot[count];
+        store(about, pivot);
+        const double share = 1 / n;  // a power of two: exact
+        for (std::size_t l = 0; l < count; ++l) {
+            const float next = static_cast<float>(static_cast<double>(pivot[l]) + off[l] * share);
+            const double by = static_cast<double>(next) - static_cast<double>(pivot[l]);
+            square[l] += by * (n * by - 2 * off[l]);
+            off[l] -= n * by;
+            pivot[l] = next;
+        }
+        return load_as<F>(pivot);
+    }
+    /// Sum of (X - mean X)^2 over the n samples of the blocks and of the one that is not full.
+    void spread(const RunningSums<F>& p, double n, double* out) const {
+        double first[count];
+        add_lanes(p.off, off, first);
+        add_lanes(p.square, square, out);
+        for (std::size_t l = 0; l < count; ++l) {
+            out[l] -= first[l] * first[l] / n;
+            if (out[l] < 0) out[l] = 0;
+        }
+    }
+};
+
+template <class E, class F> [[gnu::noinline]] void write_rung(const E& emitters, const typename E::Totals& emitted,
+    const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
+    const std::size_t at = emitters.at;
+    add_lanes(p.g, totals.g, out.g.data() + at);
+    add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
+    totals.spread(p, static_cast<double>(n), out.spread.data() + at);
+    emitted.write(emitters, out);
+    store(p.largest, out.largest.data() + at);
+    store(p.horizon, out.horizon.data() + at);
+    store(p.bad, out.bad.data() + at);
+}
+
+/// One pack of pixels through all its samples; make(site) gives the arm.
+template <class A, class L, class E, class F, class Make>
+void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
+    using U = UintOf<F>;
+    Lane<A, L, E, F> lane(*call.sites, at, room);
+    RunningSums<F> gathered;
+    Totals<F> totals;
+    typename E::Totals emitted(room);
+    const A arm = make(lane.site);
+    const L brdf(lane.site.s, lane.site.alpha);
+    const Constants<E, F> c = lane.constants();
+    const std::uint64_t n = call.rungs.back();
+    std::size_t rung = 0;
+    for (std::uint64_t j = 0; j < n;) {
+        const std::uint64_t block_end = (j / block_length + 1) * block_length;
+        const std::uint64_t end = block_end < call.rungs[rung] ? block_end : call.rungs[rung];
+        while (j < end) {
+            const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
+            if (!(j & 1)) {
+                lane.step(gathered, c, arm, brdf, h, false, j, call);
+                if (j == 0) {  // X - pivot was X, the pivot being 0
+                    gathered.pivot = gathered.off;
+                    gathered.off = gathered.square = number<F>(0);
+                }
+                if (++j == end) break;
+            }
+            lane.step(gathered, c, arm, brdf, h, true, j, call);
+            if (j == 1) {  // X_1 - X_0 is the sum so far; about the smaller of the two it is its size, and the square
+                           // is the same
+                gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
+                gathered.off = abs(gathered.off);
+            }
+            ++j;
+        }
+        if (j == block_end) {
+            totals.take(gathered);
+            emitted.take(lane);
+            if (j < n && (j & (j - 1)) == 0 && (j & 0x5555555555555555u))
+                gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
+            if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
+        }
+        if (j == call.rungs[rung]) write_rung<E>(lane, emitted, gathered, totals, j, call.out[rung++]);
+    }
+}
+
+template <class A, class L, class E, class F> void estimate(const KernelCall& call) {
+    typename E::Room room(*call.sites, call.memory);
+    for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
+        estimate_pack<A, L, E, F>(call, at, room, [](const ShadingPoint<F>& site) { return A(site); });
+}
+
+/// One arm's kernels, [lobe + 1].
+template <class F, template <class> class A, template <class> class... L>
+constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
+    return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};
+}
+template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
+    return {isa, {{kernels_on<F, A>(Lobes{})...}}};
+}
+
+}  // namespace CRESCENT_ISA
+}  // namespace crescent::inline estimator

@@ -1,0 +1,234 @@
+// Emitters that can be counted: one pack of pixels before the lights, what a sample that may meet one finds, and what
+// is gathered from those that do. The kernel takes its emitters as a policy (Emitters in kernel_body.h); this is the
+// one for lights of constant radiance, whose sums are kept by light. Included by kernel_body.h alone.
+#pragma once
+
+#include <new>
+
+#include "render/disk_hit.h"
+#include "render/kernel.h"
+
+namespace crescent::inline estimator {
+namespace CRESCENT_ISA {
+
+template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
+template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t at) {
+    return load_as<UintOf<F>>(a.data() + at);
+}
+template <class F> Vec3<F> load_lanes(
+    const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t at) {
+    return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
+}
+
+/// The part that samples which meet a light add to.
+template <class F> struct LightHitSums {
+    F* light_g;
+    F* light_g_lobe;
+    UintOf<F> hits{0u};
+    bool any = false;  // in the current block
+};
+
+/// Room for the lights of one pack of pixels, in the memory that a kernel is called with.
+template <class F> struct LightRoom {
+    std::size_t count;
+    LocalDisk<F>* disks;
+    FacingDisk<F>* facing;
+    LocalLight<F>* others;
+    DiskCone<F>* cones;
+    F *met_g, *met_g_lobe;
+    double *total_g, *total_g_lobe;  // lane l of light k at k * lanes + l
+
+    LightRoom(const ShadingPoints& sites, std::byte* at)
+        : count(sites.light_count()),
+          disks(take<LocalDisk<F>>(at, sites.disks.size())),
+          facing(take<FacingDisk<F>>(at, sites.disks.size())),
+          others(take<LocalLight<F>>(at, sites.others.size())),
+          cones(take<DiskCone<F>>(at, count)),
+          met_g(take<F>(at, count)),
+          met_g_lobe(take<F>(at, count)),
+          total_g(take<double>(at, count * Lanes<F>::count)),
+          total_g_lobe(take<double>(at, count * Lanes<F>::count)) {
+        constexpr std::size_t of_disk = sizeof(LocalDisk<F>) + sizeof(FacingDisk<F>), of_other = sizeof(LocalLight<F>);
+        static_assert((of_disk > of_other ? of_disk : of_other) + sizeof(DiskCone<F>) + 2 * sizeof(F) +
+                    2 * sizeof(double) * Lanes<F>::count + 128 <=
+                memory_of_light,
+            "a kernel's memory holds each light, and what alignment takes");
+    }
+
+private:
+    template <class T> static T* take(std::byte*& at, std::size_t elements) {
+        const std::size_t past = reinterpret_cast<std::uintptr_t>(at) % alignof(T);
+        at += past ? alignof(T) - past : 0;
+        T* const first = reinterpret_cast<T*>(at);
+        for (std::size_t k = 0; k < elements; ++k) ::new (static_cast<void*>(first + k)) T;
+        at += elements * sizeof(T);
+        return first;
+    }
+};
+
+template <class F> struct Lights;
+
+/// lane l of `to`: from[l] + partial[l], in double.
+template <class F> CRESCENT_INLINE void add_lanes(F partial, const double* __restrict from, double* __restrict to) {
+    float lanes[Lanes<F>::count];
+    store(partial, lanes);
+    for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
+}
+/// sum[lane] += partial[lane].
+template <class F> CRESCENT_INLINE void add_lanes(F partial, double* sum) {
+    float lanes[Lanes<F>::count];
+    store(partial, lanes);
+    for (std::size_t l = 0; l < Lanes<F>::count; ++l) sum[l] += static_cast<double>(lanes[l]);
+}
+
+/// Double totals of what met each light.
+template <class F> struct LightTotals {
+    static constexpr std::size_t count = Lanes<F>::count;
+    double *g, *g_lobe;  // lane l of light k at k * count + l
+
+    explicit LightTotals(LightRoom<F>& room) : g(room.total_g), g_lobe(room.total_g_lobe) {
+        for (std::size_t at = 0; at < room.count * count; ++at) g[at] = g_lobe[at] = 0;
+    }
+    /// Takes the block's sums over and clears them.
+    void take(Lights<F>& lights) {
+        LightHitSums<F>& met = lights.met;
+        for (std::size_t k = 0; met.any && k < lights.light_count; ++k) {
+            add_lanes(met.light_g[k], g + k * count);
+            add_lanes(met.light_g_lobe[k], g_lobe + k * count);
+            met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
+        }
+        met.any = false;
+    }
+    /// What met them so far, with the block that is not full.
+    void write(const Lights<F>& lights, Moments& out) const {
+        for (std::size_t k = 0; k < lights.light_count; ++k) {
+            add_lanes(lights.met.light_g[k], g + k * count, out.light_g[k].data() + lights.at);
+            add_lanes(lights.met.light_g_lobe[k], g_lobe + k * count, out.light_g_lobe[k].data() + lights.at);
+        }
+        store(lights.met.hits, out.hits.data() + lights.at);
+    }
+};
+
+/// The lights as one pack of pixels sees them: disks first.
+template <class F> struct Lights {
+    using U = UintOf<F>;
+    using Room = LightRoom<F>;
+    using Totals = LightTotals<F>;
+    using First = DiskCone<F>;  // round the first light; most scenes have but one
+    const ShadingPoints& sites;
+    std::size_t at;
+    std::size_t disk_count, light_count;
+    LocalDisk<F>* disks;
+    FacingDisk<F>* facing;
+    LocalLight<F>* others;
+    DiskCone<F>* cones;
+    LightHitSums<F> met;
+
+    [[gnu::noinline]] Lights(const ShadingPoints& all, std::size_t first, LightRoom<F>& room)
+        : sites(all),
+          at(first),
+          disk_count(all.disks.size()),
+          light_count(all.light_count()),
+          disks(room.disks),
+          facing(room.facing),
+          others(room.others),
+          cones(room.cones),
+          met{room.met_g, room.met_g_lobe} {
+        for (std::size_t k = 0; k < disk_count; ++k) {
+            const DiskArrays& d = sites.disks[k];
+            disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at),
+                F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
+            facing[k] = FacingDisk<F>(disks[k]);
+            cones[k] = DiskCone<F>(facing[k]);
+        }
+        for (std::size_t k = disk_count; k < light_count; ++k) {
+            LocalLight<F>& light = others[k - disk_count];
+            light = light_at(sites.others[k - disk_count]);
+            with_light_kind(light.kind,
+                [&]<class Kind>() { cones[k] = DiskCone<F>(light.a, Kind::radius2(light), Kind::shines(light)); });
+        }
+        for (std::size_t k = 0; k < light_count; ++k) met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
+    }
+
+    First first() const { return light_count > 0 ? cones[0] : DiskCone<F>{}; }
+    /// What arms that aim at lights see of them.
+    void show(ShadingPoint<F>& site) const {
+        site.disks = disks, site.disk_count = static_cast<int>(disk_count);
+        site.others = others, site.other_count = static_cast<int>(light_count - disk_count);
+    }
+
+    /// X of a sample whose g and lobe are known, x being what the fill gives.
+    template <class D>
+    [[gnu::always_inline]] F gather(const First& around, const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+        if (light_count == 0) return x;
+        if constexpr (requires { drawn.met; }) {
+            if (any(up)) x = resolve_light_hit(drawn, g, lobe, x, up);
+        } else {
+            auto near = around.holds(drawn.wi);
+            for (std::size_t k = 1; k < light_count; ++k) near = near | cones[k].holds(drawn.wi);
+            if (any(near & up)) [[unlikely]]
+                x = resolve_light_hit(drawn, g, lobe, x, up);
+        }
+        return x;
+    }
+
+    LocalLight<F> light_at(const LightArrays& from) const {
+        const auto& n = from.numbers;
+        LocalLight<F> out;
+        out.kind = from.kind, out.power = F(from.power);
+        out.a = load_lanes<F>(n[0], n[1], n[2], at), out.b = load_lanes<F>(n[3], n[4], n[5], at);
+        out.c = load_lanes<F>(n[6], n[7], n[8], at);
+        for (std::size_t k = 0; k < out.number.size(); ++k) out.number[k] = load_lanes<F>(n[9 + k], at);
+        return out;
+    }
+
+    /// Samples that may have met a light: nearest light first, then what stands before it. Returns X where one was met.
+    template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+        const Vec3<F> wi = drawn.wi;
+        const F far = number<F>(1e30);
+        F nearest = far;
+        F index = number<F>(-1);
+        for (std::size_t k = 0; k < disk_count; ++k) {
+            F v;
+            const auto hit = meets_disk(facing[k], drawn, k, light_count == 1, v);
+            const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), far);
+            const auto nearer = is_nearer(t, nearest);
+            index = select(nearer, F(static_cast<float>(k)), index);
+            nearest = select(nearer, t, nearest);
+        }
+        for (std::size_t k = disk_count; k < light_count; ++k) {
+            F t;
+            const auto hit = meets_light(others[k - disk_count], drawn, k, t);
+            const auto nearer = hit & is_nearer(t, nearest);
+            index = select(nearer, F(static_cast<float>(k)), index);
+            nearest = select(nearer, t, nearest);
+        }
+        const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
+        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at),
+            load_lanes<F>(sites.bx, sites.by, sites.bz, at), load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
+        const Vec3<F> d = frame.to_world(wi);
+        const U own = load_lanes<F>(sites.shape, at);
+        F seen = select(up & (nearest < far), number<F>(1), number<F>(0));
+        for (const OccluderF& body : sites.occluders) {
+            const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
+            seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
+        }
+        for (std::size_t k = 0; k < light_count; ++k) {
+            const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
+            const F gk = select(this_one, g, number<F>(0));
+            met.light_g[k] = met.light_g[k] + gk;
+            met.light_g_lobe[k] = met.light_g_lobe[k] + gk * lobe;
+            const bool disk = k < disk_count;
+            const std::vector<float>& d_of = disk ? sites.disks[k].d : sites.others[k - disk_count].d;
+            const std::vector<float>& s_of = disk ? sites.disks[k].s : sites.others[k - disk_count].s;
+            const F xk = g * (load_lanes<F>(d_of, at) + lobe * load_lanes<F>(s_of, at));
+            x = select(this_one, xk, x);
+        }
+        met.hits = plus_one_where(seen > number<F>(0), met.hits);
+        met.any = true;
+        return x;
+    }
+};
+
+}  // namespace CRESCENT_ISA
+}  // namespace crescent::inline estimator

@@ -1,0 +1,250 @@
+// One site of one pixel, in single precision and in the kernels' order of operations: X of a sample has the bits that
+// the film's has. What is drawn of it besides, directions and rims, is in double.
+#include "render/pixel.h"
+
+#include <cmath>
+#include <optional>
+
+#include "base/errors.h"
+#include "base/vec.h"
+#include "math/functions.h"
+#include "math/simd/random.h"
+#include "render/disk_hit.h"
+#include "samplers/all.h"
+#include "scene/lobes/all.h"
+#include "scene/scene_data.h"
+
+namespace crescent::inline estimator {
+
+namespace {
+
+Vec3f at(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+    return {x[0], y[0], z[0]};
+}
+
+float lobe_of(const ShadingPoints& sites, Vec3f wi) {
+    const Vec3f wo = at(sites.wox, sites.woy, sites.woz);
+    const float s = sites.s[0], alpha = sites.alpha[0];
+    return lobe_value(static_cast<LobeKind>(sites.lobe), s, alpha, wo, wi);
+}
+
+std::vector<LocalDisk<float>> local_disks(const ShadingPoints& sites) {
+    std::vector<LocalDisk<float>> out;
+    for (const DiskArrays& d : sites.disks) {
+        const float sides = d.two_sided ? 1.0f : 0.0f;
+        out.push_back({at(d.cx, d.cy, d.cz), at(d.nx, d.ny, d.nz), d.radius, sides, d.power});
+    }
+    return out;
+}
+
+std::vector<LocalLight<float>> local_others(const ShadingPoints& sites) {
+    std::vector<LocalLight<float>> out;
+    for (const LightArrays& from : sites.others) {
+        LocalLight<float>& light = out.emplace_back();
+        const auto& n = from.numbers;
+        light.kind = from.kind, light.power = from.power;
+        light.a = at(n[0], n[1], n[2]), light.b = at(n[3], n[4], n[5]), light.c = at(n[6], n[7], n[8]);
+        for (std::size_t k = 0; k < light.number.size(); ++k) light.number[k] = n[9 + k][0];
+    }
+    return out;
+}
+
+/// The lights of a site, disks first.
+struct Locals {
+    const std::vector<LocalDisk<float>>& disks;
+    const std::vector<LocalLight<float>>& others;
+};
+
+/// As the kernels ask it of what an arm drew: the nearest light first, then what stands before it.
+template <class D> int met_by(const ShadingPoints& sites, const Locals& locals, const D& drawn) {
+    const auto& [disks, others] = locals;
+    const Vec3f wi = drawn.wi;
+    float nearest = 1e30f;
+    int met = -1;
+    for (std::size_t k = 0; k < disks.size(); ++k) {
+        const FacingDisk<float> facing(disks[k]);
+        float v;
+        if (!meets_disk(facing, drawn, k, sites.light_count() == 1, v) || !is_nearer(facing.k / v, nearest)) continue;
+        nearest = facing.k / v, met = static_cast<int>(k);
+    }
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        float t;
+        if (!meets_light(others[k], drawn, disks.size() + k, t) || !is_nearer(t, nearest)) continue;
+        nearest = t, met = static_cast<int>(disks.size() + k);
+    }
+    if (met < 0) return -1;
+    const Vec3f t = at(sites.tx, sites.ty, sites.tz), b = at(sites.bx, sites.by, sites.bz);
+    const Frame<float> frame = {t, b, at(sites.nx, sites.ny, sites.nz)};
+    const Vec3f o = at(sites.px, sites.py, sites.pz), d = frame.to_world(wi);
+    for (const OccluderF& body : sites.occluders)
+        if (body.shape != sites.shape[0] && blocked_by(body, o, d, nearest)) return -1;
+    return met;
+}
+
+/// f L of Lambert and of the lobe, as Y: X = (cos/p) (d + lobe s).
+struct Worth {
+    float d, s;
+};
+Worth worth(const ShadingPoints& sites, int disk) {
+    if (disk < 0) return {sites.fill_d[0], sites.fill_s[0]};
+    const std::size_t k = static_cast<std::size_t>(disk);
+    if (k < sites.disks.size()) return {sites.disks[k].d[0], sites.disks[k].s[0]};
+    const LightArrays& other = sites.others[k - sites.disks.size()];
+    return {other.d[0], other.s[0]};
+}
+
+/// f, per sr, of light that is `light` bright; where there is none, of grey light.
+double reflected(const ShadingPoints& sites, const Worth& w, float lobe, double light) {
+    if (light > 0) return double(w.d + lobe * w.s) / light;
+    return double(sites.diffuse[0]) / pi + double(sites.rho_s[0] * lobe);
+}
+
+/// Makes X of a direction, in the kernels' own order of operations.
+class Carrier {
+public:
+    Carrier(const ShadingPoints& sites, const Locals& disks, const std::vector<PixelLight>& seen, double fill)
+        : sites_(sites), lights_(disks), seen_(seen), fill_(fill) {}
+
+    template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
+        PixelSample out;
+        out.u = u, out.wi = drawn.wi, out.pdf = drawn.pdf.v, out.cos = drawn.wi.z;
+        out.weight = weight, out.technique = technique;
+        if (out.cos <= 0 || out.pdf == 0) return out;
+        const float g = weight * (out.cos / out.pdf), lobe = lobe_of(sites_, out.wi);
+        out.disk = met_by(sites_, lights_, drawn);
+        const Worth w = worth(sites_, out.disk);
+        out.x = g * (w.d + lobe * w.s);
+        out.light = static_cast<float>(out.disk < 0 ? fill_ : seen_[static_cast<std::size_t>(out.disk)].light);
+        out.f = static_cast<float>(reflected(sites_, w, lobe, double(out.light)));
+        return out;
+    }
+
+private:
+    const ShadingPoints& sites_;
+    const Locals lights_;
+    const std::vector<PixelLight>& seen_;
+    double fill_;
+};
+
+/// Calls work.template operator()<A>() for the arm of that name.
+template <class Work> void with_arm(std::string_view sampler, Work&& work) {
+    bool found = false;
+    for_each_sampler(Samplers{}, [&]<template <class> class A>() {
+        if (A<float>::name != sampler) return;
+        found = true;
+        work.template operator()<A>();
+    });
+    ensure(found, "a sampler is a word of arms/all.h");
+}
+
+PixelLight seen_light(const Light& light, const Hit& hit) {
+    const Frame<double> frame = frame_about(hit.n);
+    const Figure figure = light.seen_from(hit.x);
+    const Vec3d c = frame.to_local(middle_of(figure) - hit.x);
+    const double distance = length(c), half = math::atan2(radius_of(figure), distance) * 180 / pi;
+    PixelLight out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, light.shines_on(hit.x)};
+    constexpr int points = 96;
+    const auto disk = std::get_if<shapes::Disk>(&figure);
+    const std::array<Vec3d, 4> corners = corners_about(figure);
+    const Frame<double> about = frame_about(normal_of(figure));
+    for (int k = 0; k <= points; ++k) {
+        const double a = 2 * pi * k / points, side = 4.0 * (k % points) / points;
+        const std::size_t first = static_cast<std::size_t>(side);
+        const Vec3d edge = corners[first] + (side - std::floor(side)) * (corners[(first + 1) % 4] - corners[first]);
+        const Vec3d y = disk ? disk->center + disk->radius * (about.t * math::cos(a) + about.b * math::sin(a)) : edge;
+        out.rim.push_back(normalize(frame.to_local(y - hit.x)));
+    }
+    return out;
+}
+
+ShadingPoints site_of(const Scene& scene, int i, int j) {
+    std::vector<ShadingPoints> groups = sites_of(scene, {i, j, i + 1, j + 1}, nullptr);
+    ensure(groups.size() == 1 && groups[0].count == 1, "an opened pixel sees a surface");
+    return std::move(groups[0]);
+}
+
+}  // namespace
+
+OpenPixel::OpenPixel(const Scene& scene, int i, int j)
+    : i_(i),
+      j_(j),
+      sites_(site_of(scene, i, j)),
+      hit_(*scene.primary(i, j)),
+      surface_(scene.surface(hit_)),
+      wo_(widen(at(sites_.wox, sites_.woy, sites_.woz))),
+      fill_(luminance(scene.fill())),
+      local_(local_disks(sites_)),
+      others_(local_others(sites_)) {
+    for (const Light& light : scene.lights()) lights_.push_back(seen_light(light, hit_));
+}
+
+ShadingPoint<float> OpenPixel::aimed_from() const {
+    return {at(sites_.wox, sites_.woy, sites_.woz), sites_.s[0], sites_.alpha[0], sites_.diffuse[0], sites_.rho_s[0],
+        local_.data(), static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
+}
+
+Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
+
+int OpenPixel::disk_met(Vec3d wi) const {
+    return wi.z > 0 ? met_by(sites_, {local_, others_}, Drawn<float>{as<float>(wi), {1}}) : -1;
+}
+
+double OpenPixel::light(Vec3d wi) const {
+    const int disk = disk_met(wi);
+    return disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
+}
+
+double OpenPixel::f(Vec3d wi, int disk) const {
+    if (!(wi.z > 0)) return 0;
+    const Worth w = worth(sites_, disk);
+    const double light = disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
+    return reflected(sites_, w, lobe_of(sites_, as<float>(wi)), light);
+}
+
+double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
+    const ShadingPoint<float> site = aimed_from();
+    double out = 0;
+    with_arm(sampler, [&]<template <class> class A>() {
+        const A<float> arm(site);
+        const Vec3f w = as<float>(wi);
+        if constexpr (requires { A<float>::techniques; }) out = double(arm.template pdf_technique<0>(site.wo, w).v);
+        else out = double(arm.pdf(site.wo, w).v);
+    });
+    return out;
+}
+
+std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
+    const ShadingPoint<float> site = aimed_from();
+    const Carrier accumulate(sites_, {local_, others_}, lights_, fill_);
+    std::vector<PixelSample> out;
+    with_arm(sampler, [&]<template <class> class A>() {
+        const A<float> arm(site);
+        for (std::uint64_t k = 0; k < n; ++k) {
+            const Vec2<float> u = draw(seed, sites_.pixel[0], k);
+            if constexpr (requires { A<float>::techniques; }) {
+                const Vec2<float> v = draw(seed, sites_.pixel[0], k, 1);
+                const auto a = arm.template sample_technique<0>(site.wo, u);
+                const auto b = arm.template sample_technique<1>(site.wo, v);
+                out.push_back(accumulate(u, a, arm.template weight<0>(site.wo, a), 0));
+                out.push_back(accumulate(v, b, arm.template weight<1>(site.wo, b), 1));
+            } else {
+                out.push_back(accumulate(u, arm.sample(site.wo, u), 1, 0));
+            }
+        }
+    });
+    return out;
+}
+
+std::vector<double> running_mean(const std::vector<PixelSample>& samples) {
+    std::vector<double> out;
+    double sum = 0;
+    for (const PixelSample& sample : samples) {
+        sum += static_cast<double>(sample.x);
+        if (sample.technique == 0) out.push_back(sum);
+        else out.back() = sum;
+    }
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] /= static_cast<double>(k + 1);
+    return out;
+}
+
+}  // namespace crescent::inline estimator

@@ -1,0 +1,89 @@
+// One pixel opened: what each of its samples is made of, for pictures that explain an estimate and for tests. Local
+// frame of its surface point, n = +z. The samples are those of the films: the same random numbers, the same bits.
+//
+//   X = w f L cos / p    w is 1, but for arms of two techniques
+//
+// L and f are numbers of luminance: L is Y of the light's radiance, and f is the share of it that is reflected, per sr,
+// in light of that colour. Radiance in W/(sr m^2), f in 1/sr, angles in degrees.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/vec.h"
+#include "render/shading_points.h"
+#include "samplers/sampler.h"
+
+namespace crescent::inline estimator {
+
+/// One draw. X = 0 where the direction lies under the horizon or nothing was drawn.
+struct PixelSample {
+    Vec2<float> u{};
+    Vec3<float> wi{};
+    float pdf = 0, f = 0, light = 0, cos = 0;
+    float weight = 1;  // of multiple importance sampling
+    float x = 0;
+    int disk = -1;  // index of the light that was met; -1: the fill
+    int technique = 0;
+};
+
+/// A light as the surface point sees it.
+struct PixelLight {
+    std::string name;
+    Vec3d towards{};            // unit, to its centre
+    double angular_radius = 0;  // degrees, across the line of sight: atan(radius / distance)
+    double light = 0;           // Y of its radiance
+    std::vector<Vec3d> rim;     // unit directions to its edge, in order
+    bool faces = false;         // its emitting side is turned to the surface
+};
+
+/// One pixel of a scene and each of its samples. Directions are unit vectors of the world; values in the units of
+/// films. Immutable once made: any thread may ask.
+class OpenPixel {
+public:
+    /// Throws Bug where pixel (i, j), counted from the bottom-left, sees nothing.
+    OpenPixel(const Scene& scene, int i, int j);
+
+    /// The pixel, counted from the bottom-left; the index of its shape in Scene::shapes(); what its primary ray met,
+    /// with the material there; the unit direction to the camera.
+    int i() const { return i_; }
+    int j() const { return j_; }
+    int shape() const { return static_cast<int>(sites_.shape[0]); }
+    const Hit& hit() const { return hit_; }
+    const Surface& surface() const { return surface_; }
+    Vec3d wo() const { return wo_; }
+    Vec3d mirror() const;  // R
+    const std::vector<PixelLight>& lights() const { return lights_; }
+    double fill() const { return fill_; }  // Y
+
+    /// The light that a direction meets before anything else; -1: none, it sees the fill.
+    int disk_met(Vec3d wi) const;
+    /// Y of the light that comes from there.
+    double light(Vec3d wi) const;
+    /// The BRDF in 1/sr under the light of a disk, or of the fill (-1); 0 under the horizon.
+    double f(Vec3d wi, int disk = -1) const;
+    /// The density in 1/sr by which an arm aims there; of an arm of two techniques, of the first.
+    double pdf(std::string_view sampler, Vec3d wi) const;
+
+    /// The first n samples of an arm in order; of an arm of two techniques, 2 n in pairs. `sampler`: a word of
+    /// arms/all.h.
+    std::vector<PixelSample> samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const;
+
+private:
+    ShadingPoint<float> aimed_from() const;  // points into local_
+    int i_, j_;
+    ShadingPoints sites_;
+    Hit hit_;
+    Surface surface_;
+    Vec3d wo_{};
+    std::vector<PixelLight> lights_;
+    double fill_ = 0;
+    std::vector<LocalDisk<float>> local_;
+    std::vector<LocalLight<float>> others_;
+};
+
+/// Mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.
+std::vector<double> running_mean(const std::vector<PixelSample>& samples);
+
+}  // namespace crescent::inline estimator

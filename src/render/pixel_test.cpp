@@ -1,0 +1,101 @@
+// An opened pixel against the kernels: the same X, bit for bit, from every arm, and the film's own Y.
+#include "render/pixel.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "render/estimator.h"
+#include "tests/support/test_scene.h"
+
+namespace crescent::inline estimator {
+namespace {
+
+constexpr std::uint64_t n = 48;
+
+/// Pixels of the test scene: the ball's highlight, its side, the block, the ground and its shadow.
+std::vector<std::pair<int, int>> pixels(const Scene& scene) {
+    std::vector<std::pair<int, int>> out;
+    for (int j = 2; j < scene.image().height; j += 5)
+        for (int i = 1; i < scene.image().width; i += 6)
+            if (scene.primary(i, j)) out.emplace_back(i, j);
+    return out;
+}
+
+template <class Visit> void for_each_opened(Visit&& visit) {
+    const Scene scene(test::small_scene());
+    for (const auto& [i, j] : pixels(scene)) visit(scene, OpenPixel(scene, i, j));
+}
+
+TEST(OpenPixel, DrawsWhatTheKernelsDrawBitForBit) {
+    std::set<int> lights;
+    for_each_opened([&](const Scene& scene, const OpenPixel& pixel) {
+        const std::vector<ShadingPoints> sites =
+            sites_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
+        for_each_sampler(Samplers{}, [&]<template <class> class A>() {
+            std::vector<float> x(n);
+            estimate_sites(sites[0], A<float>::name, n, 11, "", nullptr, x.data());
+            std::vector<float> opened(n);
+            for (std::size_t at = 0; const PixelSample& sample : pixel.samples(A<float>::name, n, 11)) {
+                lights.insert(sample.disk);
+                if (sample.technique == 0) opened[at++] = sample.x;
+                else opened[at - 1] += sample.x;
+            }
+            EXPECT_EQ(opened, x) << A<float>::name << " at " << pixel.i() << ", " << pixel.j();
+        });
+    });
+    EXPECT_EQ(lights, (std::set<int>{-1, 0, 1}));
+}
+
+TEST(OpenPixel, IsTheProductOfItsParts) {
+    for_each_opened([](const Scene&, const OpenPixel& pixel) {
+        for (const char* arm : {"cosine", "phong", "mis-balance"})
+            for (const PixelSample& s : pixel.samples(arm, n, 11)) {
+                if (!(s.x > 0)) continue;
+                const double product = double(s.weight) * double(s.f) * double(s.light) * double(s.cos) / double(s.pdf);
+                EXPECT_NEAR(product / double(s.x), 1, 1e-6) << arm;
+            }
+    });
+}
+
+TEST(OpenPixel, AveragesToTheFilm) {
+    const Scene scene(test::small_scene());
+    ProgressMonitor monitor;
+    for (const char* arm : {"uniform", "cosine", "phong", "mis-power"}) {
+        const Film film = estimate_films(scene, arm, {n}, 11, "", monitor).front();
+        for (const auto& [i, j] : pixels(scene)) {
+            const double y = double(film.y[std::size_t(j) * std::size_t(film.width) + std::size_t(i)]);
+            const double mean = running_mean(OpenPixel(scene, i, j).samples(arm, n, 11)).back();
+            EXPECT_NEAR(mean, y, 2e-6 * y + 1e-12) << arm << " at " << i << ", " << j;
+        }
+    }
+}
+
+TEST(OpenPixel, AsksTheFieldsWhatItDraws) {
+    for_each_opened([](const Scene&, const OpenPixel& pixel) {
+        for (const PixelSample& s : pixel.samples("cosine", n, 11)) {
+            const Vec3d wi = {double(s.wi.x), double(s.wi.y), double(s.wi.z)};
+            EXPECT_EQ(pixel.disk_met(wi), s.disk);
+            EXPECT_NEAR(pixel.light(wi) / double(s.light), 1, 1e-6);
+            EXPECT_NEAR(pixel.f(wi, s.disk) / double(s.f), 1, 1e-5);
+            EXPECT_NEAR(pixel.pdf("cosine", wi) / double(s.pdf), 1, 1e-6);
+        }
+        EXPECT_EQ(pixel.f({0, 0, -1}), 0);
+    });
+}
+
+TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
+    const Scene scene(test::small_scene());
+    const OpenPixel pixel(scene, 33, 30);
+    ASSERT_EQ(pixel.lights().size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const lights::Disk& light = std::get<lights::Disk>(scene.lights()[k].form);
+        const Vec3d to = light.center - pixel.hit().x;
+        EXPECT_NEAR(std::tan(pixel.lights()[k].angular_radius * pi / 180), light.radius / length(to), 1e-6);
+        EXPECT_NEAR(dot(pixel.lights()[k].towards, frame_about(pixel.hit().n).to_local(normalize(to))), 1, 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace crescent::inline estimator

@@ -1,0 +1,287 @@
+// Bodies that cannot stand before the light are ruled out by balls and planes first. Then by the cheapest way that
+// serves: nothing is left of the light, the whole disk by polar rules, or fan by fan. Lambert's part and the lobe's,
+// per unit of radiance; errors of parts are added up.
+#include "render/reference/disk_quadrature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "math/functions.h"
+#include "math/quadrature.h"
+#include "render/reference/fans.h"
+
+namespace crescent::inline reference {
+
+namespace {
+
+/// Does one body hide the whole figure? Its shadow on the figure's plane is convex: if two opposite sides of a
+/// parallelogram around the figure lie in it, so does all between them. From within a body the shadow is not convex.
+bool hides_all(const Blocker& blocker, Vec3d x, const Figure& figure) {
+    if (holds(blocker.body, x)) return false;
+    const auto whole = [&](Vec3d from, Vec3d to) {
+        const Interval part = hidden(blocker.body, x, from, to, blocker.between)[0];
+        return part.lo <= 0 && part.hi >= 1;
+    };
+    const std::array<Vec3d, 4> at = corners_about(figure);
+    return whole(at[0], at[1]) && whole(at[3], at[2]);
+}
+
+/// Is the lobe wide against the disk as seen from the point, so that rules which know nothing of its peak see all of
+/// it?
+bool is_soft(const DiskPoint& point, const Figure& figure, double height) {
+    if (!(point.surface.rho_s > 0)) return true;
+    const Vec3d d = middle_of(figure) - point.x;
+    const double radius = radius_of(figure);
+    const double nearest = std::max(std::fabs(dot(d, point.light_normal)), std::sqrt(dot(d, d)) - radius);
+    // A lobe of a small exponent about R ends with a jump at 90 degrees from it.
+    const LobeInfo& lobe = lobe_info(point.surface.brdf);
+    const Vec3d r = point.frame.to_world(mirror(point.wo));
+    const bool ends = lobe.about_mirror && lobe.exponent(point.surface.s, point.surface.alpha) < 4;
+    if (ends && dot(d, r) < radius) return false;
+    return height > 0 && radius < nearest && point.sharpness(radius / nearest) < 2;
+}
+
+/// May the body reach into the ball about c? Never false where it does.
+bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
+    return std::visit(
+        [&](const auto& b) {
+            const Vec3d d = b.middle() - c;
+            const auto beyond = [&](Vec3d axis) {
+                return dot(axis, d) - b.half_extent(axis) > radius * std::sqrt(dot(axis, axis));  // never along 0
+            };
+            if (beyond(d)) return false;
+            for (const Vec3d& axis : b.faces())
+                if (beyond(axis) || beyond(-axis)) return false;
+            return true;
+        },
+        body.body);
+}
+
+/// The directions of a figure from a point, and what stands before it: lobes of other exponents share all but the
+/// integral.
+class FigureSeen {
+public:
+    FigureSeen(const DiskPoint& point, const Figure& figure, Vec3d normal, const std::vector<const Blocker*>& near)
+        : figure_(figure),
+          near_(near),
+          height_(dot(middle_of(figure) - point.x, normal)),
+          at_horizon_(!(height_ - half_extent_of(figure, normal) > 0)),
+          is_hidden_(
+              std::any_of(near.begin(), near.end(), [&](const Blocker* b) { return hides_all(*b, point.x, figure); })) {
+    }
+
+    /// At the same point, its lobe apart.
+    DiskIntegral operator()(const DiskPoint& point) {
+        if (is_hidden_) return {};
+        const bool soft = is_soft(point, figure_, height_);
+        const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure_);
+        if (disk && near_.empty() && soft && !at_horizon_) return whole_disk(point, *disk, frame_about(disk->normal));
+        std::optional<AllFans>& fans = soft ? about_light_ : about_lobe_;
+        if (!fans) fans.emplace(point, figure_, near_, !soft, at_horizon_);
+        return fan_by_fan(point, *fans);
+    }
+
+private:
+    const Figure& figure_;
+    const std::vector<const Blocker*>& near_;
+    double height_;
+    bool at_horizon_, is_hidden_;
+    std::optional<AllFans> about_light_, about_lobe_;
+};
+
+DiskIntegral operator+(const DiskIntegral& a, const DiskIntegral& b) {
+    return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+}
+/// What is left of a without b.
+DiskIntegral operator-(const DiskIntegral& a, const DiskIntegral& b) {
+    return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+}
+/// The truth lies between a and b.
+DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
+    const auto off = [](double p, double q, double error, double other) {
+        return 0.5 * std::fabs(p - q) + std::max(error, other);
+    };
+    return {0.5 * (a.diffuse + b.diffuse), 0.5 * (a.lobe + b.lobe),
+        off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error), off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
+}
+
+/// How far the ball's nearest point is, of the way to the middle of its figure.
+double nearest_of(const lights::Sphere& ball, Vec3d x) {
+    const Vec3d d = ball.center - x;
+    const double far = std::sqrt(dot(d, d));
+    return far / (far + ball.radius);
+}
+
+/// A ball that bodies or other lights reach into. Its surface bulges before the figure, and what stands behind it hides
+/// nothing. In rings about the middle, each as if all of it were as near as its inner edge and as if as far as its
+/// outer one: the truth is between.
+DiskIntegral ring_by_ring(
+    const DiskPoint& point, Vec3d normal, const lights::Sphere& ball, const std::vector<const Blocker*>& near) {
+    const shapes::Disk whole = std::get<shapes::Disk>(ball.seen_from(point.x));
+    const Vec3d d = whole.center - point.x, c = ball.center - point.x;
+    const double plane = std::sqrt(dot(d, d)), far = std::sqrt(dot(c, c));
+    // The share of the way at which the ball is met on the way to a point of the figure at `off` from its middle.
+    const auto met_at = [&](double off) {
+        const double way = std::sqrt(sqr(plane) + sqr(off)), along = far * plane / way;
+        const double half2 = sqr(ball.radius) - sqr(far * off / way);
+        return std::min(1.0, (along - std::sqrt(std::max(half2, 0.0))) / way);
+    };
+    constexpr int rings = 8;
+    DiskIntegral sum;
+    for (int k = 0; k < rings; ++k) {
+        // Evenly in how far the surface bulges, about: it falls like a root at the edge.
+        const auto edge = [&](int at) {
+            return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(at) / rings));
+        };
+        const auto up_to = [&](double off, double way) {
+            const Figure part = moved(shapes::Disk{whole.center, whole.normal, off}, point.x, way);
+            return off > 0 ? FigureSeen(point, part, normal, near)(point) : DiskIntegral{};
+        };
+        const double from = edge(k), to = edge(k + 1);
+        const auto ring = [&](double way) { return up_to(to, way) - up_to(from, way); };
+        sum = sum + enclosed(ring(met_at(from)), ring(met_at(to)));
+    }
+    return sum;
+}
+
+/// The same of a ball whose figure gives `out`: nothing may stand where the surface bulges before the figure.
+DiskIntegral before_bulge(const DiskPoint& point, Vec3d normal, const lights::Sphere& ball,
+    const std::vector<const Blocker*>& near, const DiskIntegral& out) {
+    const Figure nearest = moved(ball.seen_from(point.x), point.x, nearest_of(ball, point.x));
+    const DiskIntegral least = FigureSeen(point, nearest, normal, near)(point);
+    if (std::fabs(least.diffuse - out.diffuse) <= least.diffuse_error + out.diffuse_error &&
+        std::fabs(least.lobe - out.lobe) <= least.lobe_error + out.lobe_error)
+        return enclosed(out, least);
+    return ring_by_ring(point, normal, ball, near);
+}
+
+}  // namespace
+
+DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene.lights()[k]) {
+    for (const Occluder& body : scene.occluders()) blockers_.push_back({body});
+    for (std::size_t other = 0; other < scene.lights().size(); ++other) {
+        if (other == k) continue;
+        const Light& light = scene.lights()[other];  // of two in one place the first is met
+        blockers_.push_back({{light.body(), -1}, {0, other < k ? 1 + at_an_end : 1 - at_an_end}, &light});
+    }
+}
+
+std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Figure& figure) const {
+    std::vector<const Blocker*> out;
+    const Bodies::Any light = body_of(figure);
+    const Ball all = {middle_of(figure), radius_of(figure)};
+    for (const Blocker& b : blockers_) {
+        if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
+        if (passes_by(b.around, hit.x, all)) continue;
+        // A light in this one's plane stands before it at the end of the way, or does not.
+        const bool apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.between.to)))
+                                   : is_separated(b.body, {hit.x}, light);
+        if (!apart) out.push_back(&b);
+    }
+    return out;
+}
+
+DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) const {
+    DiskIntegral out;
+    (*this)(hit, {&surface, 1}, {&out, 1});
+    return out;
+}
+
+void DiskQuadrature::operator()(const Hit& hit, std::span<const Surface> surfaces, std::span<DiskIntegral> out) const {
+    std::fill(out.begin(), out.end(), DiskIntegral{});
+    if (!light_.shines_on(hit.x)) return;
+    const Figure figure = light_.seen_from(hit.x);
+    if (dot(middle_of(figure) - hit.x, hit.n) + half_extent_of(figure, hit.n) <= 0) return;
+    const Frame<double> local = frame_about(hit.n);
+    DiskPoint point = {hit.x, local.to_local(hit.wo), local, surfaces[0], normal_of(figure)};
+    const std::vector<const Blocker*> near = in_the_way(hit, figure);
+    const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
+    const bool bulges = ball && std::any_of(near.begin(), near.end(), [&](const Blocker* b) {
+        return may_reach_into(b->body, ball->center, ball->radius);
+    });
+    FigureSeen seen(point, figure, hit.n, near);
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        point.surface = surfaces[k];
+        out[k] = seen(point);
+        if (bulges) out[k] = before_bulge(point, hit.n, *ball, near, out[k]);
+    }
+}
+
+// ---- Lambert's part in closed form. The lobe by polar rules of rising order, Gauss-Legendre in r^2 times even angles,
+// from 3 points to 3840, until two of them agree to 1e-5 of the pixel.
+
+namespace {
+
+/// Gauss-Legendre in r^2, evenly spaced in angle: nodes on the unit disk, weights summing to pi.
+struct PolarRule {
+    struct Node {
+        double x, y, weight;
+    };
+    std::vector<Node> nodes;
+
+    template <unsigned radial> static PolarRule make(int angular) {
+        PolarRule rule;
+        using G = math::Gauss<radial>;
+        const auto ring = [&](double abscissa, double weight) {
+            const double r = std::sqrt(0.5 * (1 + abscissa));
+            for (int k = 0; k < angular; ++k) {
+                const double phi = 2 * pi * (k + 0.5) / angular;
+                rule.nodes.push_back({r * math::cos(phi), r * math::sin(phi), 0.5 * weight * pi / angular});
+            }
+        };
+        for (std::size_t k = 0; k < G::abscissa().size(); ++k) {
+            ring(G::abscissa()[k], G::weights()[k]);
+            if (G::abscissa()[k] != 0) ring(-G::abscissa()[k], G::weights()[k]);
+        }
+        return rule;
+    }
+};
+
+const std::vector<PolarRule>& polar_rules() {
+    static const std::vector<PolarRule> rules = {PolarRule::make<1>(3), PolarRule::make<2>(5), PolarRule::make<3>(7),
+        PolarRule::make<5>(12), PolarRule::make<7>(17), PolarRule::make<10>(25), PolarRule::make<15>(36),
+        PolarRule::make<25>(60), PolarRule::make<40>(96)};
+    return rules;
+}
+
+/// The whole disk is above the horizon and open, Lambert: integral of cos(theta_i) dw / pi in closed form. The light's
+/// vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view factors, elements
+/// parallel and perpendicular to a disk), written without cancellation.
+double whole_disk_diffuse(const DiskPoint& point, const shapes::Disk& disk) {
+    const Vec3d d = disk.center - point.x;
+    const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
+    const Vec3d axis = along < 0 ? -disk.normal : disk.normal;
+    const Vec3d aside = d - h * axis;
+    const double p2 = dot(aside, aside), a = p2 + h * h + r2;
+    const double root = std::sqrt(a * a - 4 * r2 * p2);
+    const double parallel = r2 * (1 - 2 * p2 / (a + root)) / root;
+    return dot(point.frame.n, axis) * parallel + dot(point.frame.n, aside) * (2 * h * r2 / (root * (a + root)));
+}
+
+}  // namespace
+
+DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const Frame<double>& frame) {
+    DiskIntegral out;
+    out.diffuse = whole_disk_diffuse(point, disk);
+    if (!(point.surface.rho_s > 0)) return out;
+    const auto apply = [&](const PolarRule& rule) {
+        double sum = 0;
+        for (const auto& n : rule.nodes)
+            sum +=
+                n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
+        return sum * sqr(disk.radius);
+    };
+    constexpr double good = 1e-5;  // relative, between two rules; the finer one, which is kept, is better by far
+    const auto& rules = polar_rules();
+    double coarse = apply(rules[0]);
+    for (std::size_t k = 1; k < rules.size(); ++k) {
+        out.lobe = apply(rules[k]);
+        out.lobe_error = std::fabs(out.lobe - coarse);
+        if (point.weigh({0, out.lobe_error}) <= good * point.weigh({out.diffuse, out.lobe})) break;
+        coarse = out.lobe;
+    }
+    return out;
+}
+
+}  // namespace crescent::inline reference

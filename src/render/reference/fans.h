@@ -1,0 +1,123 @@
+// A disk light's part of the reflected radiance in polar coordinates of directions about an axis: fan by fan (fan.h),
+// each with its open parts found exactly, and across the fans adaptive Gauss-Kronrod between the azimuths where bodies
+// begin and end. The axis is the lobe's where the lobe is sharp, so that no rule can miss its peak; else the disk's
+// centre.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "math/functions.h"
+#include "render/reference/disk_quadrature.h"
+#include "render/reference/reference.h"
+#include "scene/body.h"
+#include "scene/scene_data.h"
+#include "scene/shadow.h"
+
+namespace crescent::inline reference {
+
+// ---- One fan of directions from a surface point: the half-plane that ends in an axis, and the line in which it cuts a
+// light. Directions in it are cos(al) axis + sin(al) aside, al in [0, pi]; double precision.
+
+/// sin(al), cos(al), al.
+struct Direction {
+    double sin, cos, al;
+};
+
+struct Fan {
+    Vec3d axis, aside;
+    Vec3d to0{}, step{};  // from the point to where the light begins, and on to where it ends
+    bool empty = true;
+
+    Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, const math::SinCos& azimuth);
+    /// Towards the light's point v of the way from its beginning to its end.
+    Direction at(double v) const;
+    /// Leaves the part that is above the surface's horizon; to.al < from.al where none is.
+    void rise_above(const DiskPoint& point, Direction& from, Direction& to) const;
+    /// Integral of cos(theta_i) sin(al) over a part that is above the horizon, in closed form.
+    double lambert(const DiskPoint& point, const Direction& from, const Direction& to) const;
+};
+
+// ---- All fans (fan.h) from a surface point that meet a light, each with the parts of its line that no body hides
+// found exactly; and the azimuths between which what they add up to is smooth. Radians, double precision.
+
+/// How many parts of a fan are open, and which of their ends are the light's: what changes where a shadow's edge meets
+/// the light's.
+using FanEdges = unsigned;
+
+/// Where panels must end; `root`: a round body begins or ends there, and its shadow opens like a root.
+struct FanCut {
+    double tau;
+    bool root;
+};
+
+/// What a fan shows of the light, whatever the lobe is.
+struct OpenFan {
+    Vec3d axis, aside;   // as in Fan, in the surface's frame
+    double cos_azimuth;  // about the lobe's axis: from the plane of incidence
+    double slope;        // d azimuth / d tau
+    double diffuse = 0;  // Lambert's part without rho_d
+    FanEdges edges = 1;
+    std::size_t first_part = 0, parts = 0;  // among those of all fans
+};
+
+/// By a parameter tau in which the fans' integral is smooth where the light is a disk and open: the azimuth itself
+/// where the axis meets it; else middle + half sin(tau), as chords grow from a tangent like a root. For one thread.
+class AllFans {
+public:
+    /// About the lobe's axis, or the light's middle; `at_horizon`: part of the light may lie under the surface's
+    /// horizon. All of it must outlive this.
+    AllFans(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies, bool about_lobe,
+        bool at_horizon);
+
+    const Figure& light() const { return figure_; }
+    std::size_t bodies() const { return bodies_.size(); }
+    bool about_lobe() const { return about_lobe_; }
+    /// In order, from the first fan to the last.
+    const std::vector<FanCut>& cuts() const { return cuts_; }
+    /// The bodies that fans between two tau may meet: the next calls look at no others.
+    void look_between(double lo, double hi);
+    /// One fan, until the next call.
+    const OpenFan& operator()(double tau);
+    FanEdges edges_at(double tau);
+    /// The open parts of a fan: al from and to.
+    std::span<const Interval> parts(const OpenFan& fan) const { return {parts_.data() + fan.first_part, fan.parts}; }
+    /// For another lobe: fans that were asked for are there.
+    void rewind() { fans_.rewind(), edges_.rewind(); }
+
+private:
+    struct Body {
+        const Blocker* blocker;
+        Azimuths azimuths;
+    };
+    /// Calls f with each part of the fan's line that nothing hides.
+    template <class F> FanEdges each_open(const Fan& fan, F&& f);
+    OpenFan look_at(double tau);
+    double last() const { return light_.whole() ? pi : pi / 2; }  // tau runs from -last() to last()
+    double azimuth_of(Vec3d d) const;
+    /// The azimuth at tau, and d azimuth / d tau.
+    struct Turn {
+        double azimuth, slope;
+    };
+    Turn turn(double tau) const;
+    void cut(double phi, bool root);
+    void add_cuts(const Body& body);
+    void add_all_cuts();
+
+    const DiskPoint& point_;
+    const Figure& figure_;
+    Frame<double> about_;
+    bool about_lobe_, at_horizon_;
+    Azimuths light_;
+    std::vector<Body> bodies_;
+    std::vector<const Blocker*> near_;
+    std::vector<FanCut> cuts_;
+    std::vector<Interval> hidden_, parts_;
+    Replay<OpenFan> fans_;
+    Replay<FanEdges> edges_;
+};
+
+/// At the point of the fans, with this or another exponent of its lobe.
+DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans);
+
+}  // namespace crescent::inline reference

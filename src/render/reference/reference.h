@@ -1,0 +1,109 @@
+// What the meters compare with, where the experiment asks for no other: the radiance of every pixel without a sample.
+// Lambert x fill in closed form, lobe x fill by a table of its albedo, every light by DiskQuadrature; states its own
+// error per pixel.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/vec.h"
+#include "render/estimator.h"
+#include "render/film.h"
+#include "render/reference/lobe_albedo.h"
+#include "render/shading_points.h"
+#include "render/tiles.h"
+#include "scene/scene.h"
+
+namespace crescent::inline reference {
+
+// ---- The radiance of one pixel without a sample: Lambert x fill in closed form, lobe x fill by a table of its albedo,
+// every light by DiskQuadrature, with the error that these state. Pixels may be asked for in any order.
+
+/// Made once for a scene; pixels may be computed by many threads.
+class PixelQuadrature {
+public:
+    /// At each of these exponents. `yield_to_host`: told while the tables of the lobes' albedos are made.
+    PixelQuadrature(const Scene& scene, const std::vector<double>& exponents, const YieldToHost& yield_to_host = {});
+    ~PixelQuadrature();
+    PixelQuadrature(PixelQuadrature&&) noexcept;
+    PixelQuadrature& operator=(PixelQuadrature&&) noexcept;
+
+    /// Writes the pixels of a box into films of the scene's size, one an exponent: the same bits in any box, and
+    /// whatever other exponents there are.
+    void write(const TileBox& box, std::span<ReferenceFilm> films) const;
+
+private:
+    class Made;
+    std::unique_ptr<const Made> made_;
+};
+
+/// One pixel of a reference.
+void store_pixel(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error);
+
+// ---- A reference of every exponent of a run, tile by tile.
+
+/// The scene at each exponent, in order.
+inline std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& exponents) {
+    std::vector<Scene> scenes;
+    for (double s : exponents) scenes.push_back(scene.with_s(s));
+    return scenes;
+}
+
+/// One film per exponent, made by calling work(k, tile k, films) for every tile.
+template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
+    ProgressMonitor& monitor, TileCheckpoint* checkpoint, Work&& work) {
+    std::vector<ReferenceFilm> films(exponents.size());
+    parallel_for(std::size_t{0}, films.size(),
+        [&](std::size_t e) { films[e] = ReferenceFilm(image.width, image.height, exponents[e]); });
+    const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
+    if (checkpoint) checkpoint->begin(tiles, outputs_of(films));
+    for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
+        work(k, tiles[k], films);
+        return static_cast<double>(tiles[k].x1 - tiles[k].x0) * (tiles[k].y1 - tiles[k].y0);
+    });
+    return films;
+}
+
+/// A pixel that is the same at both exponents.
+inline void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
+    to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at],
+    to.error[at] = from.error[at];
+}
+
+// ---- A cache of values by number, in the order of first use: whoever asks again asks mostly in that order.
+
+/// Values by number, found in the order of their first use.
+template <class V> class Replay {
+public:
+    /// Empty.
+    Replay() { asked_.reserve(64), values_.reserve(64); }
+    /// The value for x, until the next call: make(), where it was not asked for before the last rewind.
+    template <class Make> const V& operator()(double x, Make&& make) {
+        const auto last = asked_.begin() + static_cast<std::ptrdiff_t>(known_);
+        auto at = std::find(asked_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
+        if (at == last) at = std::find(asked_.begin(), last, x);
+        if (at == last) {
+            asked_.push_back(x), values_.push_back(make());
+            return values_.back();
+        }
+        next_ = static_cast<std::size_t>(at - asked_.begin()) + 1;
+        return values_[next_ - 1];
+    }
+    void rewind() { next_ = 0, known_ = asked_.size(); }
+
+private:
+    std::vector<double> asked_;
+    std::vector<V> values_;
+    std::size_t next_ = 0, known_ = 0;  // asked for before the last rewind; where the search begins
+};
+
+/// One film per exponent, in order. `checkpoint` keeps finished tiles.
+std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents,
+    ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
+
+}  // namespace crescent::inline reference

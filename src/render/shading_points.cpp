@@ -1,0 +1,251 @@
+// Positions are kept in float from the scene's origin, directions in the local frame, a group of sites for each lobe.
+// Arrays end with copies of the last site, so that every pack is full; `count` tells the sites that are meant.
+#include "render/shading_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/vec.h"
+#include "scene/shadow.h"
+
+namespace crescent::inline estimator {
+
+namespace {
+
+double reflected(const Rgb& light, const Rgb& albedo) {
+    return luminance(Rgb{light[0] * albedo[0], light[1] * albedo[1], light[2] * albedo[2]});
+}
+
+void put(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t i, Vec3d v) {
+    x[i] = static_cast<float>(v.x), y[i] = static_cast<float>(v.y), z[i] = static_cast<float>(v.z);
+}
+
+std::size_t whole_packs(std::size_t sites) { return (sites + widest_pack - 1) / widest_pack * widest_pack; }
+
+std::array<float, 3> single(Vec3d v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// Numbers of a light that is no disk, in the order of LocalLight.
+void put_light(LightArrays& to, std::size_t i, const Light& light, Vec3d x, const Frame<double>& frame) {
+    with_light_kind(to.kind, [&]<class Kind>() {
+        const LightNumbers n = std::get<Kind>(light.form).numbers(x, frame);
+        const std::array vectors = {n.a, n.b, n.c};
+        for (std::size_t k = 0; k < 3; ++k)
+            put(to.numbers[3 * k], to.numbers[3 * k + 1], to.numbers[3 * k + 2], i, vectors[k]);
+        for (std::size_t k = 0; k < n.number.size(); ++k) to.numbers[9 + k][i] = static_cast<float>(n.number[k]);
+    });
+}
+
+/// What light of a colour is worth, never -0, so that no X is.
+float worth(double y) { return static_cast<float>(y + 0.0); }
+
+}  // namespace
+
+OccluderF occluder_about(const Occluder& o, Vec3d origin) {
+    const BodyNumbers n = std::visit([&](const auto& body) { return body.numbers(origin); }, o.body);
+    return {o.body.index(), static_cast<std::uint32_t>(o.shape), single(n.a), single(n.b), single(n.c),
+        static_cast<float>(n.radius), static_cast<float>(n.offset)};
+}
+
+std::vector<TileBox> tiles_of(int width, int height) {
+    constexpr int side = 64;  // pixels: small enough to share out evenly, large enough to fill packs
+    std::vector<TileBox> tiles;
+    for (int y = 0; y < height; y += side)
+        for (int x = 0; x < width; x += side)
+            tiles.push_back({x, y, std::min(x + side, width), std::min(y + side, height)});
+    return tiles;
+}
+
+ShadingPoints empty_sites(const Scene& scene, int lobe) {
+    ShadingPoints sites;
+    sites.lobe = lobe;
+    double total = 0;
+    for (const Light& light : scene.lights()) total += light.power();
+    const auto share = [&](const Light& light) { return total > 0 ? static_cast<float>(light.power() / total) : 0.0f; };
+    for (const Light& light : scene.lights()) {
+        if (const auto* disk = std::get_if<lights::Disk>(&light.form)) {
+            DiskArrays& arrays = sites.disks.emplace_back();
+            arrays.radius = static_cast<float>(disk->radius);
+            arrays.two_sided = disk->two_sided;
+            arrays.power = share(light);
+        } else {
+            LightArrays& arrays = sites.others.emplace_back();
+            arrays.kind = light.form.index();
+            arrays.power = share(light);
+        }
+    }
+    for (const Occluder& o : scene.occluders()) sites.occluders.push_back(occluder_about(o, scene.origin()));
+    return sites;
+}
+
+Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
+    for (std::size_t c = 0; c < 3; ++c) lambert[c] = surface.rho_d[c] / pi;
+    const double fill = reflected(scene.fill(), surface.rho_d);
+    fill_d = worth(fill / pi);
+    fill_s = worth(surface.tinted(scene.fill()) * surface.rho_s);
+    for (const Light& light : scene.lights()) {
+        disk_d.push_back(worth(reflected(light.radiance, surface.rho_d) / pi));
+        disk_s.push_back(worth(surface.tinted(light.radiance) * surface.rho_s));
+    }
+}
+
+void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading) {
+    const Frame<double> frame = frame_about(hit.n);
+    const std::size_t i = count++;
+    pixel[i] = pixel_index;
+    shape[i] = static_cast<std::uint32_t>(hit.shape);
+    put(wox, woy, woz, i, frame.to_local(hit.wo));
+    s[i] = static_cast<float>(shading.surface.s);
+    alpha[i] = static_cast<float>(shading.surface.alpha);
+    diffuse[i] = static_cast<float>(luminance(shading.surface.rho_d));
+    rho_s[i] = static_cast<float>(shading.surface.rho_s);
+    put(px, py, pz, i, hit.x - scene.origin());
+    put(tx, ty, tz, i, frame.t);
+    put(bx, by, bz, i, frame.b);
+    put(nx, ny, nz, i, frame.n);
+    fill_d[i] = shading.fill_d;
+    fill_s[i] = shading.fill_s;
+    for (std::size_t k = 0; k < disks.size(); ++k) {
+        const lights::Disk& light = std::get<lights::Disk>(scene.lights()[k].form);
+        put(disks[k].cx, disks[k].cy, disks[k].cz, i, frame.to_local(light.center - hit.x));
+        put(disks[k].nx, disks[k].ny, disks[k].nz, i, frame.to_local(light.normal));
+        disks[k].d[i] = shading.disk_d[k];
+        disks[k].s[i] = shading.disk_s[k];
+    }
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        const std::size_t light = disks.size() + k;
+        put_light(others[k], i, scene.lights()[light], hit.x, frame);
+        others[k].d[i] = shading.disk_d[light];
+        others[k].s[i] = shading.disk_s[light];
+    }
+    lambert[i] = shading.lambert;
+    rho_s_exact[i] = shading.surface.rho_s;
+    tint[i] = shading.surface.tint;
+}
+
+template <class Work> void ShadingPoints::each_array(Work&& work) {
+    const auto all = [&](auto&... arrays) { (work(arrays), ...); };
+    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
+        fill_s, lambert, rho_s_exact, tint);
+    for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
+    for (LightArrays& k : others) {
+        for (std::vector<float>& numbers : k.numbers) all(numbers);
+        all(k.d, k.s);
+    }
+}
+
+void ShadingPoints::reserve(std::size_t sites) {
+    each_array([&](auto& array) { array.reserve(whole_packs(sites)); });
+}
+
+void ShadingPoints::grow(std::size_t more) {
+    each_array([&](auto& array) { array.resize(count + more); });
+}
+
+void ShadingPoints::pad() {
+    if (count == 0) return;
+    each_array([&](auto& array) {
+        array.resize(whole_packs(count));
+        std::fill(array.begin() + static_cast<std::ptrdiff_t>(count), array.end(), array[count - 1]);
+        array.shrink_to_fit();
+    });
+}
+
+void ShadingPoints::take_s(const Scene& scene) {
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+        const Surface surface = scene.surface_of_shape(shape[i]);
+        s[i] = static_cast<float>(surface.s);
+        alpha[i] = static_cast<float>(surface.alpha);
+    }
+}
+
+std::size_t ShadingPoints::bytes_of_one() {
+    std::size_t bytes = 0;
+    each_array([&](auto& array) { bytes += sizeof(array[0]); });
+    return bytes;
+}
+
+void ShadingPoints::cull_occluders(const Scene& scene) {
+    const auto range = [](const std::vector<float>& v) {
+        const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
+        return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));
+    };
+    const auto [x, half_x] = range(px);
+    const auto [y, half_y] = range(py);
+    const auto [z, half_z] = range(pz);
+    const auto rounded = [](double middle, double half) { return half + 0x1p-23 * (std::fabs(middle) + half); };
+    const Extent extent = {
+        scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
+        const bool clear = std::all_of(scene.lights().begin(), scene.lights().end(),
+            [&](const Light& light) { return is_separated(scene.occluders()[k], extent, light.body()); });
+        if (!clear) occluders[kept++] = occluders[k];
+    }
+    occluders.resize(kept);
+}
+
+namespace {
+
+/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then at hand.
+class Sorter {
+public:
+    Sorter(const Scene& scene, const TileBox& tile)
+        : scene_(scene),
+          columns_(static_cast<std::size_t>(tile.x1 - tile.x0)),
+          area_(columns_ * static_cast<std::size_t>(tile.y1 - tile.y0)) {}
+
+    void next_row() {
+        for (ShadingPoints& group : groups) group.grow(columns_);
+    }
+
+    void add(std::uint32_t pixel, const Hit& hit) {
+        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_) {
+            shading_.emplace(scene_, scene_.surface(hit));
+            shape_ = hit.shape, reveal_ = hit.reveal;
+        }
+        const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
+        auto group = std::find_if(groups.begin(), groups.end(), [&](const ShadingPoints& g) { return g.lobe == lobe; });
+        if (group == groups.end()) {
+            group = groups.insert(group, empty_sites(scene_, lobe));
+            group->reserve(area_);
+            group->grow(columns_);
+        }
+        group->add(scene_, pixel, hit, *shading_);
+    }
+
+    std::vector<ShadingPoints> groups;
+
+private:
+    const Scene& scene_;
+    std::size_t columns_, area_;  // pixels in a row, and in the tile
+    std::optional<Shading> shading_;
+    int shape_ = -1;
+    bool reveal_ = false;
+};
+
+}  // namespace
+
+std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
+    Sorter sorter(scene, tile);
+    const int width = scene.image().width;
+    for (int j = tile.y0; j < tile.y1; ++j) {
+        sorter.next_row();
+        for (int i = tile.x0; i < tile.x1; ++i) {
+            const std::size_t index =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+            const std::optional<Hit> hit = scene.primary(i, j);
+            if (shape_map) shape_map[index] = static_cast<std::int16_t>(hit ? hit->shape : -1);
+            if (hit) sorter.add(static_cast<std::uint32_t>(index), *hit);
+        }
+    }
+    for (ShadingPoints& group : sorter.groups) {
+        group.pad();
+        group.cull_occluders(scene);
+    }
+    return std::move(sorter.groups);
+}
+
+}  // namespace crescent::inline estimator

@@ -1,0 +1,311 @@
+// metrics.json: every number of a run, as docs/metrics.schema.json describes it. Units are those of meters/metrics.h.
+// The same run gives the same bytes: keys in a fixed order, doubles in the shortest form that reads back the same.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <string_view>
+
+#include "experiment/override_text.h"
+#include "output/format.h"
+#include "output/junit.h"
+#include "report/provenance_json.h"
+#include "report/report.h"
+
+namespace crescent::inline report {
+namespace {
+
+Json optional_number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
+
+Json tail_json(const Tail& tail) {
+    return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}};
+}
+
+Json json_of(double x) { return number(x); }
+Json json_of(std::uint64_t count) { return count; }
+
+/// Every meter of a region or of the frame.
+template <class Of> void add_meters(Json& out, const Of& of) {
+    for_each_metric(
+        of, [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
+}
+
+Json run_json(const RunMetrics& run) {
+    Json regions = Json::object();
+    for (const RegionMetrics& r : run.regions) {
+        Json& at = regions[r.region] = Json::object();
+        add_meters(at, r);
+        at["pixels"] = r.pixels;
+        if (r.tail) at["tail"] = tail_json(*r.tail);
+    }
+    Json out = {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
+        {"regions", std::move(regions)}};
+    add_meters(out, run);
+    return out;
+}
+
+Json interval_json(const Band& band) {
+    if (band.heavy) return heavy_tail;
+    if (band.seeds < 2) return nullptr;
+    return Json::array({number(band.q05), number(band.q95)});
+}
+
+Json band_json(const SeedSpread& b) {
+    return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"meter", b.meter},
+        {"published", optional_number(b.published)}, {"measured", number(b.measured)},
+        {"median", number(b.band.median)}, {"q05", number(b.band.q05)}, {"q95", number(b.band.q95)},
+        {"seeds", b.band.seeds}, {"interval", interval_json(b.band)},
+        {"published_rank", optional_number(b.published_rank)}};
+}
+
+Json ladder_json(const Ladder& l) {
+    Json interval = heavy_tail;
+    if (!l.heavy)
+        interval = std::isfinite(l.low) && std::isfinite(l.high) ? Json::array({number(l.low), number(l.high)})
+                                                                 : Json(nullptr);
+    return {{"arm", l.arm}, {"region", l.region}, {"s", number(l.s)}, {"n", l.n}, {"rmse", numbers(l.rmse)},
+        {"slope", number(l.slope)}, {"low", number(l.low)}, {"high", number(l.high)},
+        {"interval", std::move(interval)}};
+}
+
+Json furnace_json(const FurnaceResult& f) {
+    Json out = {{"name", f.name}, {"arm", f.arm}, {"part", f.part}, {"n", f.n}, {"measured", number(f.measured)},
+        {"expected", number(f.expected)}, {"se", f.tail && f.tail->heavy() ? Json(heavy_tail) : number(f.se)},
+        {"bad", f.bad}, {"published", optional_number(f.published)}};
+    if (f.tail) out["tail"] = tail_json(*f.tail);
+    return out;
+}
+
+Json reference_json(const ReferenceQuality& r) {
+    return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", optional_number(r.rms_difference)},
+        {"rms_standard_error", optional_number(r.rms_standard_error)}, {"quadrature_error", number(r.quadrature_error)},
+        {"rmse_unlike", optional_number(r.max_relative_rmse_change)}, {"error_share", number(r.error_share)}};
+}
+
+Json assertion_json(const AssertionResult& a) {
+    Json out = {{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)}, {"bound", number(a.bound)},
+        {"op", a.op}, {"text", a.text}};
+    if (a.cannot_fail) out["cannot_fail"] = true;
+    if (!a.skipped.empty()) out["skipped"] = a.skipped;
+    return out;
+}
+
+Json quantiles_json(const FurnaceQuantiles& q) {
+    return {{"arithmetic", q.arithmetic}, {"u_bits", q.u_bits}, {"n", q.n}, {"q05", number(q.q05)},
+        {"q25", number(q.q25)}, {"median", number(q.median)}, {"q75", number(q.q75)}, {"q95", number(q.q95)}};
+}
+
+Json cap_json(const FurnaceCap& c) { return {{"u_bits", c.u_bits}, {"y", number(c.y)}}; }
+
+Json lost_json(const LostSupport& l) {
+    return {{"theta_R_deg", number(l.theta_R_deg)}, {"measured", number(l.measured)}, {"se", number(l.se)},
+        {"theory", number(l.theory)}};
+}
+
+Json rejection_json(const FalseRejection& r) {
+    return {{"s", number(r.s)}, {"k", number(r.k)}, {"n", r.n}, {"runs", r.runs}, {"rejected", r.rejected},
+        {"low", number(r.low)}, {"high", number(r.high)}};
+}
+
+template <class T, class F> Json list(const std::vector<T>& all, F one) {
+    Json out = Json::array();
+    for (const T& x : all) out.push_back(one(x));
+    return out;
+}
+
+Json evidence_json(const Evidence& e) {
+    return {{"s", number(e.s)}, {"rho_d", number(e.rho_d)}, {"rho_s", number(e.rho_s)},
+        {"expected", number(e.expected)}, {"alpha", number(e.alpha)}, {"furnace", list(e.furnace, quantiles_json)},
+        {"caps", list(e.caps, cap_json)}, {"lost", list(e.lost, lost_json)},
+        {"rejections", list(e.rejections, rejection_json)}};
+}
+
+/// As a file of published figures has them.
+Json published_json(const Published& p) {
+    Json out = {{"source", p.source}, {"runs", Json::array()}, {"furnaces", Json::object()}};
+    if (p.seed) out["seed"] = *p.seed;
+    for (const auto& [key, value] : p.runs) {
+        const auto& [arm, n, s, meter] = key;
+        out["runs"].push_back({{"arm", arm}, {"n", n}, {"s", s}, {meter, value}});
+    }
+    for (const auto& [name, value] : p.furnaces) out["furnaces"][name] = value;
+    return out;
+}
+
+/// The experiment in full, so that parts of its seeds can be joined without its files.
+Json experiment_json(const ReportInputs& in) {
+    Json out = {{"file", in.provenance.experiment_file}, {"hash", in.provenance.experiment_hash}};
+    if (in.provenance.experiment_text.empty()) return out;
+    out["text"] = in.provenance.experiment_text;
+    if (!in.experiment.overrides.empty()) out["set"] = in.experiment.overrides;
+    if (in.experiment.figures) out["published"] = published_json(*in.experiment.figures);
+    return out;
+}
+
+}  // namespace
+
+std::vector<int> Provenance::missing() const {
+    std::vector<int> out;
+    for (int place = 1; place <= series; ++place)
+        if (std::ranges::find(places, place) == places.end()) out.push_back(place);
+    return out;
+}
+
+std::string ranges_text(const std::vector<int>& ascending) {
+    std::string out;
+    for (std::size_t k = 0; k < ascending.size();) {
+        std::size_t last = k;
+        while (last + 1 < ascending.size() && ascending[last + 1] == ascending[last] + 1) ++last;
+        out += (out.empty() ? "" : ", ") + std::to_string(ascending[k]);
+        if (last > k) out += " to " + std::to_string(ascending[last]);
+        k = last + 1;
+    }
+    return out;
+}
+
+Json provenance_json(const Provenance& p) {
+    Json out = {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
+        {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}}, {"seeds", p.seeds},
+        {"instrument", p.instrument}, {"command", p.command}};
+    if (p.series > 0 && !p.places.empty()) {
+        out["series"] = {{"first", p.places.front()}, {"last", p.places.back()}, {"of", p.series}};
+        if (const std::vector<int> missing = p.missing(); !missing.empty()) out["series"]["missing"] = missing;
+    }
+    for (const auto& [what, said] : p.instrument_details) out["instrument_details"][what] = said;
+    return out;
+}
+
+std::string metrics_json(const ReportInputs& in) {
+    const Metrics& m = in.metrics;
+    Json provenance = provenance_json(in.provenance);
+    provenance["experiment"] = experiment_json(in);
+    const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
+        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, run_json)},
+        {"bands", list(m.bands, band_json)}, {"ladders", list(m.ladders, ladder_json)},
+        {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
+        {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
+        {"evidence", evidence_json(in.evidence)}, {"provenance", std::move(provenance)}};
+    return text(out);
+}
+
+// ---- metrics.csv: every run in long form, one number a row, in RFC 4180 (CRLF, quotes doubled). The region is empty
+// for the meters of the whole frame; a column follows for each key that --set gave, named as --set named it, `set.seed`
+// and `set.n` for the two keys that are columns already. Units are those of meters/metrics.h.
+
+namespace {
+
+constexpr std::array<std::string_view, 7> fixed_columns = {"arm", "n", "s", "seed", "meter", "region", "value"};
+
+struct Rows {
+    std::string out;
+    std::string run;  // "arm,n,s,seed,", the same for all rows of a run
+    std::string set;  // ",64": a value for each key that --set gave, the same for all rows
+
+    void add(std::string_view meter, std::string_view region, const std::string& value) {
+        out += run + csv_field(meter) + "," + csv_field(region) + "," + value + set + "\r\n";
+    }
+    void add(std::string_view meter, std::string_view region, double value) { add(meter, region, shortest(value)); }
+    void add(std::string_view meter, std::string_view region, std::uint64_t value) {
+        add(meter, region, std::to_string(value));
+    }
+};
+
+void add_region(Rows& rows, const RegionMetrics& r) {
+    for_each_metric(r, [&](std::string_view name, const MetricInfo&, auto value) { rows.add(name, r.region, value); });
+    rows.add("pixels", r.region, r.pixels);
+    if (!r.tail) return;
+    rows.add("tail_k", r.region, r.tail->k);
+    rows.add("tail_se", r.region, r.tail->se);
+    rows.add("tail_exceedances", r.region, std::uint64_t{r.tail->exceedances});
+}
+
+/// What --set gave, key by key in the order of first mention; of a key that was given twice the last value, which
+/// holds. The number of seeds is left out: each row is of one seed.
+std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& experiment) {
+    std::vector<std::pair<std::string, std::string>> out;
+    for (const std::string& text : experiment.overrides) {
+        const std::size_t equals = end_of_path(text);
+        const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
+        if (path == "seeds") continue;
+        const auto known = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);
+        if (known == out.end()) out.emplace_back(path, value);
+        else known->second = value;
+    }
+    return out;
+}
+
+/// A key's column: the key as it was given, but for one that would be the second column of its name.
+std::string column_of(const std::string& path) {
+    return std::ranges::find(fixed_columns, path) == fixed_columns.end() ? path : "set." + path;
+}
+
+}  // namespace
+
+std::string metrics_csv(const ReportInputs& in) {
+    Rows rows;
+    for (const std::string_view name : fixed_columns) rows.out += (rows.out.empty() ? "" : ",") + std::string(name);
+    for (const auto& [path, value] : overrides_of(in.experiment)) {
+        rows.out += "," + csv_field(column_of(path));
+        rows.set += "," + csv_field(value);
+    }
+    rows.out += "\r\n";
+    for (const RunMetrics& run : in.metrics.runs) {
+        rows.run = csv_field(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
+            std::to_string(run.key.seed) + ",";
+        for (const RegionMetrics& r : run.regions) add_region(rows, r);
+        for_each_metric(run, [&](std::string_view name, const MetricInfo&, auto value) { rows.add(name, "", value); });
+    }
+    return rows.out;
+}
+
+// ---- junit.xml: one test case an assertion, for build servers. No times and no dates: equal runs give equal bytes.
+
+namespace {
+
+JunitCase case_of(const AssertionResult& a, const std::string& group) {
+    JunitCase out{group, a.name, JunitCase::State::passed, "", "", {}};
+    if (!a.skipped.empty()) out.state = JunitCase::State::skipped, out.message = a.skipped;
+    if (!a.failed()) return out;
+    out.state = JunitCase::State::failed;
+    out.message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op, shortest(a.bound),
+        a.reference_good ? "" : "; the reference is not good enough");
+    out.text = a.text + ": " + out.message;
+    return out;
+}
+
+}  // namespace
+
+std::string junit_xml(const ReportInputs& in) {
+    const Provenance& p = in.provenance;
+    JunitSuite suite{in.experiment.title,
+        {{"version", p.version}, {"commit", p.commit}, {"experiment", p.experiment_file}, {"hash", p.experiment_hash},
+            {"command", p.command}},
+        {}};
+    for (const AssertionResult& a : in.metrics.assertions) suite.cases.push_back(case_of(a, p.experiment_file));
+    return junit_text(suite);
+}
+
+// ---- timing.json: what varies between equal runs (seconds, threads, instruction set, date), apart from the numbers.
+
+namespace {
+
+Json arm_json(const ArmTiming& a) {
+    const double rate = a.seconds > 0 ? static_cast<double>(a.samples) / a.seconds * 1e-6 : 0;
+    return {{"arm", a.arm}, {"n", a.n}, {"s", number(a.s)}, {"samples", a.samples}, {"seconds", number(a.seconds)},
+        {"msamples_per_s", number(rate)}};
+}
+
+}  // namespace
+
+std::string timing_json(const Timing& timing, const Provenance& provenance) {
+    Json arms = Json::array(), stages = Json::array();
+    for (const ArmTiming& a : timing.arms) arms.push_back(arm_json(a));
+    for (const auto& [name, seconds] : timing.stages) stages.push_back({{"name", name}, {"seconds", number(seconds)}});
+    const Json out = {{"format", "crescent timing 1"}, {"estimating_s", number(timing.estimating_s)},
+        {"total_s", number(timing.total_s)}, {"threads", timing.threads}, {"isa", timing.isa}, {"date", timing.date},
+        {"host_cpu", timing.host_cpu}, {"arms", std::move(arms)}, {"stages", std::move(stages)},
+        {"provenance", provenance_json(provenance)}};
+    return text(out);
+}
+
+}  // namespace crescent::inline report

@@ -1,0 +1,392 @@
+// Pango sets text at its size, then half a pixel smaller each time until it fits its box; at the least size it is
+// ellipsized. What was set, where and how large is noted. Pictures are copied out of Cairo's 32-bit pixels.
+#include "report/plates/canvas.h"
+
+#include <algorithm>
+#include <cairo-svg.h>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "math/functions.h"
+#include "report/plates/canvas_surface.h"
+#include "report/plates/sheet.h"
+
+namespace crescent::plates {
+
+Colour colour(const Srgb8& c) { return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, 1}; }
+
+std::string escaped(std::string_view plain) {
+    std::unique_ptr<char, decltype(&g_free)> text{g_markup_escape_text(plain.data(), gssize(plain.size())), g_free};
+    return text.get();
+}
+
+Canvas::Canvas(int width, int height, const Colour& paper, double scale, Theme theme, Medium medium)
+    : width_(width),
+      height_(height),
+      surface_(std::make_unique<Surface>(width, height, scale, theme, medium)),
+      theme_(theme) {
+    clear(paper);
+}
+
+void Canvas::clear(const Colour& paper) {
+    surface_->ink(paper);
+    cairo_set_line_join(surface_->cr, CAIRO_LINE_JOIN_MITER);  // polylines leave theirs behind
+    cairo_paint(surface_->cr);
+    settings_.clear();
+    pictures_.clear();
+}
+
+Canvas::~Canvas() = default;
+
+Rect Canvas::measure(const std::string& markup, const Text& how) const {
+    Text one = how;
+    one.lines = 1;
+    return surface_->lay(markup, one, how.px, -1);
+}
+
+Rect Canvas::text(const Rect& box, const std::string& markup, const Text& how) {
+    if (markup.empty()) return {box.x, box.y, 0, 0};
+    PangoLayout* l = surface_->layout.get();
+    auto fits = [&](const Rect& e) {
+        return pango_layout_get_line_count(l) <= how.lines && e.w <= box.w + 0.5 && e.h <= box.h + 0.5;
+    };
+    double width = how.lines > 1 ? box.w : -1;
+    double px = how.px;
+    Rect e = surface_->lay(markup, how, px, width);
+    while (!fits(e) && px > how.least) {
+        px = std::max(how.least, px - 0.5);
+        e = surface_->lay(markup, how, px, width);
+    }
+    bool cut = false;
+    if (!fits(e)) {
+        e = surface_->lay(markup, how, px, box.w);
+        pango_layout_set_wrap(l, PANGO_WRAP_WORD_CHAR);
+        pango_layout_set_ellipsize(l, PANGO_ELLIPSIZE_END);
+        pango_layout_set_height(l, -how.lines);
+        cut = true;
+    }
+    // What fits within half a pixel must not be wrapped for that half.
+    pango_layout_set_width(l, static_cast<int>(std::ceil((cut ? box.w : std::max(box.w, e.w)) * PANGO_SCALE)));
+    PangoRectangle r;
+    pango_layout_get_extents(l, nullptr, &r);
+    double h = double(r.height) / PANGO_SCALE;
+    double y = box.y +
+        (how.vertical == Vertical::top             ? 0
+                : how.vertical == Vertical::middle ? (box.h - h) / 2
+                                                   : box.h - h);
+    surface_->ink(how.ink);
+    cairo_move_to(surface_->cr, box.x, y);
+    if (!text_hidden_) pango_cairo_show_layout(surface_->cr, l);
+    Rect took{box.x + double(r.x) / PANGO_SCALE, y, double(r.width) / PANGO_SCALE, h};
+    settings_.push_back({markup, box, took, px, cut, themed(how.ink, theme_)});
+    return took;
+}
+
+const unsigned char* Canvas::pixels(int& stride) const {
+    cairo_surface_flush(surface_->image);
+    stride = cairo_image_surface_get_stride(surface_->image);
+    return cairo_image_surface_get_data(surface_->image);
+}
+
+std::string Canvas::svg() {
+    cairo_surface_finish(surface_->image);
+    std::string out = std::move(surface_->document);
+    const std::string counted = "id=\"surface";  // and how many surfaces the process has made
+    if (const auto at = out.find(counted); at != std::string::npos) {
+        const auto from = at + counted.size();
+        out.erase(from, out.find_first_not_of("0123456789", from) - from);
+    }
+    return out;
+}
+
+Picture Canvas::picture() const {
+    int stride = 0;
+    const unsigned char* data = pixels(stride);
+    Picture out{width_, height_, std::vector<unsigned char>(3 * std::size_t(width_) * std::size_t(height_))};
+    unsigned char* to = out.rgb.data();
+    for (int j = 0; j < height_; ++j) {
+        for (int i = 0; i < width_; ++i, to += 3) {
+            std::uint32_t pixel;
+            std::memcpy(&pixel, data + std::ptrdiff_t(j) * stride + std::ptrdiff_t(4) * i, 4);
+            to[0] = static_cast<unsigned char>(pixel >> 16);
+            to[1] = static_cast<unsigned char>(pixel >> 8);
+            to[2] = static_cast<unsigned char>(pixel);
+        }
+    }
+    return out;
+}
+
+// ---- What a canvas draws that is not text: shapes by Cairo, blocks of pixels by hand.
+
+void Canvas::fill(const Rect& r, const Colour& c) {
+    surface_->ink(c);
+    cairo_rectangle(surface_->cr, r.x, r.y, r.w, r.h);
+    cairo_fill(surface_->cr);
+}
+
+void Canvas::outline(const Rect& r, const Colour& c, double width) {
+    surface_->ink(c);
+    cairo_set_line_width(surface_->cr, width);
+    cairo_rectangle(surface_->cr, r.x, r.y, r.w, r.h);
+    cairo_stroke(surface_->cr);
+}
+
+void Canvas::line(double x0, double y0, double x1, double y1, const Colour& c, double width, double dash) {
+    polyline({{x0, y0}, {x1, y1}}, c, width, dash);
+}
+
+void Canvas::polyline(const std::vector<Point>& points, const Colour& c, double width, double dash) {
+    if (points.empty()) return;
+    cairo_t* cr = surface_->cr;
+    surface_->ink(c);
+    cairo_set_line_width(cr, width);
+    cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+    if (dash > 0) cairo_set_dash(cr, &dash, 1, 0);
+    cairo_move_to(cr, points[0].x, points[0].y);
+    for (const Point& p : points) cairo_line_to(cr, p.x, p.y);
+    cairo_stroke(cr);
+    cairo_set_dash(cr, nullptr, 0, 0);
+}
+
+void Canvas::polygon(const std::vector<Point>& points, const Colour& c) {
+    if (points.empty()) return;
+    surface_->ink(c);
+    cairo_move_to(surface_->cr, points[0].x, points[0].y);
+    for (const Point& p : points) cairo_line_to(surface_->cr, p.x, p.y);
+    cairo_close_path(surface_->cr);
+    cairo_fill(surface_->cr);
+}
+
+void Canvas::dot(double x, double y, double radius, const Colour& c) {
+    surface_->ink(c);
+    cairo_arc(surface_->cr, x, y, radius, 0, 2 * G_PI);
+    cairo_fill(surface_->cr);
+}
+
+void Canvas::arrow(Point from, Point to, const Colour& c, double width) {
+    double dx = to.x - from.x, dy = to.y - from.y, length = math::hypot(dx, dy);
+    if (!(length > 0)) return;
+    dx /= length, dy /= length;
+    double head = 4.5 * width, half = 1.7 * width;
+    Point neck{to.x - head * dx, to.y - head * dy};
+    line(from.x, from.y, neck.x, neck.y, c, width);
+    polygon({to, {neck.x - half * dy, neck.y + half * dx}, {neck.x + half * dy, neck.y - half * dx}}, c);
+}
+
+void Canvas::paint(const Block& block, int x, int y) {
+    ensure(cairo_surface_get_type(surface_->image) == CAIRO_SURFACE_TYPE_IMAGE, "a canvas of pixels takes blocks");
+    ensure(x >= 0 && y >= 0 && x + block.width <= width_ && y + block.height <= height_, "a block lies on the canvas");
+    cairo_surface_flush(surface_->image);
+    unsigned char* data = cairo_image_surface_get_data(surface_->image);
+    int stride = cairo_image_surface_get_stride(surface_->image);
+    const unsigned char* from = block.rgb.data();
+    for (int j = 0; j < block.height; ++j) {
+        unsigned char* row = data + std::ptrdiff_t(y + j) * stride + std::ptrdiff_t(4) * x;
+        for (int i = 0; i < block.width; ++i, from += 3) {
+            std::uint32_t pixel = 0xff000000u | std::uint32_t(from[0]) << 16 | std::uint32_t(from[1]) << 8 | from[2];
+            std::memcpy(row + std::ptrdiff_t(4) * i, &pixel, 4);
+        }
+    }
+    cairo_surface_mark_dirty(surface_->image);
+    pictures_.push_back({double(x), double(y), double(block.width), double(block.height)});
+}
+
+void Canvas::circle(double x, double y, double radius, const Colour& c, double width, double dash) {
+    cairo_t* cr = surface_->cr;
+    surface_->ink(c);
+    cairo_set_line_width(cr, width);
+    if (dash > 0) cairo_set_dash(cr, &dash, 1, 0);
+    cairo_new_sub_path(cr);
+    cairo_arc(cr, x, y, radius, 0, 2 * G_PI);
+    cairo_stroke(cr);
+    cairo_set_dash(cr, nullptr, 0, 0);
+}
+
+void Canvas::clip(const Rect& r) {
+    cairo_save(surface_->cr);
+    cairo_rectangle(surface_->cr, r.x, r.y, r.w, r.h);
+    cairo_clip(surface_->cr);
+}
+
+void Canvas::unclip() { cairo_restore(surface_->cr); }
+
+namespace {
+
+// Which cells of a row of `cells` cells, each `size` pixels wide from `origin`, a pixel covers, and with what weight:
+// the cells' shares add to at most 1.
+struct Cover {
+    int first = 0, last = -1;
+    double from = 0, to = 0;  // in cells
+    double share(int cell) const { return std::min(to, cell + 1.0) - std::max(from, double(cell)); }
+};
+
+Cover cover(int pixel, double origin, double size, int cells) {
+    Cover c;
+    c.from = std::max((pixel - origin) / size, 0.0), c.to = std::min((pixel + 1 - origin) / size, double(cells));
+    c.first = static_cast<int>(c.from + 1e-9);
+    c.last = std::min(static_cast<int>(std::ceil(c.to - 1e-9)) - 1, cells - 1);
+    return c;
+}
+
+std::vector<Cover> covers(int begin, int end, double origin, double size, int cells) {
+    std::vector<Cover> all;
+    for (int i = begin; i < end; ++i) all.push_back(cover(i, origin, size, cells));
+    return all;
+}
+
+}  // namespace
+
+void Canvas::paint(const Block& block, double x, double y, int times, double alpha) {
+    if (alpha <= 0 || block.width == 0) return;
+    const double s = surface_->scale, size = times * s, left = std::round(x * s), top = std::round(y * s);
+    const int x0 = std::max(0, static_cast<int>(left)),
+              x1 = std::min(width_, static_cast<int>(std::lround(left + block.width * size)));
+    const int y0 = std::max(0, static_cast<int>(top)),
+              y1 = std::min(height_, static_cast<int>(std::lround(top + block.height * size)));
+    cairo_surface_flush(surface_->image);
+    unsigned char* data = cairo_image_surface_get_data(surface_->image);
+    const int stride = cairo_image_surface_get_stride(surface_->image);
+    const std::vector<Cover> across = covers(x0, x1, left, size, block.width);
+    for (int j = y0; j < y1; ++j) {
+        const Cover down = cover(j, top, size, block.height);
+        unsigned char* to = data + std::ptrdiff_t(j) * stride + std::ptrdiff_t(4) * x0;
+        for (const Cover& c : across) {
+            double sum[3] = {0, 0, 0}, area = 0;
+            for (int v = down.first; v <= down.last; ++v) {
+                for (int u = c.first; u <= c.last; ++u) {
+                    const double share = c.share(u) * down.share(v);
+                    const unsigned char* from =
+                        &block.rgb[3 * (std::size_t(v) * std::size_t(block.width) + std::size_t(u))];
+                    for (int k = 0; k < 3; ++k) sum[k] += share * from[k];
+                    area += share;
+                }
+            }
+            for (int k = 0; k < 3 && area > 0; ++k) {  // bytes B, G, R, unused
+                unsigned char& byte = to[2 - k];
+                byte = static_cast<unsigned char>(alpha * (sum[k] / area) + (1 - alpha) * byte + 0.5);
+            }
+            to += 4;
+        }
+    }
+    cairo_surface_mark_dirty(surface_->image);
+    pictures_.push_back({x, y, double(block.width) * times, double(block.height) * times});
+}
+
+// ---- Cairo draws on RGB24 pixels or as SVG into a string; Pango sets Inter unhinted, in grey, glyphs at unrounded
+// places, tabular figures throughout. That Inter is there is asked by the name of its family.
+
+namespace {
+
+constexpr const char* family = "Inter";
+
+struct FreeDescription {
+    void operator()(PangoFontDescription* d) const { pango_font_description_free(d); }
+};
+struct FreeOptions {
+    void operator()(cairo_font_options_t* o) const { cairo_font_options_destroy(o); }
+};
+using Description = std::unique_ptr<PangoFontDescription, FreeDescription>;
+
+Description describe(double px, Weight weight) {
+    Description d{pango_font_description_new()};
+    pango_font_description_set_family(d.get(), family);
+    pango_font_description_set_weight(d.get(), static_cast<PangoWeight>(weight));
+    pango_font_description_set_absolute_size(d.get(), px * PANGO_SCALE);
+    return d;
+}
+
+// Asks by name: a font map hands out another family in silence, or ends the program where it has none at all.
+void require_font(PangoFontMap* map) {
+    PangoFontFamily** families = nullptr;
+    int count = 0;
+    pango_font_map_list_families(map, &families, &count);
+    bool found = false;
+    for (int i = 0; i < count; ++i) found |= std::strcmp(pango_font_family_get_name(families[i]), family) == 0;
+    g_free(families);
+    if (!found) {
+        throw OutputError(std::string("plates are set in the font ") + family +
+            ", which this machine does not have: install the package fonts-inter");
+    }
+}
+
+void replace_all(std::string& text, std::string_view what, const std::string& by) {
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+        text.replace(at, what.size(), by);
+    }
+}
+
+// <sup> and <sub> as plain spans of a size and a rise: Pango's own forms leave their scale behind when text is
+// ellipsized within them. Tabular figures throughout.
+std::string spans(std::string markup, double px) {
+    auto open = [&](double rise) {
+        return fmt::format("<span size='70%' rise='{}'>", std::lround(rise * px * PANGO_SCALE));
+    };
+    replace_all(markup, "<sup>", open(0.36));
+    replace_all(markup, "<sub>", open(-0.16));
+    replace_all(markup, "</sup>", "</span>");
+    replace_all(markup, "</sub>", "</span>");
+    return "<span font_features='tnum=1'>" + markup + "</span>";
+}
+
+PangoAlignment to_pango(Align a) {
+    return a == Align::left ? PANGO_ALIGN_LEFT : a == Align::right ? PANGO_ALIGN_RIGHT : PANGO_ALIGN_CENTER;
+}
+
+cairo_status_t append(void* document, const unsigned char* bytes, unsigned int count) {
+    static_cast<std::string*>(document)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+}  // namespace
+
+Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how, Medium medium)
+    : scale(pixels_a_unit), theme(how) {
+    require_font(pango_cairo_font_map_get_default());
+    image = medium == Medium::svg ? cairo_svg_surface_create_for_stream(append, &document, width, height)
+                                  : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    if (medium == Medium::svg) cairo_svg_surface_set_document_unit(image, CAIRO_SVG_UNIT_PX);
+    cr = cairo_create(image);
+    cairo_scale(cr, scale, scale);
+    layout.reset(pango_cairo_create_layout(cr));
+    PangoContext* context = pango_layout_get_context(layout.get());
+    // Grey antialiasing and no hinting: the same outlines whatever the desktop's settings are.
+    std::unique_ptr<cairo_font_options_t, FreeOptions> options{cairo_font_options_create()};
+    cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+    cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+    pango_cairo_context_set_font_options(context, options.get());
+    pango_cairo_context_set_resolution(context, 96);
+    pango_context_set_round_glyph_positions(context, FALSE);
+    pango_context_set_language(context, pango_language_from_string("en"));
+}
+void Canvas::Surface::ink(const Colour& c) {
+    const Colour shown = themed(c, theme);
+    cairo_set_source_rgba(cr, shown.r, shown.g, shown.b, shown.a);
+}
+
+Canvas::Surface::~Surface() {
+    layout.reset();
+    cairo_destroy(cr);
+    cairo_surface_destroy(image);
+}
+
+Rect Canvas::Surface::lay(const std::string& markup, const Text& how, double px, double width) {
+    PangoLayout* l = layout.get();
+    pango_layout_set_font_description(l, describe(px, how.weight).get());
+    pango_layout_set_ellipsize(l, PANGO_ELLIPSIZE_NONE);
+    pango_layout_set_height(l, -1);
+    pango_layout_set_width(l, width < 0 ? -1 : static_cast<int>(std::ceil(width * PANGO_SCALE)));
+    pango_layout_set_wrap(l, PANGO_WRAP_WORD);
+    pango_layout_set_alignment(l, to_pango(how.align));
+    pango_layout_set_line_spacing(l, how.lines > 1 ? 1.12f : 0.0f);
+    std::string text = spans(markup, px);
+    pango_layout_set_markup(l, text.c_str(), static_cast<int>(text.size()));
+    PangoRectangle r;
+    pango_layout_get_extents(l, nullptr, &r);
+    return {double(r.x) / PANGO_SCALE, double(r.y) / PANGO_SCALE, double(r.width) / PANGO_SCALE,
+        double(r.height) / PANGO_SCALE};
+}
+
+}  // namespace crescent::plates

@@ -1,0 +1,249 @@
+// Rings at a round step, 1, 2, 2.5, 3, 4 or 5 times a power of ten, 44 pixels apart or more; rays every 30 degrees from
+// n. A curve is a polyline with a point every quarter of a degree. Densities in 1/sr.
+#include "report/plates/polar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "base/vec.h"
+#include "math/functions.h"
+#include "output/charts.h"
+#include "render/pixel.h"
+#include "report/plates/sheet.h"
+#include "samplers/all.h"
+#include "scene/scene.h"
+
+namespace crescent::plates {
+
+namespace {
+
+struct Frame {
+    double x, y, radius;
+    Canvas::Point at(double angle, double fraction) const {
+        return {x + radius * fraction * math::sin(angle), y - radius * fraction * math::cos(angle)};
+    }
+};
+
+// The rim names the angles: n at 0, and where they fall on a ray, R and the direction it mirrors.
+std::string angle_name(int deg, int tilt_deg, bool roomy) {
+    if (deg == 0) return "n";
+    std::string text = fmt::format("{}{}°", deg < 0 ? "−" : "", std::abs(deg));
+    if (!roomy) return text;
+    if (deg == tilt_deg) return "R, " + text;
+    if (deg == -tilt_deg) return "ω<sub>o</sub>, " + text;
+    return text;
+}
+
+void draw_rays(Canvas& c, const Frame& f, double tilt) {
+    for (int a = -90; a <= 90; a += 30) {
+        Canvas::Point rim = f.at(a * radians_per_degree, 1);
+        c.line(f.x, f.y, rim.x, rim.y, rule, 1);
+        if (std::abs(a) == 90) continue;
+        Canvas::Point p = f.at(a * radians_per_degree, 1 + 8 / f.radius);
+        Text how = with(with(with_px(small_text, 16), Vertical::middle),
+            a < 0       ? Align::right
+                : a > 0 ? Align::left
+                        : Align::centre);
+        double x = a < 0 ? p.x - 80 : a > 0 ? p.x : p.x - 40;
+        std::string name = angle_name(a, int(std::lround(tilt / radians_per_degree)), f.radius >= 110);
+        c.text({x, p.y - 11 - 6 * math::cos(a * radians_per_degree), 80, 22}, name, how);
+    }
+    Canvas::Point r = f.at(tilt, 1);
+    c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
+}
+
+void draw_circles(Canvas& c, const Frame& f, double step, int rings) {
+    Text how = with(with_px(small_text, 16), Align::centre);
+    for (int k = 0; k <= rings; ++k) {
+        double fraction = double(k) / rings;
+        std::vector<Canvas::Point> arc;
+        for (int a = -90; a <= 90; a += 2) arc.push_back(f.at(a * radians_per_degree, fraction));
+        if (k > 0) c.polyline(arc, rule, 1);
+        double x = f.x + f.radius * fraction;
+        c.line(x, f.y, x, f.y + 5, muted, 1.5);
+        c.text({x - 28, f.y + 7, 56, 20}, number(k * step, 3), how);
+    }
+    c.line(f.x - f.radius, f.y, f.x + f.radius, f.y, muted, 1.5);
+    if (f.radius >= 100) c.text({f.x - f.radius, f.y + 7, f.radius - 30, 20}, "p, 1/sr", with_px(small_text, 16));
+}
+
+void draw_curve(Canvas& c, const Frame& f, const PolarCurve& curve, double top) {
+    std::vector<Canvas::Point> path;
+    for (int k = -360; k <= 360; ++k) {
+        double a = k * 0.25 * radians_per_degree;
+        path.push_back(f.at(a, std::min(curve.value(a) / top, 1.0)));
+    }
+    if (curve.filled) {
+        Colour wash = curve.ink;
+        wash.a = 0.25;
+        c.polygon(path, wash);
+    }
+    c.polyline(path, curve.ink, curve.filled ? 2.5 : 2);
+}
+
+void draw_legend(Canvas& c, const PolarPlot& plot) {
+    Rect row{plot.slot.right() - plot.legend_w + 24, plot.slot.y + 14, plot.legend_w - 24, 22};
+    for (const PolarCurve& curve : plot.curves) {
+        c.line(row.x, row.y + 11, row.x + 18, row.y + 11, curve.ink, curve.filled ? 3 : 2);
+        c.text({row.x + 26, row.y, row.w - 26, row.h}, curve.name, with(with_px(small_text, 16), Vertical::middle));
+        row.y += 25;
+    }
+}
+
+}  // namespace
+
+void draw_polar(Canvas& canvas, const PolarPlot& plot) {
+    double w = plot.slot.w - plot.legend_w;
+    double radius = std::min(w / 2 - 40, plot.slot.h - 30 - 28);
+    if (radius < 20) return;
+    double step =
+        round_up(plot.peak / std::max(1, static_cast<int>(radius / 44)), {1, 2, 2.5, 3, 4, 5});  // a label needs 44 px
+    int rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
+    Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
+    draw_circles(canvas, f, step, rings);
+    draw_rays(canvas, f, plot.tilt);
+    for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, step * rings);
+    if (plot.legend_w > 0) draw_legend(canvas, plot);
+}
+
+// ---- The arm is made in double at a point with the material of the shape whose exponent is the experiment's, and one
+// from outside is asked there; its peak is the largest of 1801 angles. An arm that aims at lights is asked at the
+// pixel, of a few thousand, with R nearest to the tilt and a light nearest to R's plane; its peak is that of 1024
+// draws.
+
+namespace {
+
+// The surface that the density is shown for: that of the shape whose exponent is the experiment's.
+ShadingPoint<double> site_of(const Experiment& e, double s, double tilt) {
+    const Shape* shape = e.shape_of_s();
+    Material material = shape ? shape->material : Material{};
+    material.s = s;
+    const Surface surface = surface_of(material, s);
+    ShadingPoint<double> site{};
+    site.wo = {-math::sin(tilt), 0, math::cos(tilt)};
+    site.s = surface.s;
+    site.alpha = surface.alpha;
+    site.diffuse = luminance(surface.rho_d);
+    site.lobe = surface.rho_s;
+    return site;
+}
+
+// An arm without one density (several techniques, each with its own) is left at 0.
+template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
+
+/// `angle` radians from n, in the plane of incidence.
+Vec3d in_incidence(double angle) { return {math::sin(angle), 0, math::cos(angle)}; }
+
+/// How far a pixel's picture is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite
+/// where no light shines on it or R is n.
+double off_the_plane(const OpenPixel& pixel, double tilt) {
+    const Vec3d r = pixel.mirror();
+    const double out = math::hypot(r.x, r.y);
+    double least = std::numeric_limits<double>::infinity();
+    if (!(out > 0.01)) return least;
+    for (const PixelLight& light : pixel.lights())
+        if (light.faces && light.towards.z > 0.05)
+            least = std::min(least,
+                std::fabs(math::atan2(out, r.z) - tilt) +
+                    std::fabs(math::asin((r.x * light.towards.y - r.y * light.towards.x) / out)));
+    return least;
+}
+
+/// Of a few thousand pixels that see the shape whose exponent is the experiment's, or any where none has one.
+std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double tilt) {
+    const Scene scene = Scene(e).with_s(s);
+    const Shape* shape = e.shape_of_s();
+    const std::ptrdiff_t wanted = shape ? shape - e.shapes.data() : -1;
+    const int step =
+        std::max(1, static_cast<int>(std::sqrt(e.image.width * static_cast<double>(e.image.height) / 4e3)));
+    std::shared_ptr<const OpenPixel> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int j = 0; j < e.image.height; j += step)
+        for (int i = 0; i < e.image.width; i += step) {
+            const auto hit = scene.primary(i, j);
+            if (!hit || (wanted >= 0 && hit->shape != wanted)) continue;
+            auto pixel = std::make_shared<const OpenPixel>(scene, i, j);
+            const double off = off_the_plane(*pixel, tilt);
+            if (off < least) least = off, best = std::move(pixel);
+        }
+    return best;
+}
+
+/// A density that is asked for one direction after the other.
+auto one_by_one(std::function<double(const Vec3d&)> pdf) {
+    return [pdf = std::move(pdf)](std::span<const Vec3d> wi, std::span<double> out) {
+        for (std::size_t i = 0; i < wi.size(); ++i) out[i] = pdf(wi[i]);
+    };
+}
+
+bool aims_at_lights_alone(const std::string& sampler) {
+    const SamplerInfo* info = find_arm_info(sampler);
+    return info && !info->combines && !info->misses.empty();
+}
+
+}  // namespace
+
+Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
+    : ask_(one_by_one([](const Vec3d&) { return 0.0; })), tilt_(tilt) {
+    if (aims_at_lights_alone(sampler)) {
+        ask_at_a_pixel(e, sampler, s);
+        return;
+    }
+    ShadingPoint<double> site = site_of(e, s, tilt);
+    for_each_sampler(Samplers{}, [&]<template <class> class A>() {
+        if constexpr (has_pdf<A<double>>) {
+            if (sampler != A<double>::name) return;
+            ask_ = one_by_one([arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
+                double p = arm.pdf(wo, wi).v;
+                return std::isfinite(p) ? p : 0.0;
+            });
+        }
+    });
+    find_peak();
+}
+
+Density::Density(const Experiment& e, const ExternalSampler& outside, double s, double tilt) : tilt_(tilt) {
+    const ShadingPoint<double> site = site_of(e, s, tilt);
+    ask_ = [&outside, wo = site.wo, on = OutsideSurface{site.s, site.alpha, site.diffuse, site.lobe}](
+               std::span<const Vec3d> wi, std::span<double> out) {
+        outside.density(wo, on, wi, out);
+        for (double& p : out) p = p > 0 && std::isfinite(p) ? p : 0.0;
+    };
+    if (!outside.has_density()) ask_ = one_by_one([](const Vec3d&) { return 0.0; });
+    find_peak();
+}
+
+void Density::find_peak() {
+    std::vector<Vec3d> plane;
+    for (int i = -900; i <= 900; ++i) plane.push_back(in_incidence(i * pi / 1800));
+    for (const double p : at(plane)) peak_ = std::max(peak_, p);
+}
+
+void Density::ask_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
+    const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, s, tilt_);
+    if (!pixel) return;
+    const Vec3d r = pixel->mirror();
+    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // towards R from n
+    tilt_ = math::atan2(out, r.z);
+    where_ = fmt::format("pixel ({}, {})", pixel->i(), pixel->j());
+    ask_ = one_by_one([=](const Vec3d& wi) {
+        const double p = pixel->pdf(sampler, {wi.x * x - wi.y * y, wi.x * y + wi.y * x, wi.z});
+        return wi.z > 0 && std::isfinite(p) ? p : 0.0;
+    });
+    for (const PixelSample& drawn : pixel->samples(sampler, 1024, 1))
+        if (drawn.cos > 0) peak_ = std::max(peak_, static_cast<double>(drawn.pdf));
+}
+
+std::vector<double> Density::at(std::span<const Vec3d> wi) const {
+    std::vector<double> out(wi.size());
+    ask_(wi, out);
+    return out;
+}
+
+double Density::in_plane(double angle) const { return at(in_incidence(angle)); }
+
+}  // namespace crescent::plates

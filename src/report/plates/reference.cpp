@@ -1,0 +1,79 @@
+// reference: the film the meters compare with, its regions outlined and named.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiment/queries.h"
+#include "report/plates/sheet.h"
+
+namespace crescent::plates {
+
+namespace {
+
+void outline_region(Sheet& sheet, const Rect& picture, const View& v, const Region& region, const Colour& c) {
+    Rect r = on_picture(picture, whole(v), inside(region.box, v)).inset(-1.5);
+    outline_over(sheet.canvas, r, c);
+    name_tag(sheet, picture, r, region.name, c);
+}
+
+double mean(const View& v, const Box& box) {
+    double sum = 0;
+    for (int y = box.y0; y <= box.y1; ++y) {
+        for (int x = box.x0; x <= box.x1; ++x) sum += v.y[std::size_t(y) * std::size_t(v.width) + std::size_t(x)];
+    }
+    return sum / (double(box.width()) * box.height());
+}
+
+void region_facts(Sheet& sheet, const View& v, double y) {
+    const auto& regions = sheet.experiment().regions;
+    Rect line{facts_slot.x, y + 18, facts_slot.w, 24};
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        if (line.y + 98 > facts_slot.bottom()) {
+            sheet.notes.push_back(fmt::format("{} of {} regions listed", i, regions.size()));
+            break;
+        }
+        const Box& b = regions[i].box;
+        sheet.canvas.fill({line.x, line.y + 3, 18, 18}, region_colour(i));
+        sheet.canvas.text({line.x + 28, line.y, line.w - 28, 24}, "region " + escaped(regions[i].name),
+            with(body_text, Weight::semibold));
+        sheet.canvas.text(
+            {line.x, line.y + 27, line.w, 20}, fmt::format("x {}–{}, y {}–{}", b.x0, b.x1, b.y0, b.y1), small_text);
+        sheet.canvas.text({line.x, line.y + 47, line.w, 20},
+            count(std::uint64_t(b.width()) * std::uint64_t(b.height())) + " pixels", small_text);
+        if (v.width > 0) {
+            sheet.canvas.text({line.x, line.y + 67, line.w, 20},
+                "mean Y " + figure(mean(v, inside(b, v))) + " " + radiance_unit, small_text);
+        }
+        line.y += 104;
+    }
+}
+
+}  // namespace
+
+void draw_reference(Sheet& sheet) {
+    const Experiment& e = sheet.experiment();
+    double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
+    View v = view(sheet.in.reference(s));
+    instrument_header(sheet, "REFERENCE",
+        "not a sampling arm" + (any_tells_s(e) || e.exponent ? " / s=" + number(s) : std::string()),
+        reference_stream(e), false);
+    if (v.width > 0) {
+        Fit f = fit(v.width, v.height, picture_slot.w, picture_slot.h);
+        Rect slot = picture_slot;
+        slot.y += std::floor((slot.h - f.out_h) / 2);
+        Rect picture = paint_photograph(sheet, v, whole(v), slot);
+        for (std::size_t i = 0; i < e.regions.size(); ++i) {
+            outline_region(sheet, picture, v, e.regions[i], region_colour(i));
+        }
+        sheet.notes.push_back(
+            "drawn through Khronos PBR Neutral, exposure " + number(e.exposure) + ", " + to_string(f));
+        sheet.notes.push_back("means off the float film");
+    } else {
+        paint_missing(sheet, picture_slot, "no reference for s=" + number(s));
+    }
+    double y = facts(sheet, "Reference", reference_words(e),
+        {{"s", number(s)}, {"image", fmt::format("{} × {}", e.image.width, e.image.height)}});
+    region_facts(sheet, v, y);
+}
+
+}  // namespace crescent::plates

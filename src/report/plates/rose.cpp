@@ -1,0 +1,235 @@
+// rose: the densities themselves, in 1/sr, each over the hemisphere of n as a dome through turbo, and under it in the
+// plane of incidence as a polar plot. Nothing is sampled: the numbers are the arms' own pdf, those of arms from outside
+// as they answer for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "math/functions.h"
+#include "output/color_map.h"
+#include "report/plates/polar.h"
+#include "report/plates/sheet.h"
+#include "samplers/info.h"
+
+namespace crescent::plates {
+
+namespace {
+
+using Direction = Vec3d;
+// R stands this far from n, in the xz plane: enough to tell R from n, far enough from the horizon to show the lobe.
+constexpr double tilt_deg = 30;
+// At the right of each half, for the colour bar and the legend.
+constexpr double scale_room = 128;
+// The dome is seen from 45 deg above the surface, across the plane of incidence.
+const double up = math::sin(45 * radians_per_degree), away = math::cos(45 * radians_per_degree);
+
+struct Dome {
+    double x = 0, y = 0, radius = 0;  // centre of the base on the sheet
+    Canvas::Point at(const Direction& d, double reach = 1) const {
+        return {x + reach * radius * d.x, y - reach * radius * (d.z * away + d.y * up)};
+    }
+    static bool visible(const Direction& d) {
+        return d.z * up - d.y * away >= -1e-9;
+    }  // the rim's two ends lie on the edge
+};
+
+Direction from_angles(double theta, double phi) {
+    return {math::sin(theta) * math::cos(phi), math::sin(theta) * math::sin(phi), math::cos(theta)};
+}
+
+// The dome's pixels: what lies on the sphere towards the viewer and above the surface.
+Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
+    Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
+    std::vector<Direction> seen;
+    std::vector<std::pair<int, int>> pixels;
+    for (int j = 0; j < block.height; ++j) {
+        for (int i = 0; i < block.width; ++i) {
+            double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
+            double w = w2 > 0 ? std::sqrt(w2) : 0;
+            Direction d{u, v * up - w * away, v * away + w * up};
+            block.set(i, j, nothing);
+            if (w2 > 0 && d.z >= 0) seen.push_back(d), pixels.emplace_back(i, j);
+        }
+    }
+    const std::vector<double> density = p.at(seen);
+    for (std::size_t k = 0; k < seen.size(); ++k)
+        block.set(pixels[k].first, pixels[k].second, turbo(density[k] / peak));
+    return block;
+}
+
+void trace(Canvas& c, const Dome& dome, const std::vector<Direction>& path, const Colour& ink, double width) {
+    std::vector<Canvas::Point> run;
+    for (const Direction& d : path) {
+        if (Dome::visible(d)) {
+            run.push_back(dome.at(d));
+        } else {
+            c.polyline(run, ink, width);
+            run.clear();
+        }
+    }
+    c.polyline(run, ink, width);
+}
+
+// Circles of equal polar angle and meridians every 30 deg, the rim, and the outline.
+void draw_grid(Canvas& c, const Dome& dome) {
+    constexpr Colour thin{1, 1, 1, 0.28};
+    for (int theta = 30; theta <= 90; theta += 30) {
+        std::vector<Direction> ring;
+        for (int k = 0; k <= 120; ++k)
+            ring.push_back(from_angles(theta * radians_per_degree, k * 3 * radians_per_degree));
+        trace(c, dome, ring, theta == 90 ? muted : thin, theta == 90 ? 2 : 1);
+    }
+    for (int phi = 0; phi < 360; phi += 30) {
+        std::vector<Direction> meridian;
+        for (int k = 0; k <= 60; ++k)
+            meridian.push_back(from_angles(k * 1.5 * radians_per_degree, phi * radians_per_degree));
+        trace(c, dome, meridian, thin, 1);
+    }
+    std::vector<Canvas::Point> rim;
+    for (int k = 0; k <= 120; ++k) {
+        double a = k * 1.5 * radians_per_degree;
+        rim.push_back({dome.x + dome.radius * math::cos(a), dome.y - dome.radius * math::sin(a)});
+    }
+    c.polyline(rim, muted, 2);
+}
+
+void draw_arrow(Canvas& c, const Dome& dome, const Direction& d, const std::string& name, double side) {
+    Canvas::Point foot = dome.at(d), tip = dome.at(d, 1.62);
+    c.arrow(foot, tip, bright, 2.5);
+    Text how = with(with(body_text, Weight::semibold), side < 0 ? Align::right : Align::left);
+    double x = side < 0 ? tip.x - 48 : tip.x + 8;
+    c.text({x, tip.y - 8, 40, 24}, name, how);
+}
+
+struct Part {
+    RunKey key;
+    Density p;
+    double peak = p.peak();
+};
+
+void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
+    double head = 26;  // above the dome, for the tips of the arrows
+    int r = static_cast<int>(std::min((slot.w - scale_room - 24) / 2, (slot.h - head) / (1 + up)));
+    if (r < 8) return;
+    Dome dome{std::floor(slot.x + (slot.w - scale_room) / 2), slot.y + head + r, double(r)};
+    sheet.canvas.paint(
+        dome_block(part.p, part.peak, r, ground_pixel(sheet.canvas.theme())), int(dome.x) - r, int(slot.y + head));
+    draw_grid(sheet.canvas, dome);
+    draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
+    draw_arrow(sheet.canvas, dome, {math::sin(part.p.tilt()), 0, math::cos(part.p.tilt())}, "R", 1);
+    Rect bar{slot.right() - scale_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
+    sheet.canvas.text({bar.x, slot.y - 2, scale_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
+    colour_bar(sheet, bar, part.peak, false);
+}
+
+/// Null where the arm is built in, or nobody is there to be asked.
+const ExternalSampler* from_outside(const Sheet& sheet, const std::string& arm) {
+    return sheet.in.outside ? sheet.in.outside(arm) : nullptr;
+}
+
+std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
+    const Experiment& e = sheet.experiment();
+    std::vector<RunKey> keys = keys_of(sheet.plan, e);
+    if (keys.empty()) {
+        for (const ArmPlan& a : e.arms) keys.push_back({a.name, 0, e.s(), e.seed});
+    }
+    std::vector<Part> parts;
+    for (const RunKey& k : keys) {
+        const ExternalSampler* own = from_outside(sheet, k.arm);
+        parts.push_back({k, own ? Density(e, *own, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
+    }
+    return parts;
+}
+
+// Title, density and peak; returns the y under them. In a narrow column the peak has a line of its own.
+double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, const Rect& col, bool narrow) {
+    const Experiment& e = sheet.experiment();
+    const Part& part = parts[i];
+    std::string axis = axis_of(part.key.arm, e);
+    std::string title = arm_name(part.key.arm, e) + (axis.empty() ? "" : " about " + axis);
+    sheet.canvas.text({col.x, col.y, col.w, 30}, title, with_px(title_text, 22));
+    std::string formula = density_formula_at(part.key.arm, part.key.s, e);
+    std::string peak = part.peak > 0 ? "peak " + number(part.peak, 3) + " sr<sup>−1</sup>" : "";
+    if (i > 0 && part.peak > 0 && parts[0].peak > 0) {
+        peak += fmt::format(" = {} × {}", number(part.peak / parts[0].peak, 3), arm_name(parts[0].key.arm, e));
+    }
+    Text how = with(with_px(body_text, 17), muted);
+    Rect line{col.x, col.y + 31, col.w, 24};
+    if (!narrow && !peak.empty()) formula += ",  " + peak;
+    sheet.canvas.text(line, formula, how);
+    if (narrow) sheet.canvas.text({line.x, line.y + 25, line.w, line.h}, peak, how);
+    return line.y + (narrow ? 56 : 31);
+}
+
+/// The largest in the plane of incidence, or anywhere where an arm draws nothing in that plane.
+double peak_in_plane(const Part& part) {
+    double peak = 0;
+    for (int i = -900; i <= 900; ++i) peak = std::max(peak, part.p.in_plane(i * 0.1 * radians_per_degree));
+    return peak > 0 ? peak : part.peak;
+}
+
+/// Why there is nothing to show of an arm.
+std::string why_no_density(const Sheet& sheet, const std::string& arm) {
+    const Experiment& e = sheet.experiment();
+    const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
+    const ExternalSampler* own = from_outside(sheet, arm);
+    return arm_name(arm, e) +
+        (own && own->has_density() ? " says that its density is 0 in the plane of incidence"
+                : own              ? " is a library without crescent_sampler_pdf: its density is not known"
+                : !info            ? " comes from outside, and is not there to be asked for its density"
+                : info->combines   ? " joins several densities, each with its own weight"
+                                   : " aims at lights: none shines where the camera sees");
+}
+
+void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
+    const Experiment& e = sheet.experiment();
+    const Part& part = parts[i];
+    Rect col = column(content_band, parts.size(), i);
+    bool narrow = col.w < 500;
+    double y = draw_words(sheet, parts, i, col, narrow);
+    Rect dome{col.x, y, col.w, content_band.y + 294 - y};
+    if (!(part.peak > 0)) {
+        paint_missing(sheet, dome, why_no_density(sheet, part.key.arm));
+        return;
+    }
+    draw_dome(sheet, part, dome);
+    PolarPlot plot;
+    plot.slot = {col.x, content_band.y + 300, col.w, 240};
+    plot.legend_w = narrow ? 0 : scale_room;
+    plot.peak = peak_in_plane(part);
+    plot.tilt = part.p.tilt();
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
+        if (k != i && (narrow || !lower)) continue;
+        plot.curves.push_back({k == i, arm_colour(parts[k].key.arm, e), escaped(parts[k].key.arm),
+            [&p = parts[k].p](double a) { return p.in_plane(a); }});
+    }
+    draw_polar(sheet.canvas, plot);
+}
+
+}  // namespace
+
+void draw_rose(Sheet& sheet) {
+    double tilt = tilt_deg * radians_per_degree;
+    std::vector<Part> parts = parts_of(sheet, tilt);
+    std::vector<RunKey> keys;
+    for (const Part& p : parts) keys.push_back(p.key);
+    instrument_header(sheet, "PDF ROSE",
+        "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
+        "nothing sampled", false);
+    for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i);
+    if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured
+    for (const std::string& note : {fmt::format("R stands {}° from n", number(tilt_deg)),
+             std::string(
+                 "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
+             std::string("polar: plane of incidence")})
+        sheet.notes.push_back(note);
+    for (const Part& p : parts)
+        if (!p.p.where().empty())
+            sheet.notes.push_back(fmt::format(
+                "{}: {}, R at {}°", escaped(p.key.arm), p.p.where(), number(p.p.tilt() / radians_per_degree, 3)));
+}
+
+}  // namespace crescent::plates

@@ -1,0 +1,59 @@
+// The plate `rose`: the peaks that it states, of arms of the list and of those from outside.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "report/plates/sheet.h"
+#include "tests/support/test_world.h"
+
+namespace crescent::plates {
+namespace {
+
+using plates::World;
+
+TEST(Rose, StatesThePeaksOfTheDensities) {
+    World world(96, 54);
+    PlatePlan plan;
+    plan.kind = PlateKind::rose;
+    plan.runs = {{"cosine", 0, 0}, {"phong", 0, 0}};
+    std::vector<Setting> settings = world.settings(plan);
+    EXPECT_TRUE(has(settings, "peak 0.318 sr"));  // 1/pi
+    EXPECT_TRUE(has(settings, "peak 5.25 sr"));   // 33/(2 pi)
+    EXPECT_TRUE(has(settings, "= 16.5 × cosine"));
+}
+
+/// cos / pi from outside, or a sampler that is not asked for its density.
+struct CosineFromOutside : ExternalSampler {
+    bool asked = true;
+    std::string name() const override { return "cosine"; }
+    int numbers() const override { return 2; }
+    void draw(const OutsideBatch&, const OutsideDraws&) const override {}
+    bool has_density() const override { return asked; }
+    void density(Vec3d, const OutsideSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
+        for (std::size_t i = 0; i < wi.size(); ++i) out[i] = std::max(wi[i].z, 0.0) / pi;
+    }
+};
+
+TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
+    World world(96, 54);
+    world.add_arm("mine", "");
+    PlatePlan plan;
+    plan.kind = PlateKind::rose;
+    plan.runs = {{"mine", 0, 0}};
+    CosineFromOutside mine;
+    PlateInputs in = world.inputs();
+    in.outside = [&](const std::string& arm) { return arm == "mine" ? &mine : nullptr; };
+    const auto says = [&](const char* text) {
+        Sheet sheet(plan, in);
+        draw(sheet);
+        return has(sheet.canvas.settings(), text);
+    };
+    EXPECT_TRUE(says("peak 0.318 sr"));
+    mine.asked = false;
+    EXPECT_TRUE(says("a library without crescent_sampler_pdf"));
+    in.outside = {};
+    EXPECT_TRUE(says("not there to be asked"));
+}
+
+}  // namespace
+}  // namespace crescent::plates

@@ -1,0 +1,149 @@
+// columns, ladder, exponent, surround: runs side by side as photographs. On top each frame, reduced alike; under it the
+// same crop of each, enlarged alike; under that what makes the run different from its neighbours.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/plates/sheet.h"
+
+namespace crescent::plates {
+
+namespace {
+
+constexpr double between = 12;  // frame and crop
+
+struct Varies {
+    bool arm = false, n = false, s = false;
+    explicit Varies(const std::vector<RunKey>& runs) {
+        for (const RunKey& r : runs) {
+            arm |= r.arm != runs[0].arm;
+            n |= r.n != runs[0].n;
+            s |= r.s != runs[0].s;
+        }
+    }
+};
+
+std::string heading(const RunKey& r, const Varies& v, const Experiment& e) {
+    std::vector<std::string> parts;
+    if (v.arm || (!v.n && !v.s)) parts.push_back(arm_name(r.arm, e));
+    if (v.n) parts.push_back("N = " + count(r.n));
+    if (v.s) parts.push_back("s = " + number(r.s));
+    return joined(parts, ", ");
+}
+
+// The crop of the plan; else the first region for the highlight, the last for the surround; else nothing.
+std::optional<Box> crop_of(const Sheet& sheet) {
+    const auto& regions = sheet.experiment().regions;
+    if (sheet.plan.crop) return sheet.plan.crop;
+    if (regions.empty()) return {};
+    return sheet.plan.kind == PlateKind::surround ? regions.back().box : regions.front().box;
+}
+
+// Where everything goes, the same in every cell. Up to six runs stand in one row; more make a grid of crops.
+struct Layout {
+    std::size_t columns = 1, rows = 1;
+    bool frames = true, crops = false;
+    double words_h = 0, frame_h = 0, crop_h = 0, top = 0;  // top: of the pictures in their cell
+    Fit frame, crop;
+    Rect cell(std::size_t i) const {
+        double h = (content_band.h - gap * double(rows - 1)) / double(rows);
+        Rect band{content_band.x, content_band.y + double(i / columns) * (h + gap), content_band.w, h};
+        return column(band, columns, i % columns);
+    }
+};
+
+Layout lay_out(const Sheet& sheet, std::size_t runs, const Varies& varies, const std::optional<Box>& crop) {
+    const Image& image = sheet.experiment().image;
+    Layout l;
+    l.columns = runs <= 6 ? runs : std::max<std::size_t>(6, std::size_t(std::ceil(std::sqrt(1.8 * double(runs)))));
+    l.rows = (runs + l.columns - 1) / l.columns;
+    l.words_h = l.rows > 1 || !(varies.arm || varies.s) ? 36 : 58;
+    double w = l.cell(0).w, room = l.cell(0).h - l.words_h;
+    l.crops = crop.has_value();
+    l.frames = !l.crops || (sheet.plan.kind != PlateKind::surround && l.rows == 1);
+    if (l.frames) {
+        l.frame = fit(image.width, image.height, std::floor(w), std::floor(l.crops ? room / 2 : room));
+        l.frame_h = l.frame.out_h;
+    }
+    if (l.crops) {
+        double left = room - (l.frames ? l.frame_h + between : 0);
+        l.crop = fit(crop->width(), crop->height(), std::floor(w), std::floor(left));
+        l.crop_h = l.crop.out_h;
+    }
+    double used = l.frame_h + l.crop_h + (l.frames && l.crops ? between : 0) + l.words_h;
+    l.top = std::floor((l.cell(0).h - used) / 2);
+    return l;
+}
+
+void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l, const std::optional<Box>& crop) {
+    const double exposure = sheet.experiment().exposure;
+    Rect slot{col.x, col.y + l.top, col.w, l.frame_h};
+    Box all = whole(v);
+    if (l.frames) {
+        Rect r = paint_framed(sheet, photograph_block(v, all, l.frame, exposure), slot);
+        if (l.crops) outline_over(sheet.canvas, on_picture(r, all, *crop).inset(-1), photograph_accent);
+        slot.y += l.frame_h + between;
+    }
+    if (l.crops) {
+        slot.h = l.crop_h;
+        Rect r = paint_framed(sheet, photograph_block(v, *crop, l.crop, exposure), slot);
+        if (l.frames) sheet.canvas.outline(r.inset(-1), photograph_accent, 1.5);
+    }
+    sheet.not_finite += not_finite(v, l.frames ? all : *crop);
+}
+
+void draw_words(Sheet& sheet, const RunKey& run, const Varies& varies, const Layout& l, const Rect& col) {
+    const Experiment& e = sheet.experiment();
+    double y = col.bottom() - l.top - l.words_h;
+    sheet.canvas.text({col.x, y + 8, col.w, 28}, heading(run, varies, e), with(with_px(title_text, 22), Align::centre));
+    if (l.words_h < 58) return;
+    std::string density = varies.s ? density_formula_at(run.arm, run.s, e) : density_formula(run.arm, e);
+    sheet.canvas.text({col.x, y + 35, col.w, 23}, density, with(with(with_px(body_text, 17), muted), Align::centre));
+}
+
+void add_notes(Sheet& sheet, const Layout& l, const std::optional<Box>& crop) {
+    if (l.frames) {
+        std::string how = l.frame.reduced ? "area average in linear light, then tone-mapped" : "pixels as they are";
+        sheet.notes.push_back(fmt::format("frames {} ({})", to_string(l.frame), how));
+    }
+    if (l.crops) {
+        std::string how = l.crop.reduced ? " (area average in linear light)" : ", pixels as they are";
+        sheet.notes.push_back(
+            fmt::format("crop x {}–{}, y {}–{}, {}{}", crop->x0, crop->x1, crop->y0, crop->y1, to_string(l.crop), how));
+    }
+    sheet.notes.push_back(fmt::format("exposure {}", number(sheet.experiment().exposure)));
+}
+
+}  // namespace
+
+void draw_strip(Sheet& sheet) {
+    const Experiment& e = sheet.experiment();
+    std::vector<RunKey> runs = keys_of(sheet.plan, e);
+    if (runs.empty()) {
+        photograph_header(sheet, "no runs", "");
+        paint_missing(sheet, content_band, "the plan names no run");
+        return;
+    }
+    photograph_header(sheet, runs_label(runs, e), stream_words(runs));
+    View any;
+    any.width = e.image.width, any.height = e.image.height;
+    std::optional<Box> crop = crop_of(sheet);
+    if (crop) crop = inside(*crop, any);
+    Varies varies(runs);
+    Layout l = lay_out(sheet, runs.size(), varies, crop);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        Rect col = l.cell(i);
+        View v = view(sheet.in.film(runs[i]));
+        if (v.width > 0) {
+            draw_pictures(sheet, v, col, l, crop);
+        } else {
+            paint_missing(sheet, {col.x, col.y + l.top, col.w, col.h - 2 * l.top - l.words_h},
+                escaped(to_string(runs[i])) + " was not run");
+        }
+        draw_words(sheet, runs[i], varies, l, col);
+    }
+    add_notes(sheet, l, crop);
+}
+
+}  // namespace crescent::plates

@@ -1,0 +1,370 @@
+// The scene as the experiment gives it: camera, shapes, lights. Lengths in scene units, radiance in W/(sr m^2).
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "experiment/queries.h"
+#include "output/formula.h"
+#include "report/page.h"
+#include "report/wording.h"
+#include "samplers/info.h"
+#include "scene/lobes/lobe.h"
+
+namespace crescent::inline report {
+namespace {
+
+using html::words;
+
+std::string vec(const Vec3d& v) {
+    return html::value(fmt::format("({}, {}, {})", compact(v.x), compact(v.y), compact(v.z)));
+}
+std::string rgb(const Rgb& c) {
+    if (c[0] == c[1] && c[1] == c[2]) return shortest(c[0]);
+    return html::value(fmt::format("({}, {}, {})", compact(c[0]), compact(c[1]), compact(c[2])));
+}
+
+std::string value_of(double x) { return shortest(x); }
+std::string value_of(bool x) { return x ? "yes" : "no"; }
+std::string value_of(const Vec3d& v) { return vec(v); }
+std::string value_of(const std::optional<Rgb>& c) { return c ? rgb(*c) : ""; }
+
+/// "centre (0, 1, 0), radius 0.5": the parameters of the kind that `any` holds; those that are not given are left out.
+template <class Any> std::string parameters_of(const Any& any) {
+    return std::visit(
+        []<class Kind>(const Kind& kind) {
+            std::string out;
+            for (const Parameter<Kind>& parameter : Kind::parameters()) {
+                const std::string value =
+                    std::visit([&](auto member) { return value_of(kind.*member); }, parameter.member);
+                if (value.empty()) continue;
+                std::string name(parameter.name);
+                std::replace(name.begin(), name.end(), '_', ' ');
+                out += fmt::format("{}{} {}", out.empty() ? "" : ", ", name, value);
+            }
+            return out;
+        },
+        any);
+}
+
+std::string lobe(const Material& m) {
+    if (m.rho_s == 0) return "–";
+    const std::string share = "<i>ρ</i><sub>s</sub> = " + (m.specular ? rgb(*m.specular) : shortest(m.rho_s));
+    const LobeInfo& lobe = lobe_info(m.brdf);
+    const bool by_alpha = lobe.parameter == LobeParameter::alpha;
+    return fmt::format("{}, {}, {} = {}", share, lobe.label, by_alpha ? "<i>α</i>" : "<i>s</i>",
+        shortest((by_alpha ? m.alpha : m.s).value_or(0)));
+}
+
+std::string shapes_table(const Page& page) {
+    html::Table table("Shapes. Pixels: how many primary rays meet the shape first",
+        {words("Shape"), words("Kind"), words("Where"), words("<i>ρ</i><sub>d</sub>"), words("Lobe"),
+            words("Blocks the lights"), {"Pixels", true}});
+    for (const Shape& shape : page.in.experiment.shapes) {
+        const auto found = page.in.metrics.shape_pixels.find(shape.name);
+        const bool known = found != page.in.metrics.shape_pixels.end();
+        table.row({html::heading(escape(shape.name)), words(std::string(shape.kind())),
+            words(parameters_of(shape.form)), words(rgb(shape.material.rho_d)), words(lobe(shape.material)),
+            words(shape.occludes ? "yes" : "no"), html::figure(known ? std::to_string(found->second) : "")});
+    }
+    return table.empty() ? "" : table.str();
+}
+
+std::string lights_table(const Experiment& e) {
+    html::Table table("Lights. Sampled rays alone meet them; the fill comes from wherever no other light is met",
+        {words("Light"), words("Where"), words("Radiance, W/(sr m²)")});
+    for (const auto& [path, light] : all_lights(e))
+        table.row({html::heading(escape(light.name)),
+            words(fmt::format("{}: {}", light.kind(), parameters_of(light.form))), words(rgb(light.radiance))});
+    table.row({html::heading("fill"), words("the whole hemisphere"), words(rgb(e.fill))});
+    return table.str();
+}
+
+}  // namespace
+
+PageSection scene(Page& page) {
+    const Experiment& e = page.in.experiment;
+    std::string out =
+        html::p(fmt::format("The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one "
+                            "primary ray through the centre of each; {} of them meet a surface. Directions are drawn "
+                            "once, at that surface: one bounce, no more.",
+            vec(e.camera.eye), vec(e.camera.target), shortest(e.camera.vfov_deg), e.image.width, e.image.height,
+            page.in.metrics.geometry_pixels));
+    std::vector<std::string> warnings;
+    for (const std::string& warning : warnings_of(e))
+        warnings.push_back("<b class=\"bad\">Warning</b>: " + escape(warning));
+    if (!warnings.empty()) out += html::list(warnings);
+    out += page.figures.plates(PlateKind::gallery) + shapes_table(page) + lights_table(e);
+    return {"scene", "The scene", out};
+}
+
+// ---- The densities of the arms with the maps that draw from them, as the arms' own files state them.
+
+namespace {
+
+using html::words;
+
+constexpr const char* plain_prose = R"(
+<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction. The azimuth
+is 2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over the axis it is measured from.</p>
+)";
+
+constexpr const char* other_prose = R"(
+<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction, and a
+two-sample arm does so twice. <i>m</i> is the half vector, of which the direction is a mirror image; <i>y</i> a point
+of a light of area <i>A</i> and <i>θ</i><sub>y</sub> the angle there between its normal and the ray; Ω the solid angle
+that the directions to a light are drawn from.</p>
+)";
+
+std::string rungs(const ArmPlan& arm) {
+    std::vector<std::string> all;
+    for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
+    return html::join(all);
+}
+
+/// What draws in place of a built-in arm.
+std::string source_of(const ArmPlan& arm) {
+    if (arm.plugin) return "that of the plugin " + html::code(*arm.plugin);
+    return "that of the program " + html::code(arm.exec.value_or(""));
+}
+
+/// One density about one direction: a polar angle is all that there is to it.
+bool plain(const ArmPlan& arm) {
+    const SamplerInfo* info = find_arm_info(arm.sampler);
+    return info && info->about != PdfAxis::none;
+}
+
+/// The arm's name, with its sampler where that is another, and what light it cannot reach.
+std::string name_of(const ArmPlan& arm, const SamplerInfo& info, bool fill) {
+    std::string out = escape(arm.name == arm.sampler ? std::string(info.label) : arm.name);
+    if (arm.name != arm.sampler) out += ", sampler " + html::code(arm.sampler);
+    if (!info.misses.empty() && fill)
+        out += fmt::format("<br /><small>cannot reach {}: biased here</small>", info.misses);
+    return out;
+}
+
+}  // namespace
+
+PageSection densities(Page& page) {
+    html::Table table("The densities, the maps that draw from them and the rungs of <i>N</i> each arm ran",
+        {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
+    const auto& arms = page.in.experiment.arms;
+    const Rgb& fill = page.in.experiment.fill;
+    for (const ArmPlan& arm : arms) {
+        const SamplerInfo* info = find_arm_info(arm.sampler);
+        if (!info) {
+            table.row(
+                {html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""), words(rungs(arm))});
+            continue;
+        }
+        table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
+            words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
+            words(formula::html(info->axis)), words(rungs(arm))});
+    }
+    if (table.empty()) return {};
+    const char* prose = std::all_of(arms.begin(), arms.end(), plain) ? plain_prose : other_prose;
+    return {"densities", arms.size() == 3 ? "Three densities" : "The densities",
+        prose + table.str() + page.figures.plates(PlateKind::rose)};
+}
+
+// ---- The question, and the estimator with its meters.
+
+namespace {
+
+using namespace mathml;
+
+constexpr const char* question_prose = R"(
+<p>A renderer asks how much light leaves a point towards the eye. It answers by firing <i>N</i> rays, weighing what each
+brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives
+the right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the
+picture the noise sits.</p>
+<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, is compared at equal
+<i>N</i> and is fed the same random numbers, pixel by pixel and sample by sample. What differs is the density
+<math><mi>p</mi></math>, so whatever differs in the films is its doing.{rays}{bias}{regions}</p>
+<p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out
+of many; the band beside it shows what other seeds give, and where the samples are too heavy-tailed for a band the
+words {heavy} stand in its place.</p>
+)";
+
+constexpr const char* estimator_prose = R"(
+<p>The light that leaves a point towards the eye after one bounce is</p>
+{integral}
+<p>and its estimate from <i>N</i> directions drawn with density {p} (in 1/sr) is</p>
+{estimator}
+<p>Three rules hold for every arm. The cosine {cosine} stays in the numerator. A direction at or under the horizon
+weighs nothing and still counts in <i>N</i>; no density is rescaled to make up for it. And a direction is divided by the
+density of the arm that drew it, never by another’s.</p>
+)";
+
+constexpr const char* brdf_prose = R"(
+<p>A glossy surface adds a lobe to its Lambert part, <i>f</i> = <i>ρ</i><sub>d</sub>/π + <i>ρ</i><sub>s</sub> · lobe.
+The lobes of this scene, in 1/sr:</p>
+)";
+
+constexpr const char* constants_prose = R"(
+<p>Constants that look alike mean different things. This BRDF’s <i>s</i> + 2 makes its lobe reflect the share
+<i>ρ</i><sub>s</sub> of the light at normal incidence; the <i>s</i> + 1 of a density about <i>R</i> makes that integrate
+to one. Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
+)";
+
+constexpr const char* meters_prose = R"(
+<h3>What is measured</h3>
+<p>All on luminance <i>Y</i> (Rec. 709 weights, linear). Against the reference, over a region <i>A</i>:</p>
+{rmse}
+<p>Without a reference, from the samples themselves, the variance of a pixel’s mean, averaged over the region:</p>
+{variance}
+<p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of
+all directions drawn that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of
+the whole frame mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
+)";
+
+std::string spelled(std::size_t count) {
+    static const char* words[] = {"no arms", "one arm", "two arms", "three arms", "four arms", "five arms", "six arms"};
+    return count < 7 ? words[count] : fmt::format("{} arms", count);
+}
+
+std::string regions_sentence(const Experiment& e) {
+    if (e.regions.empty()) return {};
+    std::vector<std::string> names;
+    for (const Region& r : e.regions)
+        names.push_back(fmt::format("<b>{}</b> ({} × {} pixels)", escape(r.name), r.box.width(), r.box.height()));
+    return fmt::format(" Errors are read in {}, {}.",
+        e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
+}
+
+/// The lobes of the scene's glossy surfaces, in the list's order.
+std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
+    std::vector<const LobeInfo*> out;
+    for (const LobeInfo& lobe : lobe_infos())
+        if (std::ranges::any_of(
+                e.shapes, [&](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe.kind; }))
+            out.push_back(&lobe);
+    return out;
+}
+
+std::string brdf_words(const Page& page) {
+    const std::vector<const LobeInfo*> lobes = lobes_of(page.in.experiment);
+    if (lobes.empty()) return {};
+    html::Table table("Lobes of this scene", {html::words("Lobe"), html::words("Value, 1/sr"), html::words("")});
+    for (const LobeInfo* lobe : lobes)
+        table.row({html::heading(escape(std::string(lobe->label))),
+            html::words(in_cell(formula::mathml(lobe->formula))), html::words(formula::html(lobe->summary))});
+    std::string out = brdf_prose + table.str();
+    const bool about_mirror = std::ranges::any_of(lobes, [](const LobeInfo* l) { return l->about_mirror; });
+    if (about_mirror && page.find.s() > 0)
+        out += display(mirror(), "R is the outgoing direction mirrored at the normal") +
+            fmt::format(constants_prose, fmt::arg("slip", percent(1 / (page.find.s() + 1), 2)),
+                fmt::arg("s", shortest(page.find.s())));
+    return out;
+}
+
+}  // namespace
+
+PageSection question(Page& page) {
+    std::vector<std::string> names;
+    for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
+    return {"question", "The question",
+        fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", html::join(names)),
+            fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()),
+            fmt::arg("seed", page.seed_name()), fmt::arg("rays", ray_words(page.in.experiment)),
+            fmt::arg("bias", bias_words(page.in.experiment)))};
+}
+
+PageSection estimator_equation(Page& page) {
+    const Experiment& e = page.in.experiment;
+    std::string out = fmt::format(estimator_prose,
+        fmt::arg("integral", display(integral(), "the reflection integral over the upper hemisphere")),
+        fmt::arg(
+            "estimator", display(mathml::estimator(), "one over N times the sum of f times L times cosine over p")),
+        fmt::arg("p", in_line(mi("p"))), fmt::arg("cosine", in_line(row({mi("n"), mo("⋅"), omega()}))));
+    out += brdf_words(page);
+    out +=
+        fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
+            fmt::arg("variance", display(variance(), "sample variance over N")),
+            fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
+    return {"estimator", "The estimator", out};
+}
+
+// ---- What everything is measured against, and how much it would matter to use the Monte Carlo reference of the note
+// instead.
+
+namespace {
+
+using html::words;
+
+constexpr const char* quadrature_prose = R"(
+<p>The reference integrates each pixel to convergence: the Lambert term on the fill in closed form, the lobe on the fill
+from a table of its albedo, every light by quadrature. It has no seed, and states its own error.</p>
+)";
+
+constexpr const char* both_prose = R"(
+<p>Two references are computed. The quadrature integrates each pixel to convergence and has no seed. The Monte Carlo one
+adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn from it, and each light by {disk} on
+its surface, on a seed of its own ({seed}). The meters of this run use the <b>{used}</b>. The table shows how far the
+two lie apart, what the random one claims as its standard error, and by how much the RMSE of any arm would change if the
+other one were used.</p>
+)";
+
+/// Where the reference's own error is too large a part of an RMSE.
+std::string not_good_enough(const std::vector<ReferenceQuality>& all) {
+    std::string out;
+    for (const ReferenceQuality& r : all)
+        if (r.error_share > most_error_share)
+            out += fmt::format(
+                " <b>It is not good enough in region {} at <i>s</i> = {}</b>: its own error is {} of the "
+                "smallest RMSE there.",
+                escape(r.region), shortest(r.s), percent(r.error_share, 2));
+    return out.empty() ? out : html::p("The reference that the meters use states its own error." + out);
+}
+
+std::string verdict(const std::vector<ReferenceQuality>& all) {
+    const auto worst =
+        std::ranges::max_element(all, {}, [](const ReferenceQuality& r) { return *r.max_relative_rmse_change; });
+    const std::string out =
+        fmt::format("The choice of the reference changes an RMSE by at most {}, in region {} at <i>s</i> = {}.",
+            percent(*worst->max_relative_rmse_change, 2), escape(worst->region), shortest(worst->s));
+    const bool explained = std::ranges::all_of(
+        all, [](const ReferenceQuality& r) { return *r.rms_difference <= 2 * *r.rms_standard_error; });
+    return html::p(out +
+        (explained
+                ? " Everywhere the two differ by no more than twice the standard error of the random one."
+                : " Somewhere they differ by more than twice the standard error of the random one: that error is too "
+                  "small there, or its tail too long."));
+}
+
+std::string table_of_both(const std::vector<ReferenceQuality>& all) {
+    html::Table table("The Monte Carlo reference against the quadrature, root mean square over a region, in <i>Y</i>",
+        {words("Region"), {"<i>s</i>", true}, {"Apart by", true}, {"Its standard error", true},
+            {"Quadrature’s error", true}, {"Largest change of an RMSE", true}});
+    for (const ReferenceQuality& r : all)
+        table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
+            html::figure(figures(*r.rms_difference, 3)), html::figure(figures(*r.rms_standard_error, 3)),
+            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(*r.max_relative_rmse_change, 2))});
+    return table.str() + verdict(all);
+}
+
+std::string table_of_one(const std::vector<ReferenceQuality>& all) {
+    html::Table table("The reference’s own error, root mean square over a region, in <i>Y</i>",
+        {words("Region"), {"<i>s</i>", true}, {"Its error", true}, {"Share of the smallest RMSE", true}});
+    for (const ReferenceQuality& r : all)
+        table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
+            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(r.error_share, 2))});
+    return table.str();
+}
+
+}  // namespace
+
+PageSection reference(Page& page) {
+    const auto& all = page.in.metrics.references;
+    const ReferencePlan& plan = page.in.experiment.reference;
+    const std::string plates = page.figures.plates(PlateKind::reference);
+    if (all.empty() && plates.empty()) return {};
+    const bool both = !all.empty() && all.front().max_relative_rmse_change.has_value();
+    std::string out = quadrature_prose;
+    if (both)
+        out = fmt::format(both_prose, fmt::arg("lobe", plural(plan.lobe_spp, "sample")),
+            fmt::arg("disk", plural(plan.disk_spp, "sample")), fmt::arg("seed", plan.seed),
+            fmt::arg("used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "Monte Carlo reference"));
+    if (!all.empty()) out += (both ? table_of_both(all) : table_of_one(all)) + not_good_enough(all);
+    return {"reference", "The reference", out + plates};
+}
+
+}  // namespace crescent::inline report

@@ -1,0 +1,193 @@
+// An arm's side follows from the axis that SamplerInfo gives its density; one that combines others has none. Of those
+// about the normal the one with most rungs in common with the mirror's is taken, of equals the one with the least sum
+// of ln RMSE over the regions, at the headline N where both ran, else at the largest they share.
+#include "report/wording.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+#include "experiment/queries.h"
+#include "math/functions.h"
+#include "report/page.h"
+#include "samplers/info.h"
+
+namespace crescent::inline report {
+namespace {
+
+/// Sum of log RMSE over the regions; infinite where a run or an error is missing.
+double error_of(const Page& page, const ArmPlan& arm, std::uint64_t n) {
+    double sum = 0;
+    for (const Region& region : page.in.experiment.regions) {
+        const auto rmse = page.find.rmse(arm.name, n, region.name);
+        if (!rmse || !(*rmse > 0)) return std::numeric_limits<double>::infinity();
+        sum += math::log(*rmse);
+    }
+    return sum;
+}
+
+bool is_about(const ArmPlan& arm, PdfAxis axis) {
+    const SamplerInfo* info = find_arm_info(arm.sampler);
+    return info && info->about == axis && !info->combines;
+}
+
+std::ptrdiff_t shared_rungs(const ArmPlan& a, const ArmPlan& b) {
+    return std::ranges::count_if(a.n, [&](std::uint64_t n) { return std::ranges::find(b.n, n) != b.n.end(); });
+}
+
+std::vector<std::string> names_where(const Experiment& e, const std::function<bool(const ArmPlan&)>& is) {
+    std::vector<std::string> names;
+    for (const ArmPlan& arm : e.arms)
+        if (is(arm)) names.push_back("<b>" + escape(arm.name) + "</b>");
+    return names;
+}
+
+}  // namespace
+
+std::vector<const ArmPlan*> arms_about_normal(const Experiment& experiment) {
+    std::vector<const ArmPlan*> out;
+    for (const ArmPlan& arm : experiment.arms)
+        if (is_about(arm, PdfAxis::normal)) out.push_back(&arm);
+    return out;
+}
+
+const ArmPlan* arm_about_mirror(const Experiment& experiment) {
+    for (const ArmPlan& arm : experiment.arms)
+        if (is_about(arm, PdfAxis::mirror)) return &arm;
+    return nullptr;
+}
+
+ArmPair arm_pair(const Page& page) {
+    ArmPair pair;
+    pair.narrow = arm_about_mirror(page.in.experiment);
+    if (!pair.narrow) return {};
+    double least = std::numeric_limits<double>::infinity();
+    std::ptrdiff_t most = 0;
+    for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
+        const auto ran = [&](std::uint64_t n) {
+            return n > 0 && page.find.run(arm->name, n) && page.find.run(pair.narrow->name, n);
+        };
+        const std::uint64_t shared = page.find.headline_n();
+        const std::uint64_t n = ran(shared) ? shared : page.find.common_n({arm, pair.narrow});
+        if (!ran(n)) continue;
+        const double error = error_of(page, *arm, n);
+        const std::ptrdiff_t rungs = shared_rungs(*arm, *pair.narrow);
+        if (!pair.broad || rungs > most || (rungs == most && error < least))
+            pair.broad = arm, pair.n = n, least = error, most = rungs;
+    }
+    return pair ? pair : ArmPair{};
+}
+
+std::string run_html(const RunKey& key, const Experiment& experiment) {
+    std::string out = fmt::format("{}, <i>N</i> = {}", escape(key.arm), key.n);
+    if (tells_s(key.arm, key.s, experiment)) out += fmt::format(", <i>s</i> = {}", shortest(key.s));
+    return out;
+}
+
+std::string ray_words(const Experiment& experiment) {
+    const auto names = names_where(experiment, [](const ArmPlan& arm) { return techniques_of(arm) > 1; });
+    if (names.empty()) return {};
+    return fmt::format(
+        " {} {} two techniques: {} <i>N</i> counts pairs, and at equal <i>N</i> {} two rays for each one "
+        "of the others.",
+        html::join(names), names.size() == 1 ? "joins" : "join", names.size() == 1 ? "its" : "their",
+        names.size() == 1 ? "it sends" : "they send");
+}
+
+std::string bias_words(const Experiment& experiment) {
+    std::string out;
+    for (const ArmPlan& arm : experiment.arms)
+        if (const std::string missed = missed_light(arm, experiment); !missed.empty())
+            out += fmt::format(
+                " <b>{}</b> is biased in this scene: it cannot reach {}. More samples do not bring that light, so "
+                "that its RMSE stops falling.",
+                escape(arm.name), escape(missed));
+    return out;
+}
+
+// ---- Sentences that compare two arms. They are put together from the values, so that they turn round when the values
+// do, and they rank nothing whose intervals overlap or whose tail leaves no interval.
+
+namespace {
+
+std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& meter, const std::string& seed) {
+    const std::string larger = escape(c.larger), smaller = escape(c.smaller);
+    if (c.equal)
+        return fmt::format("At <i>N</i> = {} and the {} seed, {} and {} read the same {}, {}.", n, seed, larger,
+            smaller, meter, html::value(figures(c.high)));
+    return fmt::format("At <i>N</i> = {} and the {} seed, {}’s {} is <b>{} times</b> {}’s ({} against {}).", n, seed,
+        larger, meter, times(c.ratio), smaller, html::value(figures(c.high)), html::value(figures(c.low)));
+}
+
+std::string heavy_words(const Page& page, const SeedSpread& a, const SeedSpread& b) {
+    std::string names;
+    for (const SeedSpread* band : {&a, &b}) {
+        if (!band->band.heavy) continue;
+        const auto tail = page.find.tail(*band);
+        names += (names.empty() ? "" : " and ") + escape(band->key.arm);
+        if (tail) names += fmt::format(" (tail index {})", html::value(tail_html(tail)));
+    }
+    return fmt::format(
+        " How large the ratio is stays <b>inconclusive: heavy tail</b>: the samples of {} spread so widely "
+        "there that no interval means anything.",
+        names);
+}
+
+std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) {
+    if (a.band.heavy || b.band.heavy) return heavy_words(page, a, b);
+    if (a.band.seeds < 2) return " One seed gives no interval, so the two are not ranked.";
+    const bool overlap = a.band.q05 <= b.band.q95 && b.band.q05 <= a.band.q95;
+    if (overlap) return " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked.";
+    const double chance = chance_of_parted_bands(std::min(a.band.seeds, b.band.seeds));
+    return chance > 0.05 ? fmt::format(
+                               " With {} seeds the bands of equal arms lie apart in {} of all runs, so the two "
+                               "are not ranked.",
+                               std::min(a.band.seeds, b.band.seeds), percent(chance, 2))
+                         : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";
+}
+
+html::Cell meter_cell(const Page& page, const SeedSpread* band) {
+    if (!band) return html::figure("");
+    std::string out = html::number(figures_of(band->meter, band->measured));
+    if (band->band.seeds > 1)
+        out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->meter, band->band.median)),
+            interval_html(band->meter, band->band));
+    if (const auto tail = page.find.tail(*band); tail && band->meter.starts_with("rmse."))
+        out += fmt::format("<small>tail index {}</small>", html::value(tail_html(tail)));
+    return {out, true};
+}
+
+}  // namespace
+
+std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns) {
+    std::vector<html::Cell> head{html::words("Meter")};
+    for (const Column& column : columns) head.push_back({column.title_html, true});
+    html::Table table(caption_html, head);
+    for (const std::string& meter : headline_meters(page.in.experiment)) {
+        std::vector<html::Cell> row{html::heading(meter_html(meter))};
+        bool any = false;
+        for (const Column& column : columns) {
+            const SeedSpread* band = page.find.band(column.arm, column.n, meter, column.s);
+            any = any || band;
+            row.push_back(meter_cell(page, band));
+        }
+        if (any) table.row(row);
+    }
+    return table.empty() ? "" : table.str();
+}
+
+std::string ordering_sentence(
+    const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
+    const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
+    if (!of_a || !of_b) return {};
+    const RatioOfErrors c = compare(a, *of_a, b, *of_b);
+    const std::string meter = "rmse." + region;
+    std::string out = first_words(c, n, meter_html(meter), page.seed_name());
+    const SeedCount seeds = page.find.seeds_above(c.larger, c.smaller, n, region);
+    if (seeds.of > 1 && !c.equal) out += fmt::format(" The order is the same in {} of {} seeds.", seeds.held, seeds.of);
+    const SeedSpread *band_a = page.find.band(a, n, meter), *band_b = page.find.band(b, n, meter);
+    if (band_a && band_b) out += ranking(page, *band_a, *band_b);
+    return out;
+}
+
+}  // namespace crescent::inline report

@@ -1,0 +1,50 @@
+// The CPU hands a job on to estimate_films(). The list of kinds is a static of its function, so that it is there for
+// whoever registers before main.
+#include "run/backend.h"
+
+#include "render/estimator.h"
+
+namespace crescent::inline runs {
+
+namespace {
+
+class Cpu : public Instrument {
+public:
+    explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
+    std::string name() const override { return "CPU"; }
+    std::vector<Film> films(
+        const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint) override {
+        return estimate_films(view, {job.sampler, job.outside.get()}, job.n, job.seed, isa_, monitor, checkpoint);
+    }
+
+private:
+    std::string isa_;
+};
+
+}  // namespace
+
+std::shared_ptr<Instrument> cpu_instrument(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
+
+std::vector<std::shared_ptr<const BackendKind>>& instrument_kinds() {
+    static std::vector<std::shared_ptr<const BackendKind>> kinds;
+    return kinds;
+}
+
+std::shared_ptr<const BackendKind> find_instrument(const std::string& name) {
+    for (const auto& kind : instrument_kinds())
+        if (kind->name() == name) return kind;
+    return nullptr;
+}
+
+}  // namespace crescent::inline runs
+
+// ---- The maker is a static of its function, so that an initialiser of another file may be the first to ask for it.
+
+namespace crescent {
+
+ExplainerHook& film_maker() {
+    static ExplainerHook maker;
+    return maker;
+}
+
+}  // namespace crescent

@@ -1,0 +1,76 @@
+// Four bytes a pixel for each plane of each film and reference held, 12 more a pixel, the hits of images up to 2^20
+// pixels, 150 MB for the program. The image that is suggested fits into 90 % of the memory that is there.
+#include "run/resources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+
+#include "base/machine.h"
+#include "render/film.h"
+#include "render/tiles.h"
+
+namespace crescent::inline runs {
+
+namespace {
+
+constexpr double for_itself = 150e6;  // code, fonts, plates, the report; measured on the gallery at 64 x 36
+// A pixel: Scene::remember_primaries' 4, shape map, site counts and rows on their way to a file.
+constexpr double working_bytes = 12;
+
+double pixels_that_fit(double pixels, double needed, double available) {
+    const double each = (needed - for_itself) / pixels;
+    return std::max(0.0, (0.9 * available - for_itself) / each);
+}
+
+}  // namespace
+
+std::uint64_t memory_needed(const Experiment& experiment) {
+    const double film = 4.0 * static_cast<double>(Film().planes().size()),
+                 reference = 4.0 * static_cast<double>(ReferenceFilm().planes().size());
+    double rungs = 0, most = 0;
+    std::set<double> exponents;
+    for (const Job& job : jobs_of(experiment, experiment.seed)) {
+        rungs += static_cast<double>(job.n.size());
+        most = std::max(most, static_cast<double>(job.n.size()));
+        exponents.insert(job.s);
+    }
+    const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
+    const ReferencePlan& asked = experiment.reference;
+    const double references = asked.monte_carlo || asked.kind == ReferenceKind::note ? 2 : 1;
+    const double again = experiment.seeds > 1 ? most : 0;
+    const double a_pixel =
+        film * (rungs + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
+    const double hits = pixels <= static_cast<double>(Scene::whole_hits) ? pixels * sizeof(Hit) : 0;
+    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits);
+}
+
+bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available) {
+    return memory_needed(plan.experiment) + bytes_of_points(scene) <= available / 2;
+}
+
+std::string why_too_large(const Experiment& experiment, std::uint64_t available) {
+    const auto needed = static_cast<double>(memory_needed(experiment)), there = static_cast<double>(available);
+    if (needed <= there) return "";
+    const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
+    const double scale = std::sqrt(pixels_that_fit(pixels, needed, there) / pixels);
+    const int width = static_cast<int>(experiment.image.width * scale),
+              height = static_cast<int>(experiment.image.height * scale);
+    std::string say = fmt::format(
+        "this run needs about {:.2g} GB of memory, and {:.2g} GB are to be had: every rung of every arm is held at {} "
+        "x {} pixels",
+        needed / 1e9, there / 1e9, experiment.image.width, experiment.image.height);
+    if (width > 0 && height > 0)
+        say += fmt::format(
+            "; expected fewer rungs, or a smaller image, such as --set image.width={} --set image.height={} with its "
+            "boxes",
+            width, height);
+    return say;
+}
+
+void check_memory(const Experiment& experiment) {
+    if (const std::string why = why_too_large(experiment, available_memory()); !why.empty()) throw OutputError(why);
+}
+
+}  // namespace crescent::inline runs

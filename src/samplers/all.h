@@ -1,0 +1,36 @@
+// The one list of arms. A new sampler is one file beside this one and one word here; the list feeds the experiment
+// files, the CLI, the kernels, the documentation and the tests.
+#pragma once
+
+#include "samplers/beckmann_d.h"
+#include "samplers/blinn.h"
+#include "samplers/cosine.h"
+#include "samplers/ggx_bounded_vndf.h"
+#include "samplers/ggx_d.h"
+#include "samplers/ggx_vndf.h"
+#include "samplers/light_area.h"
+#include "samplers/light_solid_angle.h"
+#include "samplers/mis.h"
+#include "samplers/mixture.h"
+#include "samplers/phong.h"
+#include "samplers/sampler.h"
+#include "samplers/uniform.h"
+
+namespace crescent::inline arms {
+
+/// The types of the arms, in the order of their indices. Each is a Sampler (arms/sampler.h).
+template <template <class> class... A>
+    requires(Sampler<A<float>, float> && ...)
+struct ArmList {
+    static constexpr std::size_t count = sizeof...(A);
+};
+
+using Samplers = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
+    GgxVndf, GgxBoundedVndf, BeckmannD>;
+
+/// Calls f.template operator()<A>() for every arm A in the list's order.
+template <class Call, template <class> class... A> constexpr void for_each_sampler(ArmList<A...>, Call&& f) {
+    (f.template operator()<A>(), ...);
+}
+
+}  // namespace crescent::inline arms

@@ -1,0 +1,78 @@
+// A sampler that is no built-in arm: a program, or a shared library, that an experiment names in its place. It draws
+// in the local frame (n = +z, wo given, wi drawn), in double precision; pdf in 1/sr.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace crescent::inline arms {
+
+/// What a sampler may know of the surface point, beside wo. Files and C read its rows as they stand here.
+struct OutsideSurface {
+    double s;        // Phong exponent
+    double alpha;    // GGX roughness
+    double diffuse;  // Y(rho_d)
+    double lobe;     // rho_s
+};
+
+/// Rows that follow one another at one surface point.
+struct OutsideRun {
+    Vec3<double> wo;
+    OutsideSurface surface;
+    std::size_t rows;
+};
+
+/// A batch of draws. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
+struct OutsideBatch {
+    std::span<const OutsideRun> runs;
+    std::span<const double> u;
+};
+
+/// Where a batch is drawn to, an entry a row. pdf 0: nothing was drawn.
+struct OutsideDraws {
+    std::span<Vec3<double>> wi;
+    std::span<double> pdf;
+};
+
+class ExternalSampler {
+public:
+    virtual ~ExternalSampler() = default;
+    /// Its own name for itself.
+    virtual std::string name() const = 0;
+    /// Random numbers that a sample takes, 1 to 8.
+    virtual int numbers() const = 0;
+    /// One draw a row of u. May be called by many threads at once. Throws OutputError if it does not answer.
+    virtual void draw(const OutsideBatch& batch, const OutsideDraws& out) const = 0;
+    /// Whether it can be asked for the density of any direction.
+    virtual bool has_density() const { return false; }
+    /// The density of each wi, 0 where it is never drawn. As draw() for threads and what it throws.
+    virtual void density(Vec3<double> /*wo*/, const OutsideSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
+        std::span<double> out) const {
+        for (double& p : out) p = 0;
+    }
+};
+
+/// The samplers from outside that an experiment's arms name, by arm.
+using OutsideSamplers = std::map<std::string, std::shared_ptr<const ExternalSampler>, std::less<>>;
+/// Null where the arm is built in.
+inline const ExternalSampler* outside_of(const OutsideSamplers& all, std::string_view arm) {
+    const auto found = all.find(arm);
+    return found == all.end() ? nullptr : found->second.get();
+}
+
+/// An arm as the kernels take it: a word of the list in all.h, or a sampler from outside, which goes before the word.
+struct SamplerRef {
+    std::string_view sampler;
+    const ExternalSampler* outside = nullptr;
+    SamplerRef(std::string_view word, const ExternalSampler* from = nullptr) : sampler(word), outside(from) {}
+    SamplerRef(const std::string& word) : sampler(word) {}
+    SamplerRef(const char* word) : sampler(word) {}
+};
+
+}  // namespace crescent::inline arms

@@ -1,0 +1,64 @@
+// The table is made from the types of arms/all.h at first use: name, manual, techniques and theory are theirs. What a
+// manual's formulas may say is checked as it compiles.
+#include "samplers/info.h"
+
+#include "math/functions.h"
+#include "output/formula.h"
+#include "samplers/all.h"
+
+namespace crescent::inline arms {
+
+namespace {
+
+template <template <class> class A> constexpr SamplerInfo info_of() {
+    static_assert(A<float>::manual.label.find(A<float>::name) != std::string_view::npos,
+        "an arm goes by one name everywhere: its label holds it");
+    constexpr SamplerDoc manual = A<float>::manual;
+    static_assert(formula::is_formula(manual.formula) && formula::is_formula(manual.density),
+        "formula and density of an arm are TeX in the words of base/formula_words.h");
+    static_assert(formula::has_formulas(manual.draw) && formula::has_formulas(manual.axis),
+        "draw and axis of an arm are words, with TeX of base/formula_words.h between dollar signs");
+    SamplerInfo out{A<float>::manual, A<float>::name};
+    if constexpr (requires { A<float>::techniques; }) out.techniques = A<float>::techniques;
+    if constexpr (requires { A<float>::theory; }) out.theory = A<float>::theory;
+    if (out.density.empty()) out.density = out.formula;
+    return out;
+}
+
+}  // namespace
+
+std::string power_underflows(const CasePoint& at, double least) {
+    const bool so = at.rho_d > 0 && at.s * math::log(least) < -1074 * math::log(2.0) + math::log(at.s + 1);
+    return so
+        ? "the lobe's power is less than the smallest number there is where Lambert is not 0: p is 0 in the arm's "
+          "own arithmetic"
+        : "";
+}
+
+const std::vector<SamplerInfo>& sampler_infos() {
+    static const std::vector<SamplerInfo> all = [] {
+        std::vector<SamplerInfo> infos;
+        for_each_sampler(Samplers{}, [&]<template <class> class A>() { infos.push_back(info_of<A>()); });
+        return infos;
+    }();
+    return all;
+}
+
+const SamplerInfo* find_arm_info(std::string_view sampler) {
+    for (const SamplerInfo& arm : sampler_infos())
+        if (arm.name == sampler) return &arm;
+    return nullptr;
+}
+
+std::vector<std::string> sampler_names() {
+    std::vector<std::string> names;
+    for (const SamplerInfo& arm : sampler_infos()) names.emplace_back(arm.name);
+    return names;
+}
+
+std::uint64_t directions_per_sample(std::string_view sampler) {
+    const SamplerInfo* arm = find_arm_info(sampler);
+    return arm ? static_cast<std::uint64_t>(arm->techniques) : 1;
+}
+
+}  // namespace crescent::inline arms

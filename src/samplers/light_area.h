@@ -1,0 +1,137 @@
+// light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times the largest area
+// that it shows, pi r^2 of a disk. A point y is even over the light's area A (of a ball, over what x sees of it):
+//   p_A = 1/A;  p = p_A |y - x|^2 / cos(light).  Of a disk y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2).
+// Other kinds of light: scene/lights/. It reaches nothing but the lights: under a fill it is wrong by the fill, unless
+// another technique adds that.
+#pragma once
+
+#include "samplers/sampler.h"
+
+namespace crescent::inline arms {
+
+template <class F> struct LightArea {
+    static constexpr std::string_view name = "light-area";
+    static constexpr CaseSurface trials[] = {{.lambert = true, .light = "disk"},
+        {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
+        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr SamplerDoc manual = {.label = "light-area (NEE)",
+        .summary = "next-event estimation: a point of a light, even over its area",
+        .formula = R"(\frac{\lvert y-x\rvert^2}{A\cos\theta_y})",
+        .draw = "even over a light's area",
+        .axis = "the light",
+        .misses = light_arm_misses,
+        .trials = trials,
+        .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
+    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+    const LocalDisk<F>* disks;
+    int count;
+    const LocalLight<F>* others;  // after the disks
+    int other_count;
+
+    /// A disk with what does not change from sample to sample.
+    struct Aim {
+        Vec3<F> center, t, b;  // t and b span the disk: as long as its radius
+        F scale;               // p = scale |y|^3: r^2 / cos(light) = |y|^3 / |c.n|; 0 where no emitting side faces x
+
+        Aim() = default;
+        explicit Aim(const LocalDisk<F>& d) {
+            const Frame<F> frame = frame_about(d.normal);
+            const auto lit = d.faces();
+            center = d.to_center, t = frame.t * d.radius, b = frame.b * d.radius;
+            scale = select(
+                lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
+        }
+    };
+    Aim first;  // most scenes have but one
+
+    explicit LightArea(const ShadingPoint<F>& site)
+        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
+        if (count > 0) first = Aim(disks[0]);
+    }
+
+    [[gnu::always_inline]] DrawnToDisk<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
+        const F zero = number<F>(0), one = number<F>(1);
+        if (count == 1 && other_count == 0) {
+            const Drawn<F> drawn = on_disk(first, u);
+            return {drawn, zero, drawn.pdf.v > zero};
+        }
+        Drawn<F> drawn = {{zero, zero, one}, {zero}};
+        F below = zero, own = zero;
+        for (int k = 0; k < count;
+            ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
+            const F above = k + 1 < count + other_count ? below + disks[k].power : one;
+            const auto chosen = (u.x >= below) & (u.x < above);
+            const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - below) / (above - below), u.y});
+            drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y),
+                select(chosen, one_disk.wi.z, drawn.wi.z)};
+            drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
+            own = select(chosen, number<F>(k), own);
+            below = above;
+        }
+        for (int k = 0; k < other_count; ++k) {
+            const F above = k + 1 < other_count ? below + others[k].power : one;
+            const auto chosen = (u.x >= below) & (u.x < above);
+            const Aimed<F> aimed = on_other(others[k], {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
+            drawn.wi = {select(chosen, aimed.wi.x, drawn.wi.x), select(chosen, aimed.wi.y, drawn.wi.y),
+                select(chosen, aimed.wi.z, drawn.wi.z)};
+            drawn.pdf.v = select(chosen, (above - below) * aimed.pdf, drawn.pdf.v);
+            own = select(chosen, number<F>(count + k), own);
+            below = above;
+        }
+        const auto some = drawn.pdf.v > zero;
+        // Disks may stand one behind another: every one that wi meets could have drawn it.
+        drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, own), zero);
+        return {drawn, own, some};
+    }
+
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+        return {density_of_others(wi, number<F>(-1))};
+    }
+
+private:
+    /// The density with which the disks but for one draw wi. The question whether wi meets a disk is that of the
+    /// estimator (meets_disk in estimator/disk_hit.h), bit for bit, so that no sample is worth a disk and weighed as if
+    /// it met none.
+    [[gnu::always_inline]] F density_of_others(Vec3<F> wi, F but) const {
+        F sum = number<F>(0);
+        for (int k = 0; k < count; ++k) {
+            const LocalDisk<F>& d = disks[k];
+            const F c = d.along, v = dot(wi, d.normal);
+            const Vec3<F> off = wi * c - d.to_center * v;
+            const auto met = (dot(off, off) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) &
+                !(but == number<F>(k));
+            const F t = c / select(met, v, number<F>(1));
+            sum = sum + select(met, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));
+        }
+        for (int k = 0; k < other_count; ++k) {
+            const F one_light = density_of(others[k], wi);
+            sum = sum + select(but == number<F>(count + k), number<F>(0), others[k].power * one_light);
+        }
+        return sum;
+    }
+
+    [[gnu::noinline]] static Aimed<F> on_other(const LocalLight<F>& light, Vec2<F> u) {
+        Aimed<F> out = {{number<F>(0), number<F>(0), number<F>(1)}, number<F>(0)};
+        with_light_kind(light.kind, [&]<class Kind>() { out = Kind::by_area(light, u); });
+        return out;
+    }
+    [[gnu::noinline]] static F density_of(const LocalLight<F>& light, Vec3<F> wi) {
+        F out = number<F>(0);
+        with_light_kind(light.kind, [&]<class Kind>() { out = Kind::area_pdf(light, wi); });
+        return out;
+    }
+
+    [[gnu::always_inline]] static PerSr<F> density(const LocalDisk<F>& d, F r2, F cos_light) {
+        return per_sr(PerM2<F>{number<F>(1 / pi) / sqr(d.radius)}, r2, cos_light);
+    }
+
+    [[gnu::always_inline]] static Drawn<F> on_disk(const Aim& aim, Vec2<F> u) {
+        const F r = sqrt(u.x);
+        const SinCos<F> phi = sincos_turns(u.y);
+        const Vec3<F> y = aim.center + aim.t * (r * phi.cos) + aim.b * (r * phi.sin);
+        const F r2 = dot(y, y), distance = sqrt(r2);
+        return {y * (number<F>(1) / distance), {aim.scale * r2 * distance}};
+    }
+};
+
+}  // namespace crescent::inline arms

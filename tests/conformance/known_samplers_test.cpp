@@ -1,0 +1,79 @@
+// Every sampler whose verdict is known, in quick mode: planted faults and those of the lists are found, most under the
+// name of the verdict that asks for them, and right ones are right. tests/calibration measures many more.
+#include <gtest/gtest.h>
+
+#include "tests/known_samplers/correct/law.h"
+#include "tests/known_samplers/faulty/planted.h"
+#include "tests/known_samplers/reported/known.h"
+#include "tests/support/judged.h"
+#include "tests/support/sanitized.h"
+
+namespace crescent {
+namespace {
+
+/// One of these lists is checked in so many parts, of a few seconds each.
+constexpr std::size_t parts = 8;
+class InParts : public testing::TestWithParam<std::size_t> {};
+class KnownSamplers : public InParts {};
+class PlantedFaults : public InParts {};
+class HeldOutFaults : public InParts {};
+class RightSamplers : public InParts {};
+
+bool is_wrong(const CheckResult& j, std::string_view name) {
+    return std::ranges::any_of(
+        j.verdicts, [&](const Verdict& v) { return v.state == State::wrong && (name.empty() || v.name == name); });
+}
+
+TEST_P(KnownSamplers, HaveTheVerdictThatIsKnown) {
+    const std::vector<KnownSampler> all = known_samplers();
+    for (std::size_t k = GetParam(); k < all.size(); k += parts * test::every)
+        for (const CheckCase& t : all[k].trials) {
+            const CheckResult j = judged_alone(t, TestSettings::quick());
+            const std::string said = all[k].name + " at " + t.text() + "\n" + what_is_wrong(j);
+            if (all[k].known == Known::wrong || all[k].known == Known::called_wrong)
+                EXPECT_TRUE(is_wrong(j, all[k].verdict)) << said;
+            else if (all[k].known == Known::right) EXPECT_EQ(j.state, State::right) << said;
+            else EXPECT_FALSE(is_wrong(j, "")) << said;
+        }
+}
+
+/// At two of the w_o of each; `crescent check --planted` takes all.
+void expect_found(const std::vector<PlantedFault>& faults, std::size_t part) {
+    ProgressMonitor monitor;
+    for (std::size_t k = part; k < faults.size(); k += parts * test::every) {
+        std::vector<CheckCase> trials = faults[k].trials;
+        if (trials.size() == 3) trials.erase(trials.begin() + 2 * static_cast<int>(k % 2));
+        const CheckResult j = judge(trials, TestSettings::quick(), monitor);
+        EXPECT_TRUE(is_wrong(j, faults[k].verdict)) << faults[k].name << "\n" << what_is_wrong(j);
+    }
+}
+
+TEST_P(PlantedFaults, AreFoundUnderTheirVerdict) { expect_found(planted_faults(false), GetParam()); }
+
+TEST_P(HeldOutFaults, AreFound) {
+    expect_found(held_out_faults(), GetParam());
+    expect_found(held_out_lobe_faults(), GetParam());
+}
+
+TEST_P(RightSamplers, OfEveryFamilyAreNotWrong) {
+    ProgressMonitor monitor;
+    constexpr std::size_t each = 64 / parts / test::every;
+    const FalseAlarmStudy law = measure_false_alarms(GetParam() * each, each, TestSettings::quick(), monitor);
+    std::string said;
+    for (const std::string& line : law.said) said += line;
+    EXPECT_EQ(law.accused, 0u) << said;
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, KnownSamplers, testing::Range(std::size_t{0}, parts));
+INSTANTIATE_TEST_SUITE_P(Parts, PlantedFaults, testing::Range(std::size_t{0}, parts));
+INSTANTIATE_TEST_SUITE_P(Parts, HeldOutFaults, testing::Range(std::size_t{0}, parts));
+INSTANTIATE_TEST_SUITE_P(Parts, RightSamplers, testing::Range(std::size_t{0}, parts));
+
+TEST(KnownLists, AreMany) {
+    EXPECT_GE(known_samplers().size(), 100u);
+    EXPECT_GE(planted_faults(false).size(), 85u);
+    EXPECT_GE(held_out_faults().size() + held_out_lobe_faults().size(), 40u);
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,107 @@
+// What programs say of themselves, and what is said of those that break the protocol.
+#include <csignal>
+#include <gtest/gtest.h>
+
+#include "check/sources/pipe.h"
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent {
+namespace {
+
+/// What is said of a program that is waited for that long and asked for so many draws.
+std::string fault_of(const std::string& command, double seconds = 30, std::size_t draws = 100) {
+    PipeLimits limits;
+    limits.hello_seconds = limits.quiet_seconds = seconds;
+    try {
+        const auto pipe = start_pipe(command, limits);
+        std::vector<PrimarySample> u(draws, {0.5, 0.5});
+        std::vector<Draw> out(draws);
+        pipe->sample(0, {0, 0, 1}, u, out);
+    } catch (const SamplerError& fault) { return fault.what(); }
+    return "";
+}
+
+TEST(Pipes, SayWhatAProgramDidWrongAndWhere) {
+    EXPECT_NE(fault_of("sleep 20", 0.5)
+                  .find("request 1 ('hello 2'): expected 'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME', got nothing"),
+        std::string::npos);
+    EXPECT_NE(fault_of("exec 3<&0; sleep 20 <&3 & exit 0", 5)
+                  .find("the program ended with exit code 0, and what it left running"),
+        std::string::npos);
+    EXPECT_NE(fault_of("echo hallo").find("got 'hallo'"), std::string::npos);
+    EXPECT_NE(fault_of("exit 3").find("exit code 3"), std::string::npos);
+    EXPECT_NE(fault_of("echo hello 1 x; echo 1; exit 0").find("request"), std::string::npos);
+    EXPECT_NE(fault_of("yes").find("got 'y'"), std::string::npos);
+    EXPECT_NE(fault_of("tr -d '\\n' < /dev/zero").find("more than 4096 bytes"), std::string::npos);
+}
+
+/// A library leaves the signals of the process that it is in alone, and does not let a program's end kill it.
+TEST(Pipes, ThatBreakTouchNoSignal) {
+    const auto before = std::signal(SIGPIPE, SIG_DFL);
+    try {
+        const auto pipe = start_pipe("read hello; echo hello 1 x; read f; echo -; exec <&-; sleep 0.2");
+        std::vector<PrimarySample> u(100000, {0.5, 0.5});
+        std::vector<Draw> out(u.size());
+        pipe->sample(0, {0, 0, 1}, u, out);
+        ADD_FAILURE() << "it answered";
+    } catch (const SamplerError& fault) {
+        EXPECT_NE(std::string(fault.what()).find("closed its input"), std::string::npos) << fault.what();
+    }
+    sigset_t pending;
+    sigpending(&pending);
+    EXPECT_FALSE(sigismember(&pending, SIGPIPE));
+    EXPECT_EQ(std::signal(SIGPIPE, before), SIG_DFL);
+}
+
+TEST(Greetings, SayWhatAProgramIs) {
+    Handshake g;
+    EXPECT_EQ(
+        read_greeting("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
+                      "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
+            g)
+            .got,
+        "");
+    EXPECT_EQ(g.name, "my glass");
+    EXPECT_EQ(g.traits.numbers, 3);
+    EXPECT_EQ(g.traits.channels, 3);
+    EXPECT_TRUE(g.traits.delta && g.weight && g.f_cos && g.blocks && g.traits.importance && g.traits.own_random);
+    EXPECT_FALSE(g.traits.reciprocal || g.hemisphere);
+    EXPECT_EQ(g.traits.wo, Traits::Asked::both);
+    EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
+    EXPECT_EQ(g.traits.bits, 24);
+}
+
+TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
+    const auto fault = [](const char* answer) {
+        Handshake g;
+        const GreetingFault fault = read_greeting(answer, g);
+        return fault ? "expected " + fault.expected + ", " + fault.got : "";
+    };
+    EXPECT_NE(fault("hello 2 x colour=3").find("expected one of u, domain, wo, channels"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x colour=3").find("got the unknown key 'colour'"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x weights=yes").find("did you mean 'weight'?"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x u=9").find("expected a whole number from 1 to 8 for u, got '9'"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x u=3 wo=both u=2").find("got the key 'u' twice"), std::string::npos);
+    EXPECT_NE(fault("hello 2 u=3").find("no name"), std::string::npos);
+    EXPECT_NE(fault("hello 3 x").find("got 'hello 3 x'"), std::string::npos);
+    EXPECT_EQ(fault("hello 1 x y=z"), "") << "protocol 1 has no keys: that is its name";
+}
+
+/// The answer to f is a block of one NaN; then come an error, and a block of another size.
+TEST(Greetings, BlocksThatSayAnErrorAreTold) {
+    const std::string start =
+        "read hello; echo hello 2 x block=f64; head -c 56 >/dev/null; printf "
+        "'\\001\\000\\000\\000\\000\\000\\000\\000\\000\\000\\370\\177'; ";
+    EXPECT_NE(
+        fault_of(
+            start + "head -c 408 >/dev/null; printf '\\000\\000\\000\\000\\007\\000\\000\\000no luck'; sleep 3", 2, 10)
+            .find("got an error: 'no luck'"),
+        std::string::npos);
+    EXPECT_NE(fault_of(start + "head -c 408 >/dev/null; printf '\\003\\000\\000\\000'; sleep 3", 2, 10)
+                  .find("got a block of 3 rows for one of 10"),
+        std::string::npos);
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,112 @@
+// Built-in arms have the verdicts that theory says, also at the limits of their parameters; what is inconclusive says
+// what would settle it. scripts/judged.sh checks every arm at its usual parameters.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <set>
+
+#include "base/errors.h"
+#include "check/print.h"
+#include "check/sources/cases.h"
+#include "check/sources/pipe.h"
+#include "tests/support/judged.h"
+#include "tests/support/sanitized.h"
+
+namespace crescent {
+namespace {
+
+CheckResult of_trials(const std::vector<CheckCase>& trials, const TestSettings& settings = TestSettings::quick()) {
+    ProgressMonitor monitor;
+    return judge(trials, settings, monitor);
+}
+
+const Verdict& find(const CheckResult& j, const std::string& trial, const std::string& name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.trial.find(trial) != std::string::npos && v.name == name) return v;
+    throw std::runtime_error("no verdict " + name + " on " + trial);
+}
+
+/// Phong's lobe does not reach the horizon, where Lambert's light comes from too.
+TEST(Arms, PhongOnLambertLosesSupport) {
+    const CheckResult j = of_trials(make_cases("phong", {{"s", 32}}, false, {{60, 250}}));
+    EXPECT_EQ(find(j, "w_o 60 deg az 250, s=32, Lambert + Phong", "support").state, State::wrong);
+    EXPECT_EQ(find(j, "w_o 60 deg az 250, s=32, Phong", "support").state, State::right);
+}
+
+bool reads(const std::string& arm, const Settings& settings) {
+    try {
+        return !make_cases(arm, settings, false).empty();
+    } catch (const InputError&) { return false; }
+}
+
+class ArmsAtTheLimits : public testing::TestWithParam<int> {};
+
+TEST_P(ArmsAtTheLimits, OfTheSchemaHaveTheVerdictsOfTheory) {
+    const Settings at[] = {{{"s", 1e-3}}, {{"s", 1e6}}, {{"alpha", 1e-4}}, {{"alpha", 1}}};
+    const std::vector<std::string> arms = sampler_names();
+    for (std::size_t k = 0; k < arms.size(); k += test::every) {
+        const Settings& settings = at[GetParam()];
+        if (!reads(arms[k], settings)) continue;
+        const CheckResult j = of_trials(make_cases(arms[k], settings, false, {{45, 130}}));
+        EXPECT_TRUE(j.as_expected) << arms[k] << " " << settings.begin()->first << "=" << settings.begin()->second
+                                   << "\n"
+                                   << verdict_table(j);
+        for (const Verdict& v : j.verdicts)
+            if (v.state == State::inconclusive)
+                EXPECT_FALSE(v.say.empty() || settling(v).empty()) << v.arm << " [" << v.trial << "] " << v.name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Settings, ArmsAtTheLimits, testing::Range(0, 4));
+
+TEST(Programs, TooSlowAreInconclusiveAndSayWhatWasLeftOut) {
+    PipeLimits limits;
+    limits.total_seconds = 0.5;
+    const std::string slow =
+        "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
+    const CheckResult j = of_trials(make_user_cases(start_pipe(slow, limits), false));
+    EXPECT_EQ(j.state, State::inconclusive);
+    EXPECT_EQ(j.left_out.size(), 8u);
+    for (const Verdict& v : j.verdicts) {
+        EXPECT_EQ(v.state, State::inconclusive) << v.name << v.say;
+        EXPECT_FALSE(settling(v).empty()) << v.name;
+    }
+}
+
+TEST(LightsOfATrial, AreSeenByTheNearest) {
+    const CaseLighting light = case_setup(LobeKind::none, true, "fill + two disks", 32).light;
+    ASSERT_EQ(light.disks.size(), 2u);
+    int both = 0, front = 0, back = 0;
+    for (double theta = 0; theta < 90; ++theta)
+        for (double azimuth = 0; azimuth < 90; ++azimuth) {
+            const Vec3d wi = tilt(theta, azimuth);
+            const auto far = light.disks[0].distance(wi), near = light.disks[1].distance(wi);
+            both += far && near;
+            front += near && !far;
+            back += far && !near;
+            EXPECT_EQ(light(wi),
+                near           ? light.disks[1].radiance
+                    : far      ? light.disks[0].radiance
+                    : wi.z > 0 ? 1
+                               : 0)
+                << theta << " " << azimuth;
+        }
+    EXPECT_GT(both, 50);
+    EXPECT_GT(front, 50);
+    EXPECT_GT(back, 50);
+}
+
+TEST(LightsOfATrial, BallHidesTheRectangleBehindIt) {
+    int hidden = 0;
+    const CaseLighting light = case_setup(LobeKind::none, true, "sphere + rectangle", 32).light;
+    for (double theta = 0; theta < 90; ++theta)
+        for (double azimuth = 90; azimuth < 180; ++azimuth) {
+            const Vec3d wi = tilt(theta, azimuth);
+            const bool both = light.lamps[0].distance(wi) && light.lamps[1].distance(wi);
+            hidden += both;
+            if (both) EXPECT_EQ(light(wi), light.lamps[0].radiance);
+        }
+    EXPECT_GT(hidden, 50);
+}
+
+}  // namespace
+}  // namespace crescent

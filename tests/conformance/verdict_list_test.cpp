@@ -1,0 +1,43 @@
+// The list of verdicts is what a judgement holds, in its order, and what the manual says.
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "check/check.h"
+#include "check/sources/cases.h"
+#include "check/verdict_names.h"
+
+namespace crescent {
+namespace {
+
+TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
+    TestSettings few;
+    few.wo = {{45, 0}};
+    ProgressMonitor monitor;
+    const CheckResult j = judge(make_cases("uniform", {}, false, few.wo), few, monitor);
+    ASSERT_EQ(j.verdicts.size() % verdict_names.size(), 0u);
+    for (std::size_t i = 0; i < j.verdicts.size(); ++i)
+        EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);
+}
+
+/// Every row is of a verdict of the list, in its order; `crescent list verdicts` has those that have no row yet.
+TEST(VerdictList, TheManualTellsItInItsOrderWithItsQuestions) {
+    std::ifstream manual(std::string(CRESCENT_SOURCE_DIR) + "/docs/check.md");
+    std::vector<std::string> rows;
+    bool in_table = false;
+    for (std::string line; std::getline(manual, line);) {
+        if (line.starts_with("| verdict | question |")) in_table = true;
+        else if (in_table && !line.starts_with('|')) break;
+        else if (in_table && !line.starts_with("|---")) rows.push_back(line);
+    }
+    ASSERT_FALSE(rows.empty());
+    auto row = rows.begin();
+    for (std::size_t k = 0; k < verdict_names.size(); ++k) {
+        const std::string begins =
+            "| " + std::string(verdict_names[k]) + " | " + std::string(verdict_questions[k]) + " |";
+        if (row != rows.end() && row->starts_with(begins)) ++row;
+    }
+    EXPECT_EQ(row, rows.end()) << "no verdict of the list comes here with this question: " << *row;
+}
+
+}  // namespace
+}  // namespace crescent

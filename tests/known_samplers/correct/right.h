@@ -1,0 +1,61 @@
+// Right samplers at random parameters: a bench that calls one of them wrong is itself wrong. Each is written in double
+// from its source, with sample and pdf apart, as users write theirs; `crescent check --right N` judges N of them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "check/sources/sampler_adapter.h"
+
+namespace crescent {
+
+/// sample, pdf and f of one sampler; f is left out where the density has no BRDF that it is made for.
+struct SyntheticSampler {
+    std::string family, parameters;
+    std::function<Draw(Vec3d wo, const PrimarySample& u)> sample;
+    std::function<double(Vec3d wo, Vec3d wi)> pdf, f;
+    Traits traits{};
+    std::function<Vec3d(Vec3d wo, Vec3d wi)> f_channels{};  // in place of f, where there are three channels
+};
+
+/// Parameters drawn at random: a pure function of the seed, the same on every machine.
+class Rng {
+public:
+    explicit Rng(std::uint64_t seed) : bits_(seed) {}
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(bits_() >> 11) * 0x1p-53);
+    }
+    /// Uniform in the logarithm.
+    double log(double low, double high);
+    int whole(int low, int high) {
+        return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1));
+    }
+    Vec3d direction(double least_cos, double most_cos);
+
+private:
+    std::mt19937_64 bits_;
+};
+
+/// The direction at `cos` from an axis, `turns` about it.
+Vec3d about(Vec3d axis, double cos, double turns);
+
+using SamplerFamily = SyntheticSampler (*)(Rng&);
+std::vector<SamplerFamily> microfacet_families();  // anisotropic GGX, Beckmann and Ward, in double and in float
+std::vector<SamplerFamily> lobe_families();        // cosine powers, cones, bands, lights, phase functions, mixtures
+std::vector<SamplerFamily> table_families();       // cells, texels and bilinear tables
+
+/// Anisotropic GGX with visible normals at given roughness.
+SyntheticSampler ggx_visible_at(double alpha_x, double alpha_y);
+
+/// A recipe as a subject.
+std::shared_ptr<const SamplerAdapter> subject_of(SyntheticSampler recipe);
+
+/// Sampler `index` of the law: its families take turns, its parameters follow from seed and index.
+SyntheticSampler right_sampler(std::uint64_t index, std::uint32_t seed);
+/// The same at the w_o that goes with it: from the normal to 89 deg.
+CheckCase right_trial(std::uint64_t index, std::uint32_t seed);
+
+}  // namespace crescent

@@ -1,0 +1,103 @@
+// The bits of what crescent computes: functions of math/, and, for every experiment, each film at its own seed on each
+// instruction set of this machine, and its references. Two builds agree where this prints the same; it needs none of
+// the folders that draw and report, so that a second compiler has little to build.
+//
+//   film_hashes FILE.toml...            the hashes
+//   film_hashes --fewer FILE.toml...    of small images and few samples
+//   film_hashes --plain FILE.toml...    no hashes: the (small) experiments as plain numbers, for another machine's
+//   film_hashes < PLAIN                 which prints the hashes of them
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "experiment/experiment.h"
+#include "math/functions.h"
+#include "metrics/monte_carlo_reference.h"
+#include "render/estimator.h"
+#include "render/reference/reference.h"
+#include "tests/portability/plain.h"
+
+namespace {
+
+using namespace crescent;
+
+/// The bits of f over an even sweep of [a, b].
+template <class Function> void print_function(const char* name, Function f, double a, double b) {
+    std::vector<double> values;
+    constexpr int count = 4096;
+    for (int k = 0; k <= count; ++k) values.push_back(f(a + (b - a) * k / count));
+    const std::uint64_t bits = XXH3_64bits(values.data(), values.size() * sizeof(double));
+    std::cout << "function " << name << ' ' << std::hex << bits << std::dec << '\n';
+}
+
+void print_functions() {
+    print_function("exp", math::exp, -750, 710);
+    print_function("exp2", math::exp2, -1080, 1024);
+    print_function("expm1", math::expm1, -2, 2);
+    print_function("log", math::log, 0x1p-1060, 3);
+    print_function("log10", math::log10, 0.01, 1e6);
+    print_function("log1p", math::log1p, -0.999, 3);
+    print_function("sin", math::sin, -100, 1e5);
+    print_function("cos", math::cos, -1e12, 1e13);
+    print_function("tan", math::tan, -2, 2);
+    print_function("asin", math::asin, -1, 1);
+    print_function("acos", math::acos, -1, 1);
+    print_function("pow", [](double x) { return math::pow(x, 40 - 7 * x); }, 0, 9);
+    print_function("atan2", [](double x) { return math::atan2(x, 1 - x * x); }, -3, 3);
+    print_function("hypot", [](double x) { return math::hypot(x, 2, 1 / x); }, -3, 3.1);
+}
+
+void print(const Experiment& experiment) {
+    const Scene scene(experiment);
+    ProgressMonitor monitor;
+    for (const std::string& isa : isas())
+        for (const ArmPlan& arm : experiment.arms)
+            for (const Film& film : estimate_films(scene, arm.sampler, arm.n, experiment.seed, isa, monitor))
+                std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film)
+                          << '\n';
+    for (const std::string& isa : isas())
+        for (const ReferenceFilm& film : monte_carlo_reference({scene}, experiment, isa, monitor))
+            std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
+    for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, monitor))
+        std::cout << experiment.file << " quadrature " << hash(film) << '\n';
+}
+
+/// 24 pixels across, at most 16 samples.
+[[maybe_unused]] void make_small(Experiment& e) {
+    e.image.height = std::max(1, e.image.height * 24 / e.image.width), e.image.width = 24;
+    for (ArmPlan& arm : e.arms) {
+        std::erase_if(arm.n, [](std::uint64_t n) { return n > 16; });
+        if (arm.n.empty()) arm.n = {16};
+    }
+}
+
+void print_what_stdin_has() {
+    plain::Reader reader{std::cin};
+    while (std::cin.peek() != std::char_traits<char>::eof()) {
+        Experiment experiment;
+        plain::visit(reader, experiment);
+        print(experiment);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    const std::string mode = argc > 1 ? argv[1] : "";
+    if (mode != "--plain") print_functions();
+    if (argc == 1) print_what_stdin_has();
+#ifndef CRESCENT_NO_FILESYSTEM
+    const bool small = mode == "--plain" || mode == "--fewer";
+    for (int k = small ? 2 : 1; k < argc; ++k) {
+        Experiment experiment = load(argv[k]);
+        if (small) make_small(experiment);
+        plain::Writer writer{std::cout};
+        mode == "--plain" ? plain::visit(writer, experiment) : print(experiment);
+    }
+#endif
+} catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 2;
+}

@@ -1,0 +1,125 @@
+#!/bin/bash
+# Samplers of one's own: a struct built against an installed crescent, programs behind a pipe, draws in a file; what is
+# wrong with a call is told with exit 2, before anything is judged.
+. "$(dirname "$0")/common.sh"
+
+without=
+for package in OpenEXR PNG hwy Boost tomlplusplus; do without="$without -DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"; done
+build_example my_sampler $without
+expect 0 my_sampler/build/my_sampler
+[ ! -e my_sampler/build/my_sampler_test ] || expect 0 my_sampler/build/my_sampler_test
+
+printf '%s\n' '#include "check/user.h"' 'struct V { double x, y, z; };' \
+    'struct S { struct D { V wi; double pdf; }; D sample(V, int) const; double pdf(V, V) const; };' \
+    'auto j = crescent::check_sampler("s", S{});' >odd.cpp
+! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" -I"$CRESCENT_SOURCE/include" odd.cpp >said 2>&1 || die "a u of int compiles"
+grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep -c 'error:' said)" -eq 1 ] ||
+    die "no sentence: $(grep error: said)"
+
+# refused MEMBERS WORDS: a sampler with these members beside sample is refused with one sentence that has these words.
+refused() {
+    printf '%s\n' '#include "check/user.h"' 'struct V { float x, y, z; };' 'struct U { float x, y; };' \
+        "struct S { struct D { V wi; float pdf; }; D sample(V, U) const; $1 };" \
+        'auto j = crescent::check_sampler("s", S{});' >odd.cpp
+    ! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" -I"$CRESCENT_SOURCE/include" odd.cpp >said 2>&1 || die "this compiles: $1"
+    grep -q "$2" said && [ "$(grep -c 'error:' said)" -eq 1 ] || die "no sentence for $1: $(grep error: said)"
+}
+refused 'float pdf(V, V) const; std::array<float, 2> f(V, V) const;' "f takes (wo, wi).* and returns one number"
+refused 'float pdf(V, V) const; int traits();' "traits() is const and returns crescent::Traits"
+refused 'const char* pdf(V, V) const;' "pdf returns one number, 1/sr"
+
+pipes=$CRESCENT_SOURCE/examples/pipe_samplers
+expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
+# Every built-in arm gets the verdicts that are expected of it.
+expect 0 "$CRESCENT" check --quiet
+
+expect 0 "$CRESCENT" check --quiet --exec ./cosine --json c.json --junit c.xml --html c.html
+grep -q '"state": "right"' c.json || die "cosine.c is not right: $(head -c 300 c.json)"
+expect 0 "$CRESCENT" check --quiet --exec "python3 $pipes/cosine.py" --wo 45
+sed 's/0\.5 \/ pi/1.01 \/ pi/' "$pipes/cosine.c" >bright.c
+expect 0 "${CC:-cc}" -O2 -o bright bright.c -lm
+expect 1 "$CRESCENT" check --quiet --exec ./bright --wo 45
+grep -q "physics: wrong" printed || die "created energy is not reported: $(cat printed)"
+expect 2 "$CRESCENT" check --quiet --exec ./nowhere
+expect 0 "${CC:-cc}" -O2 -o coat "$pipes/coat.c" -lm
+expect 0 "$CRESCENT" check --quiet --exec ./coat
+sed 's/delta %a 1 1 1\\n", -ox, -oy, oz, mirrored/delta %a 1 1 1\\n", -ox, -oy, oz, 1.1 * mirrored/' "$pipes/coat.c" \
+    >often.c
+expect 0 "${CC:-cc}" -O2 -o often often.c -lm
+expect 1 "$CRESCENT" check --quiet --exec ./often --wo 45
+grep -q "density: wrong" printed || die "a delta part drawn less often than stated is not reported: $(cat printed)"
+/usr/bin/python3 -c 'import numpy' || die "python3-numpy is missing"
+expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py"
+expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py" --wo 150 --json below.json
+grep -q '"case": "w_o 150 deg' below.json || die "w_o under the surface is not judged"
+sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscaled.py
+expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py" --wo 45
+grep -q "physics: wrong" printed || die "a missing eta^2 is not reported: $(cat printed)"
+expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/sky.py 512 1024"
+sed 's/(j + np.clip(along/(j + 1 + np.clip(along/' "$pipes/sky.py" >next_texel.py
+expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 next_texel.py 256 512"
+expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x weights=yes'
+grep -q "expected one of u, domain, wo,.* got the unknown key 'weights'; did you mean 'weight'?" printed ||
+    die "an unknown key is not named: $(cat printed)"
+expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
+grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"
+
+python3 - <<'PY'
+import math, random
+random.seed(5)
+def row(lift):
+    u, v = random.random(), random.random()
+    z = math.sqrt(1 - u); r = math.sqrt(u); p = lift * z / math.pi
+    return f"{u},{v},{r * math.cos(2 * math.pi * v)!r},{r * math.sin(2 * math.pi * v)!r},{z!r},{p!r},0.1\n"
+for name, lift in (("right", 1), ("wrong", 1.02)):
+    with open(name + ".csv", "w") as f: f.write("u1,u2,wix,wiy,wiz,pdf,f\n" + "".join(row(lift) for _ in range(40000)))
+with open("table.csv", "w") as f:
+    f.write("cos_theta,phi,pdf\n")
+    for i in range(32):
+        for j in range(64): f.write(f"{(i + 0.5) / 32},{(j + 0.5) * 2 * math.pi / 64},{(i + 0.5) / 32 / math.pi}\n")
+PY
+expect 0 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv
+expect 1 "$CRESCENT" check --quiet --samples wrong.csv --wo 0,0,1 --pdf-table table.csv
+expect 0 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv --against cosine --expect same
+expect 1 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv --against uniform --expect same
+awk -F, -v OFS=, 'NR == 17 { $6 = -$6 } { print }' right.csv >negative.csv
+expect 1 "$CRESCENT" check --samples negative.csv --wo 0,0,1 --pdf-table table.csv
+grep -q "pdf is negative: 1 of 40000 rows, first at negative.csv:17: u = " printed ||
+    die "a bad draw is not named by its line: $(cat printed)"
+sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
+expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
+grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"
+for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" \
+    "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 95" "cosine --wo 0,0,-1" "cosine --wo 1,2,3,4"; do
+    expect 2 "$CRESCENT" check $call
+done
+expect 2 "$CRESCENT" check --exec ''
+expect 0 "$CRESCENT" check --quiet cosine --wo 60,250 --wo 0,0,1 --json wo.json
+grep -q '"command": "crescent check cosine --wo 60,250 --wo 0,0,1"' wo.json ||
+    die "--wo is not in the command: $(grep '"command"' wo.json)"
+[ "$(grep -c '"case": "w_o 60 deg az 250' wo.json)" -gt 0 ] && ! grep -q "w_o 45 deg" wo.json ||
+    die "--wo is not what is judged: $(grep case wo.json | sort | uniq -c)"
+expect 0 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --json against.json
+grep -q "B is better here" printed && grep -q '"name": "same_f"' against.json ||
+    die "nothing is said of two samplers: $(cat printed)"
+expect 1 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --expect same
+expect 0 "$CRESCENT" check --quiet --exec ./cosine --wo 45 --against ./cosine --expect same
+expect 2 "$CRESCENT" check uniform --against cosin
+expect 2 "$CRESCENT" check uniform --against ./nowhere
+asked=$(sed -n 's/.*"questions": \([0-9]*\).*/\1/p' c.json)
+[ "${asked:-0}" -gt 100000 ] && [ "$asked" -le 4000000 ] || die "cosine.c was asked '$asked' questions"
+expect 3 "$CRESCENT" check cosine --json /nowhere/x.json
+
+# What is known is waived, with its reason; what is waived and right fails; doubt may be allowed.
+expect 1 "$CRESCENT" check phong --quiet --wo 60
+waiver='phong support=wrong: it never reaches the horizon'
+expect 0 "$CRESCENT" check phong --quiet --wo 60 --expect "$waiver" --allow-inconclusive --json waived.json
+grep -q "wrong support as waived: it never reaches the horizon" printed || die "the waiver is not told: $(cat printed)"
+grep -q '"waived": true' waived.json || die "the file does not say what was waived"
+printf '# known\nphong support=wrong: the horizon\ncosine density=wrong: no more\n' >known.txt
+expect 2 "$CRESCENT" check phong --quiet --wo 60 --expect known.txt
+expect 1 "$CRESCENT" check cosine --quiet --wo 60 --expect 'density=wrong: no more'
+grep -q "the expectation can go" printed || die "an expectation that nothing meets is not told: $(cat printed)"
+expect 2 "$CRESCENT" check cosine --quiet --wo 60 --expect 'densty=wrong'
+expect 4 "$CRESCENT" check phong --quiet --wo 0
+expect 0 "$CRESCENT" check phong --quiet --wo 0 --allow-inconclusive

@@ -1,0 +1,148 @@
+// What scripts/extending.sh asks of something that was added by the steps of docs/extending.md.
+//   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
+//                             it is other than expected, and that both say what they are
+//   extending --scene TOML    that with these tables added to the scene arms have the reference's mean
+//   extending --measured METER PLATE
+//                             that a check can name the meter, that metrics.json and metrics.csv have it, that the
+//                             plate is drawn, and that `check` gives every verdict of the list
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "check/check.h"
+#include "check/print.h"
+#include "check/sources/cases.h"
+#include "check/verdict_names.h"
+#include "metrics/assertions.h"
+#include "metrics/compute.h"
+#include "output/formula.h"
+#include "render/estimator.h"
+#include "render/reference/reference.h"
+#include "report/plates/plates.h"
+#include "report/report.h"
+
+using namespace crescent;
+
+namespace {
+
+constexpr const char* scene_text = R"(
+seed = 5
+[image]
+width = 32
+height = 20
+[camera]
+eye = [0.0, 1.0, 4.0]
+target = [0.0, 0.6, 0.0]
+vfov_deg = 30.0
+[fill]
+radiance = [0.5, 0.6, 0.7]
+[shapes.ball]
+kind = "sphere"
+center = [0.0, 0.6, 0.0]
+radius = 0.6
+rho_d = [0.3, 0.2, 0.1]
+rho_s = 0.3
+s = 12.0
+alpha = 0.4
+[shapes.ground]
+kind = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+rho_d = [0.5, 0.5, 0.5]
+[disks.lamp]
+center = [-1.5, 2.5, 1.0]
+normal = [0.0, -1.0, 0.0]
+radius = 0.8
+radiance = [4.0, 4.0, 4.0]
+[arms.it]
+n = [256]
+[regions.all]
+box = [0, 0, 31, 19]
+)";
+
+bool has_the_references_mean(const std::string& sampler, const std::string& brdf, const std::string& added = "",
+    const std::string& fill = "[0.5, 0.6, 0.7]") {
+    const Experiment e = parse(std::string(scene_text) + added, "extending",
+        {"fill.radiance=" + fill, "arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
+    const Scene scene(e);
+    ProgressMonitor monitor;
+    const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", monitor)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, monitor)[0];
+    double off = 0, variance = 0, error = 0, all = 0;
+    for (std::size_t at = 0; at < film.size(); ++at) {
+        off += static_cast<double>(film.y[at]) - static_cast<double>(truth.y[at]);
+        variance += static_cast<double>(film.var[at]), error += static_cast<double>(truth.error[at]);
+        all += static_cast<double>(truth.y[at]);
+    }
+    std::printf("%s on %s: mean off by %.3g of %.4g, standard error %.2g, reference %.2g\n", sampler.c_str(),
+        brdf.c_str(), off, all, std::sqrt(variance), error);
+    return film.invalid == 0 && all > 0 && std::fabs(off) < 5 * std::sqrt(variance) + error;
+}
+
+bool is_judged_as_expected(const std::string& sampler, const Grid& wo = {}) {
+    ProgressMonitor monitor;
+    const CheckResult j = judge(make_cases(sampler, {}, false, wo), TestSettings::quick(), monitor);
+    if (!j.as_expected) std::cout << verdict_table(j);
+    return j.as_expected;
+}
+
+/// A film of cosine and all that is made of it.
+bool is_measured_and_drawn(const std::string& meter, const std::string& plate) {
+    const Experiment e = parse(std::string(scene_text) + "[plates.it]\nkind = \"" + plate +
+            "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + meter + ".all(it) > 0\"\n",
+        "extending", {"arms.it.sampler=\"cosine\""});
+    const Scene scene(e);
+    ProgressMonitor monitor;
+    const RunKey key{"it", 256, e.s(), e.seed};
+    const Film film = estimate_films(scene, "cosine", {256}, e.seed, "scalar", monitor)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, monitor)[0];
+    const ShapeMap shapes = shape_map(scene);
+    Metrics m;
+    m.runs = {measure(e, key, film, truth, shapes)};
+    m.bands = bands(e, m.runs, nullptr);
+    m.assertions = judge(e, m, {}, false);
+    const Picture drawn = draw_plate(
+        e.plates[0], {e, m, shapes, [&](const RunKey&) { return &film; }, [&](double) { return &truth; }, "CPU"});
+    const std::string json = metrics_json({e, m, {}, {}, {}}), csv = metrics_csv({e, m, {}, {}, {}});
+    std::printf("%s.all = %.6g\n", meter.c_str(), m.assertions[0].measured);
+    return m.all_hold() && !drawn.rgb.empty() && json.find('"' + meter + "\": ") != std::string::npos &&
+        json.find('"' + meter + ".all\"") != std::string::npos && csv.find("," + meter + ",all,") != std::string::npos;
+}
+
+bool has_every_verdict() {
+    ProgressMonitor monitor;
+    const CheckResult j = judge(make_cases("cosine", {}, false, {{45, 0}}), TestSettings::quick(), monitor);
+    const std::string table = verdict_table(j), json = verdict_json(j, {});
+    return j.as_expected && std::ranges::all_of(verdict_names, [&](std::string_view name) {
+        const bool told = table.find(" " + std::string(name)) != std::string::npos &&
+            json.find("\"name\": \"" + std::string(name) + '"') != std::string::npos;
+        if (!told) std::printf("nothing of %s in\n%s", std::string(name).c_str(), table.c_str());
+        return told;
+    });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    if (argc == 4 && std::string(argv[1]) == "--measured")
+        return is_measured_and_drawn(argv[2], argv[3]) && has_every_verdict() ? 0 : 1;
+    if (argc != 3) return 2;
+    if (std::string(argv[1]) == "--scene")
+        return has_the_references_mean("cosine", "phong", argv[2]) &&
+                has_the_references_mean("mis-balance", "ggx", argv[2]) &&
+                has_the_references_mean("light-area", "phong", argv[2], "[0, 0, 0]") &&
+                has_the_references_mean("light-solid-angle", "phong", argv[2], "[0, 0, 0]") &&
+                is_judged_as_expected("light-area", {{45, 0}}) && is_judged_as_expected("light-solid-angle", {{45, 0}})
+            ? 0
+            : 1;
+    const SamplerInfo* arm = find_arm_info(argv[1]);
+    const LobeInfo& lobe = lobe_info(lobe_named(argv[2]));
+    if (!arm) return 2;
+    std::cout << arm->label << ": " << arm->summary << ", " << formula::pango(arm->formula) << '\n'
+              << lobe.label << ": " << lobe.summary << ", " << formula::pango(lobe.formula) << '\n';
+    return has_the_references_mean(argv[1], argv[2]) && is_judged_as_expected(argv[1]) ? 0 : 1;
+} catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 1;
+}

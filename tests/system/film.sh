@@ -1,0 +1,79 @@
+#!/bin/bash
+# The film as its users make it: a short cut at 640 x 360, what a player finds in it, equal frames, captions, a voice, a
+# stop.
+. "$(dirname "$0")/common.sh"
+
+command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null ||
+    die "no ffmpeg: it is in the group film of tools/packages.txt"
+small="$CRESCENT_SOURCE/tests/system/film.toml"
+
+# A cut of four seconds from the first shot into the second.
+expect 0 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:12 --out cut --quiet
+for name in crescent.mp4 crescent.vtt crescent.srt crescent.txt frames.json; do
+    [ -s "cut/$name" ] || die "no $name"
+done
+[ ! -e .cut.crescent ] || die "a stage is left behind"
+entries=stream=codec_name,codec_type,width,height,pix_fmt,color_range,color_space,color_transfer,color_primaries
+entries+=,r_frame_rate,nb_frames:stream_disposition=attached_pic:chapter_tags=title
+ffprobe -v error -show_entries "$entries" -of flat cut/crescent.mp4 >probe 2>said || die "$(cat said)"
+for line in 'streams.stream.0.codec_name="h264"' 'streams.stream.0.width=640' 'streams.stream.0.height=360' \
+    'streams.stream.0.pix_fmt="yuv420p"' 'streams.stream.0.color_range="tv"' \
+    'streams.stream.0.color_space="bt709"' 'streams.stream.0.color_transfer="bt709"' \
+    'streams.stream.0.color_primaries="bt709"' 'streams.stream.0.r_frame_rate="30/1"' \
+    'streams.stream.0.nb_frames="120"'; do
+    grep -qF "$line" probe || die "not in the film: $line
+$(cat probe)"
+done
+grep -q 'codec_name="mov_text"' probe || die "no captions in the film"
+grep -q 'attached_pic=1' probe || die "no poster in the film"
+[ "$(grep -c 'chapters.chapter.*title' probe)" -eq 2 ] || die "expected the chapters of two shots: $(cat probe)"
+[ "$(head -n 1 cut/crescent.vtt)" = WEBVTT ] || die "crescent.vtt is no WebVTT"
+
+# The same frames with another number of threads and another instruction set.
+expect 0 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:12 --out again --quiet --threads 1 --isa scalar
+cmp -s cut/frames.json again/frames.json || die "frames depend on threads or the instruction set"
+cmp -s cut/crescent.srt again/crescent.srt || die "captions depend on threads or the instruction set"
+
+# Ctrl-C: exit 130, the last good film stands.
+cp -a cut before
+set -m
+"$CRESCENT" film "$small" --size 360p --out cut >printed 2>said &
+run=$!
+set +m
+sleep 2
+kill -s INT "$run"
+wait "$run"
+code=$?
+[ "$code" -eq 130 ] || die "SIGINT: exit $code: $(cat said)"
+diff -r -x '.crescent-*' before cut >difference || die "SIGINT touched the last film: $(cat difference)"
+
+# What is missing or wrong is told before the work.
+mkdir nothing
+PATH="$work/nothing" expect 3 "$CRESCENT" film "$small" --out none --quiet
+grep -q 'install the package ffmpeg' said || die "a missing ffmpeg is not told: $(cat said)"
+expect 2 "$CRESCENT" film "$small" --size 480p --out none
+expect 2 "$CRESCENT" film "$small" --from 1:70 --out none
+expect 2 "$CRESCENT" film "$small" --from 59:00 --out none --quiet
+sed 's/^\[arms.phong\]/[arms.blinn]/; s/^arm = "phong"/arm = "blinn"/' "$small" >no-phong.toml
+expect 2 "$CRESCENT" film no-phong.toml --out none --quiet
+grep -q "no arm here samples by 'phong'" said || die "a missing arm is not named: $(cat said)"
+expect 3 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:09 --voice false --out none --quiet
+grep -q "voice 'false' ended with exit code 1" said || die "a voice that fails is not told: $(cat said)"
+
+# An ffmpeg that ends well and leaves no film, or an empty one, or that does not read its frames: an error that says so.
+mkdir fake
+for what in 'cat >/dev/null|not there' 'cat >/dev/null; : >"${!#}"|is empty' 'exit 0|could not encode' \
+    'kill -9 $$|SIGKILL'; do
+    printf '#!/bin/bash\n[ "$2" = -encoders ] && exec %s "$@"\n%s\n' "$(command -v ffmpeg)" "${what%|*}" >fake/ffmpeg
+    chmod +x fake/ffmpeg
+    PATH="$work/fake:$PATH" expect 3 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:09 --out none --quiet
+    grep -q "ffmpeg.*${what#*|}" said || die "ffmpeg '${what%|*}': $(cat said)"
+    [ ! -e none/crescent.mp4 ] || die "an empty film was published"
+done
+
+# Spoken: an audio stream, and captions that wait for their speech.
+command -v espeak-ng >/dev/null || die "no espeak-ng: it is in the group test of tools/packages.txt"
+expect 0 "$CRESCENT" film "$small" --size 360p --from 0:00 --to 0:03 --voice 'espeak-ng --stdout -s 110' --out spoken \
+    --quiet
+ffprobe -v error -show_entries stream=codec_name -of flat spoken/crescent.mp4 | grep -q '"aac"' ||
+    die "no voice in the film"

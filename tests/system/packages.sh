@@ -1,0 +1,51 @@
+#!/bin/bash
+# What ./run installs: every package that dpkg does not call installed, also on a machine where it knows none of them.
+. "$(dirname "$0")/common.sh"
+
+root="$work/tree"
+mkdir -p "$root/tools" bin
+cp "$CRESCENT_SOURCE/tools/setup.sh" "$CRESCENT_SOURCE/tools/packages.txt" "$root/tools/"
+. "$root/tools/setup.sh"
+PATH="$work/bin:$PATH"
+
+# dpkg_says LINE...: a dpkg-query that prints these.
+dpkg_says() {
+    printf '#!/bin/sh\ncat <<END\n%s\nEND\n' "$(printf '%s\n' "$@")" >bin/dpkg-query
+    chmod +x bin/dpkg-query
+}
+
+printf '#!/bin/sh\nexit 1\n' >bin/dpkg-query
+chmod +x bin/dpkg-query
+[ "$(missing cmake g++ | xargs)" = "cmake g++" ] ||
+    die "of two unknown packages these are missing: $(missing cmake g++ | xargs)"
+dpkg_says "ii  cmake" "rc  g++"
+[ "$(missing cmake g++ ninja-build | xargs)" = "g++ ninja-build" ] ||
+    die "missing: $(missing cmake g++ ninja-build | xargs)"
+dpkg_says "ii  cmake" "ii  g++"
+[ -z "$(missing cmake g++)" ] || die "missing: $(missing cmake g++ | xargs)"
+
+# Where clang++-19 is not installed, as outside Debian and Ubuntu, another compiler is taken.
+mkdir compilers
+[ -z "$(PATH=$work/compilers other_compiler release)" ] || die "a compiler that is not there is taken"
+for name in g++ clang++; do
+    printf '#!/bin/sh\n' >compilers/$name && chmod +x compilers/$name
+    [ "$(PATH=$work/compilers other_compiler release)" = "-DCMAKE_CXX_COMPILER=$name" ] || die "$name is not taken"
+done
+cp compilers/g++ compilers/clang++-19
+[ -z "$(PATH=$work/compilers other_compiler release)" ] || die "another compiler than clang++-19 is taken"
+
+# What the configuration cannot do without is installed by ./run as well, which configures the tests with the rest.
+key() { tr '[:upper:]' '[:lower:]' <<<"$1" | sed -E 's/^lib//; s/-dev$//; s/[^a-z]//g'; }
+cd "$CRESCENT_SOURCE" || exit 1
+calls='(find_package|pkg_check_modules)\(\w+ (REQUIRED|QUIET)( IMPORTED_TARGET [^)]+)?'
+needs=$(cat CMakeLists.txt {cmake,src/*}/*.cmake {apps/cli,apps/explainer,src/gl,tests}/CMakeLists.txt |
+    grep -oE "$calls|crescent_need\(\w+ \w+::|find_library\(\w+" |
+    sed -E 's/.*\(//; s/ (REQUIRED|QUIET)$| \w+::$|_LIBRARY$//; s/.*IMPORTED_TARGET //')
+[ "$(wc -w <<<"$needs")" -ge 15 ] || die "too few libraries are found to be needed: $needs"
+for need in $needs; do
+    found=
+    for package in $(packages_of build); do
+        [[ $(key "$need") == "$(key "$package")"* ]] && found=$package
+    done
+    [ -n "$found" ] || die "$need is needed to configure, and no package of the group 'build' is it"
+done

@@ -1,0 +1,80 @@
+#!/bin/bash
+# The page as its readers open it: the same bits in node and in Chromium as from the program, the lessons by keyboard,
+# no request, no line on the console, workers refused, every width. $CRESCENT_PAGE is the build of ./page.
+. "$(dirname "$0")/common.sh"
+trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
+[ -f "${CRESCENT_PAGE:-}/crescent.wasm" ] || skip "the page is not built (./test builds it)"
+for tool in node esbuild; do command -v "$tool" >/dev/null || skip "no $tool"; done
+
+esbuild "$CRESCENT_SOURCE/tests/system/browser/hashes.ts" \
+    --bundle --format=iife --target=es2022 --log-level=warning >hashes.js || die "hashes.ts"
+expect 0 node "$CRESCENT_SOURCE/apps/web/pack.mjs" "$CRESCENT_PAGE" "$work/crescent.html"
+
+# axe-core, of the version and content that package-lock.json names; without npm or a network that one law is left out.
+cp "$CRESCENT_SOURCE"/tests/system/browser/package*.json . && command -v npm >/dev/null &&
+    npm ci --ignore-scripts --no-audit --no-fund --prefer-offline >npm.log 2>&1 &
+fetched=$!
+# The hashes that the page shows as the program's.
+node "$CRESCENT_SOURCE/apps/web/native.mjs" "$CRESCENT" >native.json 2>native.log &
+programs=$!
+
+# Every sampler over three scenes, small.
+arms=$("$CRESCENT" list arms | sed 's/ .*//')
+for name in tiny three-glosses two-lamps; do
+    from="$CRESCENT_SOURCE/experiments/$name.toml"
+    [ "$name" = tiny ] && from=$tiny
+    { awk '/^\[/ { off = /^\[+(arms|exponent|furnaces|plates|assertions)/ } !off' "$from"
+        for arm in $arms; do printf '\n[arms.%s]\nn = [4, 16]\n' "$arm"; done; } >"$name-all.toml"
+done
+expect 0 "$FILM_HASHES" tiny-all.toml three-glosses-all.toml two-lamps-all.toml
+awk '/ note-reference |^function /{ next } / quadrature /{ print; next } { $2 = ""; $0 = $0; $1 = $1; print }' printed |
+    sort -u >native
+[ "$(wc -l <native)" -gt 70 ] || die "too few films: $(cat native)"
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/hashes.mjs" hashes.js "$CRESCENT_PAGE/crescent.wasm" \
+    tiny-all.toml three-glosses-all.toml two-lamps-all.toml
+sort -u printed >node
+diff native node >difference || die "films differ in node: $(head -n 12 difference)"
+
+wait "$programs" && diff native.json "$CRESCENT_SOURCE/apps/web/native.json" >difference ||
+    die "apps/web/native.json is not the program's (node apps/web/native.mjs build/crescent): $(cat native.log difference)"
+
+# The verdicts, which pause in the page.
+esbuild "$CRESCENT_SOURCE/apps/web/door.ts" --format=esm --target=es2022 --log-level=warning --outfile=door.mjs ||
+    die "door.ts"
+"$CRESCENT" check phong --wo 60 --quiet --json phong.json >/dev/null
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/verdicts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+    phong.json 60
+cat printed
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/parts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+    "$CRESCENT_SOURCE/experiments/gallery.toml"
+cat printed
+
+python=/usr/bin/python3  # Debian's, which has Debian's selenium
+command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
+    $python -c 'import selenium' 2>/dev/null || skip "no Chromium that can be driven"
+# What the page itself shows under a picture of an experiment of the tree.
+expect 0 "$FILM_HASHES" "$CRESCENT_SOURCE/experiments/three-glosses.toml"
+SHOWN=$(awk '$3 == "phong" && $4 == "n=16" { print $5; exit }' printed)
+export SHOWN
+
+wait "$fetched"
+# A second engine, where there is one, at the same time.
+engine=
+if command -v WebKitWebDriver >/dev/null && command -v xvfb-run >/dev/null; then
+    xvfb-run -a $python "$CRESCENT_SOURCE/tests/system/browser/webkit.py" crescent.html "$SHOWN" >engine.log 2>&1 &
+    engine=$!
+fi
+in_chromium() {
+    $python "$CRESCENT_SOURCE/tests/system/browser/page.py" "$1" crescent.html hashes.js native \
+        tiny-all.toml three-glosses-all.toml two-lamps-all.toml
+}
+in_chromium readers >readers.log 2>&1 &  # each group waits for its own browser most of the time
+readers=$!
+expect 0 in_chromium numbers
+cat printed
+wait "$readers" || die "$(cat readers.log)"
+cat readers.log
+
+[ -n "$engine" ] || { echo 'no WebKit to try'; exit 0; }
+wait "$engine" || die "$(cat engine.log)"
+cat engine.log
