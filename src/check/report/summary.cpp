@@ -262,8 +262,8 @@ std::string nothing_drawn_told(const CheckResult& judgement) {
     constexpr double worth_saying = 0.01;
     const auto most = std::ranges::max_element(judgement.verdicts, {}, &Verdict::nothing);
     if (most == judgement.verdicts.end() || !(most->nothing > worth_saying)) return "";
-    return fmt::format("Up to {:.3g} % of the draws drew nothing, pdf 0 or under the horizon: {} at {}.",
-        100 * most->nothing, most->arm, most->trial);
+    return fmt::format("Up to {:.3g} % of the draws returned no sample (pdf 0, or below the horizon): {}{}.",
+        100 * most->nothing, most->arm, most->trial == without_wo ? "" : " at " + most->trial);
 }
 
 // ---- Read off the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
