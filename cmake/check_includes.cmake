@@ -1,6 +1,6 @@
 # cmake -DROOT=src -DNAME=folder -DALLOWED=a|b|c -DSTAMP=file -P check_includes.cmake
-# Fails with file:line where a file of ROOT/NAME includes a folder that is not in ALLOWED. Public headers
-# (crescent/*.h) may be included, and files next to the including one.
+# Fails, naming the file and its include, where a file of ROOT/NAME includes a folder that is not in ALLOWED. Public
+# headers (crescent/*.h) may be included, and files next to the including one.
 file(GLOB_RECURSE files ${ROOT}/${NAME}/*.h ${ROOT}/${NAME}/*.cpp)
 set(wrong "")
 foreach(file IN LISTS files)

@@ -62,12 +62,6 @@ function(crescent_use_pch target)
   endif()
 endfunction()
 
-# Files with names of their own in an unnamed namespace that another file of their target has too: where files are
-# compiled several at once (CMAKE_UNITY_BUILD), each of these is compiled alone.
-function(crescent_apart)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endfunction()
-
 # Files that run once and take long to optimise, JSON above all. Without it they cannot use the precompiled headers.
 function(crescent_low_optimization)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)

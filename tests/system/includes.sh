@@ -9,8 +9,7 @@ printf '#include "scene/scene.h"\n' >"$work/src/base/wrong.h"
 check() { cmake -DROOT="$1" -DNAME="$2" "-DALLOWED=$2" -DSTAMP="$work/stamp" -P cmake/check_includes.cmake; }
 ! check "$work/src" base >"$work/said" 2>&1 || die "a wrong include passes"
 tr -s ' \n' ' ' <"$work/said" | grep -q 'src/base does not depend on scene' || die "the wrong include is not named: $(cat "$work/said")"
-expect_pass() { check "$work/src" scene >"$work/said" 2>&1 || die "no include at all fails: $(cat "$work/said")"; }
-expect_pass
+check "$work/src" scene >"$work/said" 2>&1 || die "no include at all fails: $(cat "$work/said")"
 
 awk '
     !/^[ \t]*#[ \t]*include[ \t]*"/ { next }
