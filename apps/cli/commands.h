@@ -85,10 +85,18 @@ struct CompareFlags {
     std::vector<std::string> arms, reference, regions, masks;   // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
     std::vector<std::string> layers, spp, seconds, assertions;  // [NAME=]LAYER, [NAME=]N, [NAME=]S, a check
     std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
-    bool crop = false, pair = false, schema = false, json = false, quiet = false;
+    bool crop = false, pair = false, schema = false, schema_as_json = false, quiet = false;
     unsigned error_rates = 0, seed = 1;  // error_rates: how many calls; 0: not asked for
+    // Of a suite.
+    std::string baseline, candidate;            // folders; "": the file's patterns
+    std::string json, junit, markdown;          // files to write
+    std::string because, store;                 // of accept
+    std::vector<std::string> views;             // to accept; empty: all
+    bool strict = false, plan = false, accept = false;
 };
 int compare(const CompareFlags& flags);
+/// `crescent compare SUITE.toml`, and --baseline DIR --candidate DIR.
+int compare_suite(const CompareFlags& flags);
 
 struct VersionFlags {};
 int version(const VersionFlags& flags);

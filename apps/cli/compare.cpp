@@ -122,6 +122,16 @@ std::string command_of(const CompareFlags& f) {
     return out;
 }
 
+/// InputError if a flag is given that only a suite has.
+void forbid_suite_flags(const CompareFlags& f) {
+    const std::pair<const char*, bool> only[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
+        {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
+        {"--strict", f.strict}, {"--plan", f.plan}, {"--accept", f.accept}};
+    for (const auto& [flag, given] : only)
+        if (given)
+            throw InputError({flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
+}
+
 /// A section of docs/error-rates.md.
 int error_rates(const CompareFlags& flags) {
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
@@ -139,8 +149,13 @@ int error_rates(const CompareFlags& flags) {
 }  // namespace
 
 int compare(const CompareFlags& flags) {
-    if (flags.schema) return print(flags.json ? compare_schema_json() : compare_schema_text()), held;
+    if (flags.schema)
+        return print(flags.schema_as_json ? compare_schema_json() : compare_schema_text() + "\n" + suite_schema_text()),
+               held;
     if (flags.error_rates) return error_rates(flags);
+    const bool folders = !flags.baseline.empty() || !flags.candidate.empty();
+    if (folders || (!flags.file.empty() && is_suite(flags.file))) return compare_suite(flags);
+    forbid_suite_flags(flags);
     if (flags.file.empty() && flags.arms.empty())
         throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);

@@ -9,11 +9,43 @@ namespace {
 constexpr const char* compare_footer =
     R"(FILES is a path or a pattern of renders of one view, each one independent: OpenEXR,
 PFM, Radiance HDR, NPY. --arm may be given again for the same NAME. Without a reference the
-arms are held against each other. `crescent compare --schema` has the keys of FILE.
+arms are compared with each other. `crescent compare --schema` has the keys of FILE.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml, plates/.
 Exit codes: 0 nothing asked is violated; 1 an assertion fails, or with --expect same a
-difference was found; 4 --expect same, and too few renders to have seen one.)";
+difference was found; 4 --expect same, and too few renders to have seen one.
+
+A FILE with a table [suite] compares the views of a baseline and a candidate. Written under
+DIR: report.html. Exit codes: 1 a view changed, is noisier or is missing; 4 too few renders.)";
+
+/// The flags of a suite.
+void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
+    const auto file = [&](const char* flag, std::string& to, const char* means) {
+        c.add_option(flag, to, means)->type_name("FILE")->check(told);
+    };
+    c.add_option("--baseline", f->baseline, "folder with VIEW/*.exr or VIEW-SEED.exr, in place of the suite's pattern")
+        ->type_name("DIR")->check(told);
+    c.add_option("--candidate", f->candidate, "the same of the renders to be compared")->type_name("DIR")->check(told);
+    c.add_flag("--strict", f->strict, "of a suite: new views fail");
+    c.add_flag("--plan", f->plan, "of a suite: how many renders the smallest difference needs, from the baseline");
+    c.add_option_function<std::vector<std::string>>(
+         "--accept", [f](const std::vector<std::string>& views) {
+             f->accept = true;
+             for (const std::string& view : views)
+                 if (!view.empty()) f->views.push_back(view);
+         },
+         "of a suite: make the candidate of these views (none named: of all) the baseline")
+        ->type_name("[VIEW...]")->expected(0, -1);
+    c.add_option("--because", f->because, "with --accept: the reason, for the manifest")->type_name("TEXT")->check(told);
+    c.add_option("--store", f->store, "with --accept: renders, or moments (mean and variance of each pixel)")
+        ->type_name("renders|moments");
+    c.add_option_function<std::string>(
+         "--json", [f](const std::string& path) { f->json = path, f->schema_as_json = true; },
+         "of a suite: every number; with --schema: as a JSON Schema")
+        ->type_name("[FILE]")->expected(0, 1);
+    file("--junit", f->junit, "of a suite: one case for each view");
+    file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
+}
 
 }  // namespace
 
@@ -47,8 +79,8 @@ void add_compare(CLI::App& app, Work& work) {
         ->type_name("Y");
     c->add_option("--theme", f->theme, "of plates: dark, light")->type_name("THEME");
     c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(told);
-    auto* schema = c->add_flag("--schema", f->schema, "every key of FILE");
-    c->add_flag("--json", f->json, "with --schema: as a JSON Schema")->needs(schema);
+    add_suite_flags(*c, f);
+    c->add_flag("--schema", f->schema, "every key of FILE");
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");
     rates->type_name("CALLS")->check(whole_number(1, 100000));
     c->add_option("--seed", f->seed, "of their noise; default 1")->type_name("SEED")->needs(rates);

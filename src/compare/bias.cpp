@@ -118,25 +118,30 @@ std::string doubt_of(const AllSides& all, const RegionTests& tests, std::size_t 
     return missed ? doubted(sides, t, pixels, share) : "";
 }
 
-void test_regions(const AllSides& all, double alpha, BiasResult& out) {
+/// p of "no region differs" (Bonferroni).
+double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
     const auto& regions = all.first().all.regions;
-    const double level = alpha / static_cast<double>(regions.size());
+    const double level = of.each / static_cast<double>(regions.size()),
+                 named = of.named / static_cast<double>(regions.size());
     std::vector<RegionTests> tests;
     Values p, seen;
     for (std::size_t r = 0; r < regions.size(); ++r) {
         tests.push_back(region_tests(all, r, level));
         p.push_back(joint_p(tests[r].p).p), seen.push_back(joint_p(tests[r].seen).p);
     }
-    const std::vector<bool> small = holm(p, alpha), differs = holm(seen, alpha);
+    const std::vector<bool> small = holm(p, of.each), differs = holm(seen, of.named);
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        RegionTests& of = tests[r];
-        for (std::size_t q = 0; q < of.each.size() && differs[r]; ++q)
-            of.each[q].differs = of.seen[q] / level_share(q, of.each.size()) <= std::max(level, seen[r]);
-        MeanTest& t = out.regions.emplace_back(of.each[0]);
+        RegionTests& test = tests[r];
+        for (std::size_t q = 0; q < test.each.size() && differs[r]; ++q)
+            test.each[q].differs = test.seen[q] / level_share(q, test.each.size()) <= std::max(named, seen[r]);
+        MeanTest& t = out.regions.emplace_back(test.each[0]);
         t.region = regions[r].name, t.joint_p = seen[r];
-        t.channels.assign(of.each.begin() + 1, of.each.end());
-        if (small[r] && !differs[r]) t.doubt = doubt_of(all, of, r, level);
+        t.channels.assign(test.each.begin() + 1, test.each.end());
+        if (small[r] && !differs[r]) t.doubt = doubt_of(all, tests[r], r, level);
     }
+    double least = std::nan("");
+    for (const double each : seen) least = std::fmin(least, each);
+    return std::fmin(1, least * static_cast<double>(regions.size()));
 }
 
 /// The test of one quantity in one tile; p is NaN where it is not made.
@@ -178,7 +183,8 @@ void name_tiles(const AllSides& all, BiasResult& result) {
     }
 }
 
-void test_tiles(const AllSides& all, double alpha, BiasResult& result) {
+/// p of "no tile differs".
+double test_tiles(const AllSides& all, const BiasLevel& of, BiasResult& result) {
     PlaceTests& out = result.tiles;
     const std::size_t count = all.first().all.tiles.count(), quantities = all.apart.size();
     out.difference.assign(quantities, Values(count, std::nan("")));
@@ -187,7 +193,7 @@ void test_tiles(const AllSides& all, double alpha, BiasResult& result) {
         Values p;
         bool left_out = false;
         for (std::size_t q = 0; q < quantities; ++q) {
-            const double level = alpha / static_cast<double>(count) * level_share(q, quantities);
+            const double level = of.each / static_cast<double>(count) * level_share(q, quantities);
             const TileTest test = test_tile(all.in_tile(q, t), t, level);
             p.push_back(test.p), out.difference[q][t] = test.difference, left_out |= test.left_out;
         }
@@ -196,8 +202,12 @@ void test_tiles(const AllSides& all, double alpha, BiasResult& result) {
         if (std::isnan(joint.p)) out.left_out += left_out;
         else ++out.tested;
     }
-    out.differs = discoveries(out.p, alpha, all.first().dependent);
+    out.differs = discoveries(out.p, of.named, all.first().dependent);
     name_tiles(all, result);
+    std::vector<double> p;
+    std::copy_if(out.p.begin(), out.p.end(), std::back_inserter(p), [](double x) { return !std::isnan(x); });
+    std::sort(p.begin(), p.end());
+    return simes_p(p, static_cast<double>(p.size()), all.first().dependent);
 }
 
 std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult& found, double alpha) {
@@ -267,7 +277,7 @@ std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides
 }
 
 /// What the tests of means say of renders that are not the same.
-void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& all, double alpha,
+void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& all, const BiasLevel& of,
     BiasResult& out, ProgressMonitor& monitor) {
     AllSides sides;
     const auto sides_of = [&](std::vector<BiasPair>& to, const PairedRenders* paired) {
@@ -276,23 +286,25 @@ void test_means(const ComparePlan& plan, const CompareResult& measured, const Re
     };
     sides_of(sides.apart, nullptr);
     const BiasPair& first = sides.first();
-    const double region = alpha / 2 / static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
+    const double region = of.each / 2 / static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
     std::optional<PairedRenders> paired;
     if (auto pairs = pairs_for(plan, first, region, out); !pairs.empty())
         paired = paired_renders(plan, all, out.arm_a, out.arm_b, std::move(pairs), monitor);
     if (paired) sides_of(sides.paired, &*paired);
     out.paired = paired.has_value();
-    test_regions(sides, alpha / 2, out);
+    const BiasLevel half{of.each / 2, of.named / 2}, quarter{of.each / 4, of.named / 4};
+    out.p = 2 * test_regions(sides, half, out);
     const bool renders = first.a.files.size() >= 2 && (first.referred || first.b.files.size() >= 2);
     if (renders && !all.regions.back().pixels.empty()) {
-        test_tiles(sides, out.place_alpha, out);
-        test_pixels(paired ? sides.paired : sides.apart, out.place_alpha, out);
+        out.p = std::fmin(out.p, 4 * test_tiles(sides, quarter, out));
+        out.p = std::fmin(out.p, 4 * test_pixels(paired ? sides.paired : sides.apart, quarter, out));
     }
+    out.p = std::fmin(out.p, 1);
     if (first.a.files.size() == 1 && first.b.files.size() == 1) {
         out.single = single_difference(first);  // the bits of -0 and of NaN differ where values do not
         out.identical = out.single->pixels > 0 && out.single->different == 0 && !out.non_finite.differs();
     }
-    if (out.differs()) out.unless = missed_events(sides, out, alpha / 2);
+    if (out.differs()) out.unless = missed_events(sides, out, of.each / 2);
 }
 
 }  // namespace
@@ -333,15 +345,16 @@ std::string reference_error_from(const ArmStats& reference) {
 }
 
 BiasResult judge_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
-    std::size_t b, double alpha, ProgressMonitor& monitor) {
+    std::size_t b, const BiasLevel& level, ProgressMonitor& monitor) {
     const BiasPair sides(plan, all, measured, a, b);
     BiasResult out;
     out.a = plan.arms[a].name, out.b = sides.referred ? the_reference : plan.arms[b].name;
     out.arm_a = a, out.arm_b = b, out.dependent = sides.dependent;
     if (sides.referred) out.reference_error = reference_error_from(sides.b);
-    out.non_finite = compare_non_finite(all, sides.a, sides.b, alpha / 2);
-    const double rest = out.non_finite.any() ? alpha / 2 : alpha;
-    out.place_alpha = rest / 4;
+    out.non_finite = compare_non_finite(all, sides.a, sides.b, level.named / 2);
+    const double share = out.non_finite.any() ? 0.5 : 1;
+    const BiasLevel rest{level.each * share, level.named * share};
+    out.place_alpha = rest.each / 4;
     out.identical = same_renders(sides.a, sides.b);
     if (out.identical)
         for (std::size_t r = 0; r < all.regions.size(); ++r) {
@@ -350,7 +363,10 @@ BiasResult judge_bias(const ComparePlan& plan, const RenderStats& all, const Com
             t.a = t.b = mean_interval(sides.region_means(sides.a, r), confidence).mean;
         }
     else test_means(plan, measured, all, rest, out, monitor);
-    out.sentence = sentence_of(all, out, rest / 2);
+    if (out.identical) out.p = 1;
+    out.p /= share;
+    if (out.non_finite.any()) out.p = std::fmin(out.p, 2 * out.non_finite.p);
+    out.sentence = sentence_of(all, out, rest.each / 2);
     return out;
 }
 
@@ -487,15 +503,15 @@ double pixel_level(const BiasPair& s, double alpha) {
     return alpha / static_cast<double>(s.all.regions.back().pixels.size());
 }
 
-void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out) {
+double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, BiasResult& out) {
     const BiasPair& s = sides[0];
-    if (s.lone_reference() && s.b.film.told_variance.empty()) return;
+    if (s.lone_reference() && s.b.film.told_variance.empty()) return std::nan("");
     const std::size_t count = s.all.regions.back().pixels.size();
-    const double level = pixel_level(s, alpha);
+    const double level = pixel_level(s, levels.each);
     const Bins table(count > table_from ? most_degrees(s) : 0);
     std::vector<PixelCounts> parts((count + pixels_at_once - 1) / pixels_at_once);
     parallel_for(std::size_t{0}, parts.size(),
-        [&](std::size_t c) { parts[c] = part_of(sides, c * pixels_at_once, alpha, level, table); });
+        [&](std::size_t c) { parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, table); });
     out.pixel_p.assign(bins, 0), out.pixels_by.assign(sides.size(), 0);
     std::vector<Candidate> small;
     for (const PixelCounts& part : parts) {
@@ -506,7 +522,7 @@ void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out)
     std::sort(small.begin(), small.end());
     std::vector<double> p;
     for (const Candidate& c : small) p.push_back(c.p.p);
-    out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), alpha, s.dependent);
+    out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), levels.named, s.dependent);
     small.resize(out.pixels_different);
     for (const Candidate& c : small) {
         ++out.pixels_by[c.p.quantity], out.different_pixels.push_back(c.pixel);
@@ -517,6 +533,7 @@ void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out)
         out.pixels_found.push_back({{x, y, x, y}, b + moments(of, c.pixel, false).difference, b, c.p.p, c.p.quantity});
     }
     std::sort(out.different_pixels.begin(), out.different_pixels.end());
+    return simes_p(p, static_cast<double>(out.pixels_tested), s.dependent);
 }
 
 }  // namespace crescent::inline comparing

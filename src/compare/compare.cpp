@@ -28,6 +28,8 @@ template <class Read> std::optional<double> told(const std::optional<double>& pl
     return sum / static_cast<double>(arm.files.size());
 }
 
+}  // namespace
+
 ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t a, ProgressMonitor& monitor) {
     ArmResult out;
     const ArmStats& arm = all.arms[a];
@@ -39,6 +41,8 @@ ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size
         out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
     return out;
 }
+
+namespace {
 
 double value_of(const ParsedQuantity& side, const CompareResult& result, std::string& why) {
     if (side.number) return *side.number;
@@ -140,9 +144,9 @@ CompareResult judge(const ComparePlan& plan, const RenderStats& all, ProgressMon
     const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
     const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
     for (std::size_t a = 0; a < arms; ++a) {
-        if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, alpha, monitor));
+        if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, {alpha, alpha}, monitor));
         for (std::size_t b = 0; b < a; ++b) {
-            out.bias.push_back(judge_bias(plan, all, out, a, b, alpha, monitor));
+            out.bias.push_back(judge_bias(plan, all, out, a, b, {alpha, alpha}, monitor));
             if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1)
                 out.noise.push_back(judge_noise(plan, all, a, b, alpha));
         }

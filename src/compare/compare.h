@@ -27,15 +27,23 @@ std::vector<Flips> measure_flip(
 RegionResult measure_region(
     const RenderStats& all, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips);
 
+/// Every number of one arm.
+ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t arm, ProgressMonitor& monitor);
+
 /// Mean over a region of the squared error of the reference's Y: over its files, else as it says, else estimated from
 /// how roughly arms differ from it (see roughness()).
 double reference_variance(const RenderStats& all, std::size_t region);
 /// How that is known, in words.
 std::string reference_error_from(const ArmStats& reference);
 
-/// Whether two arms (b = arms.size(): the reference) have the same expectation; `alpha` is shared by all its tests.
+/// The level of a test of two arms, which all its tests share. `each`: of the power that it states and of what it
+/// cannot see. `named`: of the regions, tiles and pixels that it names; larger where several such tests share a level.
+struct BiasLevel {
+    double each, named;
+};
+/// Whether two arms (b = arms.size(): the reference) have the same expectation.
 BiasResult judge_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
-    std::size_t b, double alpha, ProgressMonitor& monitor);
+    std::size_t b, const BiasLevel& level, ProgressMonitor& monitor);
 
 /// What it found, in one sentence; `alpha` is that of its regions.
 std::string sentence_of(const RenderStats& all, const BiasResult& bias, double alpha);

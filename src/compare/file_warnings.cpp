@@ -116,11 +116,13 @@ private:
         for (std::size_t k = 0; k < failing_.size(); ++k) {
             const Counts c = counts(failing_[k]);
             p.push_back(fisher_exact(c.a, na_, c.b, nb_));
-            if ((c.a == na_ && c.b == 0) || (c.b == nb_ && c.a == 0)) differs_[k] = true;
+            if ((c.a == na_ && c.b == 0) || (c.b == nb_ && c.a == 0)) differs_[k] = true, out_.p = 0;
         }
         const std::vector<bool> found = discoveries(p, alpha, false);
         for (std::size_t k = 0; k < p.size(); ++k)
             if (found[k]) differs_[k] = true;
+        std::sort(p.begin(), p.end());
+        out_.p = std::min(out_.p, 2 * simes_p(p, static_cast<double>(p.size()), false));
     }
 
     void groups(double alpha) {
@@ -137,6 +139,7 @@ private:
             p.push_back(g.p), out_.groups.push_back(g);
         }
         const std::vector<bool> found = holm(p, alpha);
+        out_.p = std::min(out_.p, 2 * static_cast<double>(p.size()) * *std::min_element(p.begin(), p.end()));
         for (std::size_t r = 0; r < p.size(); ++r) {
             FailedGroups& g = out_.groups[r];
             g.differs = found[r];

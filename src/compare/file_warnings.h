@@ -51,6 +51,7 @@ struct NonFinite {
     std::uint64_t undecided = 0;       // of `one`: in half of the renders of a side or more, which are too few to say
     FailingPixels a, b;                // pixels that differ: more often on side a, on side b
     std::vector<FailedGroups> groups;  // a region each; empty where no pixel fails
+    double p = 1;                      // of equal rates everywhere
     bool any() const { return !groups.empty(); }
     bool differs() const { return !a.pixels.empty() || !b.pixels.empty(); }
 };

@@ -126,8 +126,7 @@ void check_names(ParseContext& context, ComparePlan& plan) {
 }
 
 ComparePlan read_plan(Node root, ParseContext& context, const std::vector<CompareFlag>& flags) {
-    std::set<std::string> begun;
-    for (const CompareFlag& flag : flags) put(root, flag, begun);
+    put_flags(root, flags);
     ComparePlan plan;
     plan.file = context.e.file;
     read_tree(context, compare_schema(), root, &plan);
@@ -137,6 +136,11 @@ ComparePlan read_plan(Node root, ParseContext& context, const std::vector<Compar
 }
 
 }  // namespace
+
+void put_flags(Node& root, const std::vector<CompareFlag>& flags) {
+    std::set<std::string> begun;
+    for (const CompareFlag& flag : flags) put(root, flag, begun);
+}
 
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file) {
     ParseContext context;

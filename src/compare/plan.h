@@ -10,6 +10,7 @@
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
+#include "experiment/tree.h"
 #include "output/color_map.h"
 
 namespace crescent::inline comparing {
@@ -67,6 +68,8 @@ struct CompareFlag {
     bool toml = false;
     std::string typed;  // "--arm a=*.exr"
 };
+/// Puts flags over the values of a file's tree.
+void put_flags(Node& root, const std::vector<CompareFlag>& flags);
 /// Reads a compare file (none: ""), with flags over it; every mistake with its place in one InputError.
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file = {});
 

@@ -122,6 +122,7 @@ struct BiasResult {
     std::vector<std::uint32_t> different_pixels;     // rising
     std::vector<std::uint64_t> tiles_by, pixels_by;  // of those that differ, by the quantity that differs the most
     std::vector<std::uint64_t> pixel_p;              // histogram of the p of Y over pixels, in twentieths
+    double p = std::nan("");  // of no difference at all, over every test of these two; NaN: nothing was tested
     bool differs() const;
     /// The quantity to show where the sides differ: Y where it differs at all, else the channel that differs the most.
     std::size_t shown() const;

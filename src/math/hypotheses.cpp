@@ -99,9 +99,26 @@ double lone_share(std::size_t count) {
     return (k - 1) / k * t * t / (k - 2 + t * t);
 }
 
-std::size_t discovered(std::span<const double> p, double of, double alpha, bool dependent) {
+namespace {
+
+/// 1 + 1/2 + ... + 1/of under any dependence, else 1.
+double dependence_factor(double of, bool dependent) {
     double harmonic = 1;
     for (double i = 2; dependent && i <= of; ++i) harmonic += 1 / i;
+    return harmonic;
+}
+
+}  // namespace
+
+double simes_p(std::span<const double> p, double of, bool dependent) {
+    const double factor = of * dependence_factor(of, dependent);
+    double out = 1;
+    for (std::size_t i = 0; i < p.size(); ++i) out = std::min(out, p[i] * factor / static_cast<double>(i + 1));
+    return out;
+}
+
+std::size_t discovered(std::span<const double> p, double of, double alpha, bool dependent) {
+    const double harmonic = dependence_factor(of, dependent);
     std::size_t last = 0;
     for (std::size_t i = 0; i < p.size(); ++i)
         if (p[i] <= alpha * static_cast<double>(i + 1) / (of * harmonic)) last = i + 1;

@@ -1,0 +1,81 @@
+// crescent compare SUITE.toml: golden images of several views.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "crescent/crescent.h"
+#include "progress.h"
+#include "signals.h"
+
+namespace crescent::cli {
+
+namespace {
+
+/// The keys of [suite] that the flags replace.
+SuiteFlags suite_flags(const CompareFlags& f) {
+    SuiteFlags out;
+    out.baseline = f.baseline, out.candidate = f.candidate;
+    const auto add = [&](const char* key, const std::string& text, bool toml) {
+        if (!text.empty()) out.keys.push_back({{"suite", key}, text, toml, fmt::format("--{} {}", key, text)});
+    };
+    add("alpha", f.alpha, true), add("exposure", f.exposure, true), add("brightest", f.brightest, true);
+    add("store", f.store, false);
+    if (!f.smallest.empty()) {
+        const bool percent = f.smallest.back() == '%';
+        const std::string digits = percent ? f.smallest.substr(0, f.smallest.size() - 1) + "e-2" : f.smallest;
+        out.keys.push_back({{"suite", "smallest"}, digits, true, "--smallest " + f.smallest});
+    }
+    for (const std::string& layer : f.layers) add("layer", layer, false);
+    return out;
+}
+
+/// InputError if a flag is given that a suite does not have.
+void forbid_other_flags(const CompareFlags& f) {
+    const std::pair<const char*, bool> others[] = {{"--arm", !f.arms.empty()}, {"--reference", !f.reference.empty()},
+        {"--region", !f.regions.empty()}, {"--mask", !f.masks.empty()}, {"--spp", !f.spp.empty()},
+        {"--seconds", !f.seconds.empty()}, {"--assert", !f.assertions.empty()}, {"--align", !f.align.empty()},
+        {"--expect", !f.expect.empty()}, {"--trim", !f.trim.empty()}, {"--theme", !f.theme.empty()},
+        {"--crop", f.crop}, {"--pair", f.pair}};
+    for (const auto& [flag, given] : others)
+        if (given) throw InputError({flag, 0, 0}, "expected no such flag: a suite compares a baseline and a candidate");
+    if (!f.because.empty() && !f.accept) throw InputError({"--because", 0, 0}, "expected --accept with it");
+    if (!f.store.empty() && !f.accept) throw InputError({"--store", 0, 0}, "expected --accept with it");
+    if (f.plan && f.accept) throw InputError({"--plan", 0, 0}, "expected no --accept with it");
+}
+
+std::string suite_command(const CompareFlags& f) {
+    std::string out = "crescent compare";
+    if (!f.file.empty()) out += " " + shell_word(f.file);
+    const std::pair<const char*, std::string> all[] = {{"--baseline", f.baseline}, {"--candidate", f.candidate},
+        {"--alpha", f.alpha}, {"--smallest", f.smallest}, {"--brightest", f.brightest}, {"--exposure", f.exposure}};
+    for (const auto& [flag, value] : all)
+        if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
+    for (const std::string& layer : f.layers) out += " --layer " + shell_word(layer);
+    if (f.strict) out += " --strict";
+    return out;
+}
+
+}  // namespace
+
+int compare_suite(const CompareFlags& flags) {
+    forbid_other_flags(flags);
+    const Suite suite = read_suite(flags.file, suite_flags(flags));
+    Provenance provenance;
+    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
+    provenance.command = suite_command(flags);
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    for (const std::string& path : {flags.json, flags.junit, flags.markdown})
+        if (!path.empty()) can_write(path);
+    Staging staging(flags.out.empty() ? "out/compare" : flags.out);
+    const SuiteResult result = crescent::compare_suite(suite, progress);
+    if (!flags.json.empty()) write_whole(flags.json, suite_json(suite, result, flags.strict, provenance));
+    if (!flags.junit.empty()) write_whole(flags.junit, suite_junit(suite, result, flags.strict));
+    if (!flags.markdown.empty()) write_whole(flags.markdown, suite_markdown(suite, result, provenance));
+    staging.write("report.html", suite_html(suite, result, provenance));
+    staging.commit(progress);
+    progress.clear();
+    print(suite_summary(suite, result));
+    return exit_code(result, flags.strict);
+}
+
+}  // namespace crescent::cli

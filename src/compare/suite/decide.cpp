@@ -1,0 +1,160 @@
+// All views together: Holm's method over the p-values of the views, then one state and one sentence for each.
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "compare/suite/suite.h"
+#include "output/format.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+/// p of "neither the means nor the variances differ", the level being shared as share_of_means states.
+double view_p(const ViewResult& view) {
+    return std::fmin(view.mean_p / share_of_means, view.variance_p / (1 - share_of_means));
+}
+
+/// Holm 1979: the level that each view has, the one at which the method stopped for all that are not rejected.
+void set_levels(std::vector<ViewResult*>& views, double alpha) {
+    std::sort(views.begin(), views.end(), [](const ViewResult* a, const ViewResult* b) {
+        const double p = view_p(*a), q = view_p(*b);
+        return p != q ? p < q : a->name < b->name;
+    });
+    bool rejected = true;
+    double level = 0;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        if (rejected) level = alpha / static_cast<double>(views.size() - k);
+        rejected &= view_p(*views[k]) <= level;
+        views[k]->level = level;
+    }
+}
+
+/// Names no place of a view in which no difference was decided.
+void forget_places(BiasResult& means) {
+    for (MeanTest& t : means.regions) {
+        t.differs = false;
+        for (MeanTest& c : t.channels) c.differs = false;
+    }
+    means.tiles.different = 0, means.tiles.differs.assign(means.tiles.differs.size(), false);
+    means.tiles_found.clear(), means.tiles_by.clear();
+    means.pixels_different = 0, means.pixels_found.clear(), means.different_pixels.clear(), means.pixels_by.clear();
+    NonFinite& n = means.non_finite;
+    n.one += n.a.pixels.size() + n.b.pixels.size(), n.a = n.b = {};
+    for (FailedGroups& g : n.groups) g.differs = false;
+    means.unless.reset();
+}
+
+/// +1: more variance somewhere, -1: less somewhere and more nowhere, 0: none of both.
+int compare_variances(ViewResult& view) {
+    int sign = 0;
+    const double tests = static_cast<double>(
+        std::count_if(view.variances.begin(), view.variances.end(), [](const auto& t) { return t.why.empty(); }));
+    for (VarianceTest& t : view.variances) {
+        t.different = t.why.empty() && t.welch.p * tests / (1 - share_of_means) <= view.level;
+        if (!t.different) continue;
+        if (t.candidate > t.baseline) sign = 1;
+        else if (sign == 0) sign = -1;
+    }
+    return sign;
+}
+
+std::string variance_sentence(const ViewResult& view, int sign) {
+    const VarianceTest* shown = nullptr;
+    for (const VarianceTest& t : view.variances)
+        if (t.different && (t.candidate > t.baseline) == (sign > 0) && (!shown || t.welch.p < shown->welch.p))
+            shown = &t;
+    return fmt::format("The variance of a pixel in {} is {} times that of the baseline (p = {:.2g}).", shown->region,
+        figures(shown->candidate / shown->baseline, 3), shown->welch.p);
+}
+
+/// The largest of the differences that would be found.
+std::string power_sentence(const BiasResult& means) {
+    const MeanTest* largest = nullptr;
+    for (const MeanTest& t : means.regions)
+        if (t.why.empty() && (!largest || t.smallest > largest->smallest)) largest = &t;
+    if (!largest) return "";
+    return fmt::format("A difference of {} of mean Y in {} would be found with a probability of 90 %.",
+        percent(largest->smallest, 2), largest->region);
+}
+
+std::string too_few_sentence(const ViewResult& view) {
+    std::string out = fmt::format("Too few renders ({} and {}): {}.", view.baseline_renders, view.candidate_renders,
+        view.too_few);
+    if (view.renders_needed) out += fmt::format(" {} renders of each side would do.", *view.renders_needed);
+    return out;
+}
+
+std::string exact_sentence(const ViewResult& view) {
+    const BiasResult& means = *view.means;
+    if (means.identical) return "Deterministic: all renders of both sides have the same pixels.";
+    if (!means.single) return "Deterministic, and its pixels changed.";
+    const SingleDifference& s = *means.single;
+    return fmt::format("Deterministic, and {} of {} pixels changed; the largest difference of a channel is {} at "
+                       "({}, {}).",
+        s.different, s.pixels, figures(s.largest, 3), s.at.x0, s.at.y0);
+}
+
+void decide_compared(const Suite& suite, ViewResult& view) {
+    BiasResult& means = *view.means;
+    const bool changed = view.mean_p / share_of_means <= view.level;
+    const int variance = compare_variances(view);
+    if (!changed) forget_places(means);
+    const double stated = suite.options.alpha * share_of_means / 2;
+    if (view.exact) view.state = changed ? ViewState::changed : ViewState::same, view.sentence = exact_sentence(view);
+    else if (changed) view.state = ViewState::changed, view.sentence = sentence_of(view.outline, means, stated);
+    else if (variance > 0) view.state = ViewState::noisier, view.sentence = variance_sentence(view, 1);
+    else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
+    else if (variance < 0)
+        view.state = ViewState::improved,
+        view.sentence = "Same mean. " + variance_sentence(view, -1) + " " + power_sentence(means);
+    else if (means.identical)
+        view.state = ViewState::same, view.sentence = "Identical: the same pixels in every render.";
+    else view.state = ViewState::same, view.sentence = power_sentence(means);
+    if (!view.too_few.empty() && view.state == ViewState::noisier) view.sentence += " " + too_few_sentence(view);
+}
+
+std::string suite_sentence(const Suite& suite, const SuiteResult& result) {
+    std::vector<std::string> counts;
+    for (std::size_t k = 0; k < view_state_names.size(); ++k)
+        if (const std::size_t n = result.count(static_cast<ViewState>(k)))
+            counts.push_back(fmt::format("{} {}", n, view_state_names[k]));
+    return fmt::format("{}: {}. A suite without any change reports one with a probability of at most {} ({}).",
+        plural(result.views.size(), "view"), fmt::join(counts, ", "), percent(suite.options.alpha, 2),
+        result.tested ? fmt::format("alpha = {}, Holm's method over {}", compact(suite.options.alpha),
+                            plural(result.tested, "view"))
+                      : "no view was tested");
+}
+
+}  // namespace
+
+std::size_t SuiteResult::count(ViewState state) const {
+    return static_cast<std::size_t>(
+        std::count_if(views.begin(), views.end(), [&](const ViewResult& view) { return view.state == state; }));
+}
+
+int exit_code(const SuiteResult& result, bool strict) {
+    const auto any = [&](ViewState state) { return result.count(state) > 0; };
+    if (any(ViewState::changed) || any(ViewState::noisier) || any(ViewState::missing)) return 1;
+    if (strict && any(ViewState::added)) return 1;
+    return any(ViewState::too_few) ? 4 : 0;
+}
+
+void decide(const Suite& suite, SuiteResult& result) {
+    std::vector<ViewResult*> tested;
+    for (ViewResult& view : result.views)
+        if (view.means && !view.exact && !std::isnan(view_p(view))) tested.push_back(&view);
+    result.tested = tested.size();
+    set_levels(tested, suite.options.alpha);
+    for (ViewResult& view : result.views) {
+        if (view.state == ViewState::added)
+            view.sentence = fmt::format("New: there is no baseline yet; --accept {} makes these {} the baseline.",
+                view.name, plural(view.candidate_renders, "render"));
+        else if (view.state == ViewState::missing)
+            view.sentence =
+                fmt::format("Missing: the baseline has {}, the candidate none.", plural(view.baseline_renders, "render"));
+        else decide_compared(suite, view);
+    }
+    result.sentence = suite_sentence(suite, result);
+}
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,280 @@
+// One view: its renders are read once into memory where they fit, copies are left out, and the tests of `crescent
+// compare` are made of the candidate against the baseline; then the variances of both sides are compared.
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <xxhash.h>
+
+#include "base/parallel.h"
+#include "compare/metrics.h"
+#include "compare/suite/pictures.h"
+#include "compare/suite/power.h"
+#include "compare/suite/suite.h"
+#include "output/format.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+/// Renders of one view that are kept for the second reading: at most 768 MiB, 30 renders of 1920 x 1080. A view with
+/// more is read from its files again.
+constexpr std::size_t most_kept = std::size_t{768} << 20;
+
+/// Of the pixels as the file has them.
+std::uint64_t pixel_hash(const Render& render) {
+    const std::array<std::uint64_t, 5> parts{static_cast<std::uint64_t>(render.width),
+        static_cast<std::uint64_t>(render.height), XXH3_64bits(render.r.data(), render.r.size() * sizeof(float)),
+        XXH3_64bits(render.g.data(), render.g.size() * sizeof(float)),
+        XXH3_64bits(render.b.data(), render.b.size() * sizeof(float))};
+    return XXH3_64bits(parts.data(), sizeof parts);
+}
+
+/// The renders of a view by path, with their hashes.
+class ViewFiles {
+public:
+    ViewFiles(const SuiteView& view, const std::string& layer, const RenderSource& source, ProgressMonitor& monitor)
+        : source_(source) {
+        std::vector<std::string> paths = view.baseline;
+        paths.insert(paths.end(), view.candidate.begin(), view.candidate.end());
+        std::vector<File> files(paths.size());
+        parallel_for(std::size_t{0}, paths.size(), [&](std::size_t k) {
+            monitor.check();
+            Render render = source.read(paths[k], layer);
+            files[k].hash = pixel_hash(render);
+            const std::size_t bytes = 4 * sizeof(float) * render.size();
+            const Guard guard(lock_);
+            if (kept_ + bytes <= most_kept) kept_ += bytes, files[k].render = std::move(render);
+        });
+        for (std::size_t k = 0; k < paths.size(); ++k) files_.emplace(paths[k], std::move(files[k]));
+    }
+
+    std::uint64_t hash(const std::string& path) const { return files_.at(path).hash; }
+    /// Paths of one side whose pixels differ from those of all paths before; the others become notes.
+    std::vector<std::string> different(
+        const std::vector<std::string>& paths, const char* side, std::vector<std::string>& notes) const {
+        std::vector<std::string> out;
+        std::map<std::uint64_t, std::string> first;
+        std::vector<std::pair<std::string, std::string>> copies;
+        for (const std::string& path : paths) {
+            const auto [before, fresh] = first.emplace(hash(path), path);
+            if (fresh) out.push_back(path);
+            else copies.emplace_back(path, before->second);
+        }
+        if (!copies.empty() && out.size() > 1)
+            notes.push_back(fmt::format("{} of the {} renders of the {} {} the same pixels as another and {} left out: "
+                                        "{} is a copy of {}{}",
+                copies.size(), paths.size(), side, copies.size() == 1 ? "has" : "have",
+                copies.size() == 1 ? "is" : "are", copies[0].first, copies[0].second,
+                copies.size() > 1 ? ", and others" : ""));
+        return out;
+    }
+    /// Reads from memory what is kept there.
+    RenderSource reader() const {
+        RenderSource out = source_;
+        out.expand = [](const std::vector<std::string>& paths, const SourceLocation&) { return paths; };
+        out.read = [this](const std::string& path, const std::string& layer) {
+            const auto found = files_.find(path);
+            if (found != files_.end() && found->second.render.size() > 0) return found->second.render;
+            return source_.read(path, layer);
+        };
+        return out;
+    }
+
+private:
+    struct File {
+        std::uint64_t hash = 0;
+        Render render;  // without pixels if it is not kept
+    };
+    const RenderSource& source_;
+    std::map<std::string, File> files_;
+    std::size_t kept_ = 0;
+    Mutex lock_;
+};
+
+ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vector<std::string>& baseline,
+    const std::vector<std::string>& candidate) {
+    ComparePlan plan;
+    plan.file = suite.file.empty() ? "crescent compare" : suite.file, plan.title = view.name;
+    for (const auto& [name, files] : {std::pair{"baseline", baseline}, std::pair{"candidate", candidate}}) {
+        RenderArm& arm = plan.arms.emplace_back();
+        arm.name = name, arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
+    }
+    plan.regions = view.regions;
+    plan.flip = false, plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
+    return plan;
+}
+
+std::vector<double> spreads_of(const ArmStats& arm, std::size_t region) {
+    const double k = static_cast<double>(arm.files.size());
+    std::vector<double> out;
+    for (const auto& render : arm.regions) out.push_back(render[region].spread * k / (k - 1));
+    return out;
+}
+
+VarianceTest test_variance(const RenderStats& all, const CompareResult& measured, std::size_t region) {
+    VarianceTest out;
+    out.region = all.regions[region].name;
+    if (all.arms[0].files.size() < 3 || all.arms[1].files.size() < 3) {
+        out.why = "three renders or more of each side are needed";
+        return out;
+    }
+    const MeanInterval b = mean_interval(spreads_of(all.arms[0], region), confidence),
+                       c = mean_interval(spreads_of(all.arms[1], region), confidence);
+    out.baseline = b.mean, out.candidate = c.mean;
+    for (const ArmResult& arm : measured.arms)
+        if (arm.regions[region].heavy()) out.why = fmt::format("heavy tail: a few pixels decide that of {}", arm.name);
+    if (!out.why.empty()) return out;
+    out.welch = welch_test(c, b);
+    return out;
+}
+
+void test_variances(const RenderStats& all, const CompareResult& measured, ViewResult& out) {
+    double tested = 0;
+    for (std::size_t r = 0; r < all.regions.size(); ++r) {
+        const VarianceTest& test = out.variances.emplace_back(test_variance(all, measured, r));
+        if (!test.why.empty()) continue;
+        ++tested, out.variance_p = std::fmin(out.variance_p, test.welch.p);
+    }
+    if (tested > 0) out.variance_p = std::min(1.0, out.variance_p * tested);
+}
+
+/// Renders of each side that the region needs; nothing if no number is known to do.
+std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult& means, const MeanTest& test,
+    const std::vector<ArmResult>& arms, std::size_t region, double smallest, double level) {
+    if (!test.why.empty()) {
+        std::optional<double> needed;
+        for (const ArmResult& arm : arms)
+            if (const auto n = arm.regions[region].renders_needed; n && arm.regions[region].mean_heavy())
+                needed = std::max(needed.value_or(0), *n);
+        if (needed) return static_cast<std::size_t>(*needed);
+        if (all.arms[0].files.size() < 2 || all.arms[1].files.size() < 2) return 3;
+        return {};
+    }
+    RegionPower power;
+    power.mean = std::fabs(test.b);
+    power.paired = test.paired;
+    if (test.paired) power.variance_a = test.welch.se * test.welch.se * (test.welch.df + 1);
+    else {
+        const auto variance = [&](const ArmStats& arm) {
+            std::vector<double> values;
+            for (const auto& render : arm.quantities[0].regions) values.push_back(render[region]);
+            const MeanInterval m = mean_interval(values, confidence);
+            return m.se * m.se * static_cast<double>(m.n);
+        };
+        power.variance_a = variance(all.arms[means.arm_a]), power.variance_b = variance(all.arms[means.arm_b]);
+    }
+    const double seen = detectable(test.welch, level), stated = test.smallest * power.mean;
+    if (stated > seen * (1 + 1e-9))
+        power.missed = stated *
+            static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
+    return renders_needed(power, smallest, level);
+}
+
+/// Why equality of the means cannot be stated, and the renders that would do.
+void state_power(
+    const RenderStats& all, const CompareResult& measured, double level, ViewResult& out) {
+    const BiasResult& means = *out.means;
+    bool known = true;
+    std::size_t needed = 0;
+    for (std::size_t r = 0; r < means.regions.size(); ++r) {
+        const MeanTest& t = means.regions[r];
+        std::string why = !t.doubt.empty() ? t.doubt : t.why;
+        for (const MeanTest& c : t.channels)
+            if (why.empty() && !c.why.empty()) why = fmt::format("{}: {}", c.region, c.why);
+        if (why.empty() && !(t.smallest <= out.smallest))
+            why = std::isfinite(t.smallest)
+                ? fmt::format("a difference of {} of mean Y would be found, {} is required", percent(t.smallest, 2),
+                      percent(out.smallest, 2))
+                : "no difference of mean Y would be found";
+        if (why.empty()) continue;
+        if (out.too_few.empty()) out.too_few = fmt::format("in {} {}", t.region, why);
+        const double of_region = level / 2 / static_cast<double>(means.regions.size()) * level_share(0, all.quantities);
+        const auto n = renders_for(all, means, t, measured.arms, r, out.smallest, of_region);
+        known &= n.has_value(), needed = std::max(needed, n.value_or(0));
+    }
+    if (means.non_finite.undecided && out.too_few.empty())
+        out.too_few = fmt::format("{} pixels are not finite in half of the renders of one side or more and in none of "
+                                  "the other",
+            means.non_finite.undecided),
+        known = false;
+    if (!out.too_few.empty() && known) out.renders_needed = needed;
+}
+
+/// What remains of the readings once the pixels are dropped: what sentences need.
+RenderStats outline_of(const RenderStats& all) {
+    RenderStats out;
+    out.width = all.width, out.height = all.height;
+    for (const ArmStats& arm : all.arms) out.arms.emplace_back().files = arm.files;
+    return out;
+}
+
+/// A side whose renders all have the same pixels although there are several.
+bool is_constant(const std::vector<std::string>& files, const std::vector<std::string>& different) {
+    return files.size() > 1 && different.size() == 1;
+}
+
+}  // namespace
+
+ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,
+    const RenderSource& source) {
+    ViewResult out;
+    out.name = view.name, out.smallest = suite.smallest(view);
+    const ViewFiles files(view, suite.options.layer, source, monitor);
+    const std::vector<std::string> baseline = files.different(view.baseline, "baseline", out.notes),
+                                   candidate = files.different(view.candidate, "candidate", out.notes);
+    out.baseline_renders = baseline.size(), out.candidate_renders = candidate.size();
+    if (baseline.empty() || candidate.empty()) {
+        out.state = baseline.empty() ? ViewState::added : ViewState::missing;
+        picture_one_side(suite, view, files.reader(), out);
+        return out;
+    }
+    const bool constant_baseline = is_constant(view.baseline, baseline),
+               constant_candidate = is_constant(view.candidate, candidate);
+    out.exact = baseline.size() == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
+    const ComparePlan plan = plan_for(suite, view, baseline, candidate);
+    ProgressMonitor quiet;
+    const RenderStats all = read_all(plan, quiet, files.reader());
+    monitor.check();
+    CompareResult measured;
+    for (std::size_t a = 0; a < all.arms.size(); ++a) measured.arms.push_back(measure_arm(plan, all, a, quiet));
+    const double alpha = suite.options.alpha * share_of_means;
+    const BiasLevel level{alpha / static_cast<double>(compared), alpha};
+    out.means = judge_bias(plan, all, measured, 1, 0, level, quiet);
+    out.mean_p = out.means->p;
+    out.width = all.width, out.height = all.height, out.outline = outline_of(all);
+    out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
+    if (out.exact) out.mean_p = out.means->identical ? 1 : 0;
+    else {
+        test_variances(all, measured, out);
+        if (!out.means->identical) state_power(all, measured, level.each, out);
+        const auto side = constant_baseline ? "baseline" : "candidate";
+        if (constant_baseline || constant_candidate)
+            out.too_few = fmt::format("all {} renders of the {} have the same pixels, those of the other side do not: "
+                                      "give each render its own seed",
+                constant_baseline ? view.baseline.size() : view.candidate.size(), side),
+            out.renders_needed = 3;
+    }
+    picture_both_sides(suite, all, *out.means, out);
+    return out;
+}
+
+SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source) {
+    SuiteResult out;
+    std::vector<Diagnostic> mistakes;
+    const std::size_t compared = std::max<std::size_t>(1, suite.compared());
+    monitor.begin("views", static_cast<double>(suite.views.size()));
+    for (const SuiteView& view : suite.views) {
+        monitor.check();
+        try {
+            out.views.push_back(measure_view(suite, view, compared, monitor, source));
+        } catch (const InputError& e) {
+            mistakes.insert(mistakes.end(), e.diagnostics().begin(), e.diagnostics().end());
+        }
+        monitor.advance(1);
+    }
+    if (!mistakes.empty()) throw InputError(std::move(mistakes));
+    decide(suite, out);
+    return out;
+}
+
+}  // namespace crescent::inline comparing

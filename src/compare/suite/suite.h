@@ -1,0 +1,136 @@
+// A suite of views: each has renders of a baseline and of a candidate, and one level of false alarms is shared by all
+// tests of all views. Plain data of the file and of the result.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/compare.h"
+#include "compare/plan.h"
+#include "compare/results.h"
+
+namespace crescent::inline comparing {
+
+/// Share of a view's level for the tests of equal means and of finite values; the rest is for the variances.
+inline constexpr double share_of_means = 0.75;
+
+/// How --accept stores a baseline: its renders, or the mean and the variance of each pixel.
+enum class BaselineStorage { renders, moments };
+
+struct SuiteOptions {
+    std::string title = "golden images";
+    double alpha = 0.01;                           // false alarms of the whole suite
+    std::vector<std::string> baseline, candidate;  // patterns with {view}
+    double smallest = 0.01;                        // relative difference of mean Y that must be found
+    std::string layer;
+    double exposure = 1;
+    std::optional<double> brightest;
+    BaselineStorage store = BaselineStorage::renders;
+};
+
+/// What the file states about one view, and the renders of it.
+struct SuiteView {
+    std::string name;
+    SourceLocation at;
+    std::optional<double> smallest;  // none: that of the suite
+    std::vector<Region> regions;
+    std::vector<std::string> baseline, candidate;  // files, sorted
+};
+
+struct Suite {
+    std::string file;  // "": none
+    SuiteOptions options;
+    std::vector<SuiteView> views;  // by name
+    std::size_t compared() const;  // views with renders of both sides
+    double smallest(const SuiteView& view) const { return view.smallest.value_or(options.smallest); }
+};
+
+/// What replaces or completes the keys of a suite file.
+struct SuiteFlags {
+    std::vector<CompareFlag> keys;    // of [suite]
+    std::string baseline, candidate;  // folders with VIEW/*.exr or VIEW-SEED.exr; "": the file's patterns
+};
+
+/// Whether the file is a suite: it has a table [suite].
+bool is_suite(const std::string& file);
+/// Reads a suite file ("": none, the folders of the flags) and finds the renders of each view. Throws InputError.
+Suite read_suite(const std::string& file, const SuiteFlags& flags);
+/// The manual of a suite file.
+std::string suite_schema_text();
+
+/// A file that a pattern with {view} matches: its view, and what its other wildcards match, in order.
+struct MatchedFile {
+    std::string path, view;
+    std::vector<std::string> wildcards;
+};
+/// Files of the pattern, sorted by path. Patterns have *, ?, [..] and %d besides {view}.
+std::vector<MatchedFile> match_views(const std::string& pattern);
+/// The path that the pattern gives for this view and these wildcards; nothing if their numbers differ.
+std::optional<std::string> path_from(
+    const std::string& pattern, const std::string& view, const std::vector<std::string>& wildcards);
+
+enum class ViewState { changed, noisier, too_few, missing, added, improved, same };
+inline constexpr std::array<const char*, 7> view_state_names = {
+    "changed", "noisier", "too few renders", "missing", "new", "improved", "same"};
+inline const char* name_of(ViewState state) { return view_state_names[static_cast<std::size_t>(state)]; }
+
+/// Welch's test over renders of the variance of a pixel, mean over a region.
+struct VarianceTest {
+    std::string region;
+    double baseline = 0, candidate = 0;
+    Welch welch;
+    std::string why;         // why it was not tested; "" if it was
+    bool different = false;  // at the level of the view
+};
+
+/// PNG files of one view, all of the same size.
+struct ViewPictures {
+    int width = 0, height = 0;
+    std::vector<unsigned char> baseline, candidate, difference;  // empty: none
+    double scale = 0;  // relative difference at the ends of the colours of `difference`
+};
+
+struct ViewResult {
+    std::string name;
+    ViewState state = ViewState::same;
+    std::string sentence;
+    std::vector<std::string> notes;  // copies, shared seeds, warnings about files
+    int width = 0, height = 0;
+    std::size_t baseline_renders = 0, candidate_renders = 0;  // different ones
+    double smallest = 0;                                      // that must be found
+    bool exact = false;                                       // both sides are deterministic
+    bool moments = false;                                     // the baseline is stored as moments
+    std::optional<BiasResult> means;                          // of the candidate against the baseline
+    std::vector<VarianceTest> variances;
+    double mean_p = std::nan(""), variance_p = std::nan("");  // of no difference in any region; NaN: not tested
+    double level = 0;                                         // at which the view was decided
+    std::string too_few;                                      // why equality cannot be stated; "" if it can
+    std::optional<std::size_t> renders_needed;                // of each side
+    ViewPictures pictures;
+    RenderStats outline;  // sizes and files, without pixels
+};
+
+struct SuiteResult {
+    std::vector<ViewResult> views;
+    std::size_t tested = 0;  // views that share alpha
+    std::size_t count(ViewState state) const;
+    std::string sentence;
+};
+
+/// The exit code: 1 for changed, noisier or missing views (if `strict` also for new ones), 4 for too few renders, 0.
+int exit_code(const SuiteResult& result, bool strict);
+
+/// Reads and tests one view. `compared`: the number of views that share alpha.
+ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,
+    const RenderSource& source = {});
+
+/// Decides all views together: Holm's method over their p-values.
+void decide(const Suite& suite, SuiteResult& result);
+
+/// Measures and decides every view, one view in memory at a time. Throws one InputError with the mistakes of all views.
+SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source = {});
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,166 @@
+// A suite's result as JSON, JUnit, Markdown and a summary for the terminal.
+#include "compare/suite/suite_outputs.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "compare/metrics.h"
+#include "output/format.h"
+#include "output/junit.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+Json p_json(double p) { return std::isnan(p) ? Json(nullptr) : number(p); }
+
+Json mean_json(const MeanTest& t) {
+    Json out = {{"baseline", number(t.b)}, {"candidate", number(t.a)}, {"differs_in", t.differs_in()}};
+    if (!t.why.empty()) out["why"] = t.why;
+    else
+        out["p"] = p_json(t.joint_p), out["standard_error"] = number(t.welch.se), out["smallest"] = number(t.smallest),
+        out["paired"] = t.paired;
+    if (!t.doubt.empty()) out["doubt"] = t.doubt;
+    return out;
+}
+
+Json variance_json(const VarianceTest& t) {
+    Json out = {{"baseline", number(t.baseline)}, {"candidate", number(t.candidate)}, {"differs", t.different}};
+    if (!t.why.empty()) out["why"] = t.why;
+    else out["p"] = number(t.welch.p);
+    return out;
+}
+
+Json places_json(const std::vector<Found>& found) {
+    Json out = Json::array();
+    for (const Found& f : found)
+        out.push_back({{"box", {f.box.x0, f.box.y0, f.box.x1, f.box.y1}}, {"channel", quantity_names[f.quantity]},
+            {"baseline", number(f.b)}, {"candidate", number(f.a)}, {"p", number(f.p)}});
+    return out;
+}
+
+Json view_json(const ViewResult& view) {
+    Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"sentence", view.sentence},
+        {"width", view.width}, {"height", view.height},
+        {"renders", {{"baseline", view.baseline_renders}, {"candidate", view.candidate_renders}}},
+        {"smallest", number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
+        {"p", {{"means", p_json(view.mean_p)}, {"variances", p_json(view.variance_p)}}}, {"level", number(view.level)},
+        {"renders_needed", view.renders_needed ? Json(*view.renders_needed) : Json(nullptr)}, {"notes", view.notes},
+        {"means", Json::object()}, {"variances", Json::object()}};
+    for (const VarianceTest& t : view.variances) out["variances"][t.region] = variance_json(t);
+    if (!view.means) return out;
+    const BiasResult& means = *view.means;
+    for (const MeanTest& t : means.regions) out["means"][t.region] = mean_json(t);
+    out["identical"] = means.identical, out["paired"] = means.paired;
+    out["tiles"] = {{"tested", means.tiles.tested}, {"different", means.tiles.different},
+        {"first", places_json(means.tiles_found)}};
+    out["pixels"] = {{"tested", means.pixels_tested}, {"different", means.pixels_different},
+        {"first", places_json(means.pixels_found)}};
+    return out;
+}
+
+JunitCase::State junit_state(const ViewResult& view, bool strict) {
+    switch (view.state) {
+        case ViewState::changed:
+        case ViewState::noisier:
+        case ViewState::missing: return JunitCase::State::failed;
+        case ViewState::too_few: return JunitCase::State::error;
+        case ViewState::added: return strict ? JunitCase::State::failed : JunitCase::State::skipped;
+        default: return JunitCase::State::passed;
+    }
+}
+
+/// Text in a cell of a Markdown table.
+std::string cell(const std::string& text) {
+    std::string out;
+    for (const char c : printable(text)) {
+        if (c == '<') out += "&lt;";
+        else if (std::string_view("|\\`*_[]").find(c) != std::string_view::npos) out += '\\', out += c;
+        else out += c;
+    }
+    return out;
+}
+
+const char* mark_of(ViewState state) {
+    switch (state) {
+        case ViewState::changed:
+        case ViewState::noisier:
+        case ViewState::missing: return "❌";
+        case ViewState::too_few: return "⚠️";
+        case ViewState::added: return "🆕";
+        default: return "✅";
+    }
+}
+
+}  // namespace
+
+std::vector<const ViewResult*> by_state(const SuiteResult& result) {
+    std::vector<const ViewResult*> out;
+    for (const ViewResult& view : result.views) out.push_back(&view);
+    std::sort(out.begin(), out.end(), [](const ViewResult* a, const ViewResult* b) {
+        return a->state != b->state ? a->state < b->state : a->name < b->name;
+    });
+    return out;
+}
+
+std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& p) {
+    Json out = {{"format", "crescent suite 1"}, {"title", suite.options.title}, {"sentence", result.sentence},
+        {"exit_code", exit_code(result, strict)}, {"alpha", number(suite.options.alpha)},
+        {"share_of_means", number(share_of_means)}, {"views_tested", result.tested}, {"counts", Json::object()},
+        {"views", Json::array()}};
+    for (std::size_t k = 0; k < view_state_names.size(); ++k)
+        out["counts"][view_state_names[k]] = result.count(static_cast<ViewState>(k));
+    for (const ViewResult& view : result.views) out["views"].push_back(view_json(view));
+    out["provenance"] = {
+        {"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"command", p.command}};
+    return text(out);
+}
+
+std::string suite_junit(const Suite& suite, const SuiteResult& result, bool strict) {
+    JunitSuite out{suite.options.title, {{"alpha", shortest(suite.options.alpha)}}, {}};
+    for (const ViewResult& view : result.views)
+        out.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name,
+            junit_state(view, strict), fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
+    return junit_text(out);
+}
+
+std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {
+    constexpr std::size_t most = 60'000, longest_sentence = 600;
+    std::string out = fmt::format("### {}\n\n{}\n", cell(suite.options.title), cell(result.sentence));
+    const std::string end = fmt::format("\ncrescent {}\n", provenance.version);
+    bool begun = false;
+    std::size_t left_out = 0;
+    for (const ViewResult* view : by_state(result)) {
+        if (view->state == ViewState::same) continue;
+        std::string sentence = printable(view->sentence, longest_sentence);
+        if (sentence.size() < view->sentence.size()) sentence += " ...";
+        const std::string row = fmt::format(
+            "| {} {} | {} | {} |\n", mark_of(view->state), name_of(view->state), cell(view->name), cell(sentence));
+        constexpr std::size_t reserve = 200;  // for the lines below the table
+        if (out.size() + row.size() + end.size() + reserve > most) {
+            ++left_out;
+            continue;
+        }
+        if (!begun) out += "\n| state | view | what was found |\n|---|---|---|\n";
+        begun = true;
+        out += row;
+    }
+    if (left_out) out += fmt::format("\n{} more; the report has them.\n", plural(left_out, "view"));
+    return out + end;
+}
+
+std::string suite_summary(const Suite& suite, const SuiteResult& result) {
+    std::string out = suite.options.title + "\n";
+    std::size_t longest = 0;
+    for (const ViewResult& view : result.views) longest = std::max(longest, width(view.name));
+    constexpr std::size_t widest = 40;
+    longest = std::min(longest, widest);
+    for (const ViewResult* view : by_state(result)) {
+        out += fmt::format("{}  {}  {}\n", left(name_of(view->state), 15), left(view->name, longest), view->sentence);
+        for (const std::string& note : view->notes) out += fmt::format("{:17}{}\n", "", note);
+    }
+    return out + "\n" + result.sentence + "\n";
+}
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,22 @@
+// The result of a suite as text: for machines, build servers, the summary page of a pull request and the terminal.
+#pragma once
+
+#include "compare/suite/suite.h"
+#include "report/report.h"
+
+namespace crescent::inline comparing {
+
+/// docs/suite.schema.json has its keys; equal inputs give equal bytes.
+std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& provenance);
+/// One case for each view: changed, noisier and missing fail, too few renders is an error, new is skipped.
+std::string suite_junit(const Suite& suite, const SuiteResult& result, bool strict);
+/// A table of all views that are not the same, at most 60 kB.
+std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
+std::string suite_summary(const Suite& suite, const SuiteResult& result);
+/// One page that opens offline.
+std::string suite_html(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
+
+/// Views in the order of their states, changed first, then by name.
+std::vector<const ViewResult*> by_state(const SuiteResult& result);
+
+}  // namespace crescent::inline comparing
