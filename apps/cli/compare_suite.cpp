@@ -1,4 +1,5 @@
 // crescent compare SUITE.toml: golden images of several views.
+#include <ctime>
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -13,7 +14,7 @@ namespace {
 /// The keys of [suite] that the flags replace.
 SuiteFlags suite_flags(const CompareFlags& f) {
     SuiteFlags out;
-    out.baseline = f.baseline, out.candidate = f.candidate;
+    out.baseline = f.baseline, out.candidate = f.candidate, out.baseline_only = f.plan;
     const auto add = [&](const char* key, const std::string& text, bool toml) {
         if (!text.empty()) out.keys.push_back({{"suite", key}, text, toml, fmt::format("--{} {}", key, text)});
     };
@@ -54,6 +55,35 @@ std::string suite_command(const CompareFlags& f) {
     return out;
 }
 
+/// 2026-11-25T21:04:05Z.
+std::string now_text() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    char out[sizeof "2026-11-25T21:04:05Z"];
+    std::strftime(out, sizeof out, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return out;
+}
+
+int accept_suite(const CompareFlags& flags, const Suite& suite, Progress& progress) {
+    const Acceptance acceptance{
+        flags.views, flags.because, now_text(), fmt::format("crescent {} ({})", crescent::version(), commit())};
+    const std::vector<std::string> lines = accept_views(suite, acceptance, progress);
+    progress.clear();
+    print(fmt::format("{}\n{}/baseline.json has the new baseline of {} view{}.\n", fmt::join(lines, "\n"),
+        baseline_folder(suite), lines.size(), lines.size() == 1 ? "" : "s"));
+    return held;
+}
+
+int plan_suite(const CompareFlags& flags, const Suite& suite, Progress& progress) {
+    if (!flags.json.empty()) can_write(flags.json);
+    const std::vector<ViewPlan> plans = plan_renders(suite, progress);
+    progress.clear();
+    if (!flags.json.empty()) write_whole(flags.json, render_plan_json(suite, plans));
+    print(render_plan_text(suite, plans));
+    return held;
+}
+
 }  // namespace
 
 int compare_suite(const CompareFlags& flags) {
@@ -64,6 +94,8 @@ int compare_suite(const CompareFlags& flags) {
     provenance.command = suite_command(flags);
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
+    if (flags.accept) return accept_suite(flags, suite, progress);
+    if (flags.plan) return plan_suite(flags, suite, progress);
     for (const std::string& path : {flags.json, flags.junit, flags.markdown})
         if (!path.empty()) can_write(path);
     Staging staging(flags.out.empty() ? "out/compare" : flags.out);

@@ -39,6 +39,8 @@
 #include "check/verdict_names.h"
 #include "check/waivers.h"
 #include "compare/compare.h"
+#include "compare/suite/accept.h"
+#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_outputs.h"
 #include "compare/synthetic.h"

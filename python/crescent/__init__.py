@@ -12,6 +12,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from ._check import Description, check, describe
+from ._compare import Comparison, View, compare
 from ._crescent import commit
 from ._crescent import version as __version__
 from ._judgement import CheckResult, Verdict
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from . import adapters, testing
 
 __all__ = [
+    "Comparison",
     "Description",
     "Experiment",
     "Film",
@@ -31,6 +33,7 @@ __all__ = [
     "Sampler",
     "Tail",
     "Verdict",
+    "View",
     "__version__",
     "adapters",
     "arm",
@@ -39,6 +42,7 @@ __all__ = [
     "brdf_names",
     "check",
     "commit",
+    "compare",
     "describe",
     "join",
     "load",

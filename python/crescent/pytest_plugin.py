@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from . import testing
+from ._regression import RenderRegression
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -24,6 +25,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=testing.ALPHA,
         metavar="A",
         help="how often a suite of right samplers may fail, over all tests of the session (default %(default)g)",
+    )
+    parser.getgroup("crescent").addoption(
+        "--crescent-accept",
+        action="store_true",
+        help="make the renders of every render_regression that runs its baseline",
+    )
+    parser.getgroup("crescent").addoption(
+        "--crescent-because", default="", metavar="TEXT", help="the reason, for the manifest of the baseline"
     )
 
 
@@ -55,6 +64,18 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def assert_sampler() -> Iterator[Callable[..., Any]]:
     """crescent.testing.assert_sampler, which takes its share of the session's alpha."""
     yield testing.assert_sampler
+
+
+@pytest.fixture
+def render_regression(request: pytest.FixtureRequest) -> RenderRegression:
+    """Compares renders with the baseline of the test, which is in a folder named after its file."""
+    return RenderRegression(
+        view=request.node.name,
+        folder=request.path.with_suffix(""),
+        alpha=request.config.stash[_KEY].share,
+        accept=request.config.getoption("--crescent-accept"),
+        because=request.config.getoption("--crescent-because"),
+    )
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

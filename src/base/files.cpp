@@ -334,6 +334,18 @@ void Staging::write(const std::string& name, const std::string& text) {
     write(name, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
+void Staging::adopt(const Names& names) {
+    const fs::path list = out_ / list_of(kind_), made = work_ / "scratch" / "list";
+    if (!is_there(out_)) return;
+    Names all = names_in(list);
+    for (const std::string& name : names)
+        if (stays_inside(name) && is_there(out_ / name) && !holds(all, name)) all.push_back(name);
+    std::string text(list_head);
+    for (const std::string& name : all) text += name + "\n";
+    if (!put(made, text) || !sync(made) || !move_to(made, list))
+        fail("cannot write", list.string(), std::strerror(errno));
+}
+
 void Staging::commit(ProgressMonitor& monitor) {
     const fs::path made = work_ / "new", list = list_of(kind_);
     std::sort(names_.begin(), names_.end());

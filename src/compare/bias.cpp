@@ -474,17 +474,31 @@ struct PixelCounts {
 
 double most_degrees(const BiasPair& s) { return static_cast<double>(s.a.files.size() + s.b.files.size()); }
 
-PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double alpha, double level, const Bins& table) {
+/// |t| of each quantity below which no p is at most alpha: a floored spread makes |t| smaller, and p is smallest with
+/// the most degrees of freedom.
+using LeastT = std::array<double, colour_quantities>;
+LeastT least_t(std::span<const BiasPair> sides, double alpha) {
+    LeastT out{};
+    for (const BiasPair& s : sides)
+        out[s.quantity] = student_quantile(1 - alpha * level_share(s.quantity, sides.size()) / 2, most_degrees(s));
+    return out;
+}
+
+/// `table`: of the histogram; none: it is not counted.
+PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double alpha, double level, const LeastT& least,
+    const Bins* table) {
     const auto& pixels = sides[0].all.regions.back().pixels;
     PixelCounts out;
     for (std::size_t k = begin; k < std::min(pixels.size(), begin + pixels_at_once); ++k) {
-        bool known = false, small = alpha > 1.0 / bins;
+        bool known = false, small = false;
         for (const BiasPair& s : sides) {
             const Moments m = moments(s, pixels[k], false);
             if (!m.known) continue;
-            const std::size_t bin = m.se > 0 ? table.of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0;
-            if (s.quantity == 0) ++out.histogram[bin];
-            known = true, small |= bin == 0;
+            if (s.quantity == 0 && table)
+                ++out.histogram[m.se > 0             ? table->of(m.difference / m.se, m.df)
+                        : m.difference == 0 ? bins - 1
+                                            : 0];
+            known = true, small |= m.se > 0 ? !(std::fabs(m.difference) < least[s.quantity] * m.se) : m.difference != 0;
         }
         out.tested += known;
         if (!known || !small) continue;
@@ -508,10 +522,12 @@ double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, Bia
     if (s.lone_reference() && s.b.film.told_variance.empty()) return std::nan("");
     const std::size_t count = s.all.regions.back().pixels.size();
     const double level = pixel_level(s, levels.each);
-    const Bins table(count > table_from ? most_degrees(s) : 0);
+    std::optional<Bins> table;
+    if (s.count_pixel_p) table.emplace(count > table_from ? most_degrees(s) : 0);
+    const LeastT least = least_t(sides, levels.named);
     std::vector<PixelCounts> parts((count + pixels_at_once - 1) / pixels_at_once);
     parallel_for(std::size_t{0}, parts.size(),
-        [&](std::size_t c) { parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, table); });
+        [&](std::size_t c) { parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, least, table ? &*table : nullptr); });
     out.pixel_p.assign(bins, 0), out.pixels_by.assign(sides.size(), 0);
     std::vector<Candidate> small;
     for (const PixelCounts& part : parts) {

@@ -11,6 +11,8 @@
 
 #include "base/parallel.h"
 #include "compare/file_warnings.h"
+#include "compare/metrics.h"
+#include "compare/moments.h"
 #include "compare/shared_seeds.h"
 #include "compare/spectrum.h"
 #include "math/hypotheses.h"
@@ -127,6 +129,13 @@ void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const s
     });
 }
 
+void FirstPass::moments(ArmStats& to, const std::string& path) {
+    const Render picture = all_.source.read(path, "");
+    fit(picture);
+    read_moments_film(path, picture.weights, all_, to);
+    monitor_.advance(1);
+}
+
 void FirstPass::fit(const Render& render) {
     if (all_.bad.empty()) {
         all_.width = render.width, all_.height = render.height;
@@ -238,7 +247,9 @@ public:
         }
         arm.regions.push_back(std::move(regions));
         const std::span<const float> values[] = {y_, render.r, render.g, render.b};
-        for (std::size_t q = 0; q < all_.quantities; ++q) quantity(values[q], arm, q, deviations[q]);
+        if (all_.quantities == 1) region_means<1>({values[0]}, arm, deviations);
+        else region_means<colour_quantities>({values[0], values[1], values[2], values[3]}, arm, deviations);
+        for (std::size_t q = 0; q < all_.quantities; ++q) tiles(values[q], arm, q);
         if (!arm.not_finite.empty()) arm.failed_groups.push_back(failed_groups(render, all_));
         arm.sampled.push_back(residuals(y_, arm.film, samples_));
     }
@@ -310,24 +321,34 @@ private:
         });
     }
 
-    /// Mean and largest squared deviations of one quantity in a region.
-    double region(std::span<const float> values, const PixelSet& set, const MeanPlane& plane, Largest& largest) const {
-        std::vector<QuantityPart> parts((set.pixels.size() + chunk - 1) / chunk);
-        const float least = largest.least();
+    /// Means and largest squared deviations of all quantities in a region; the quantities go through the pixels
+    /// together, which hides the latency of their sums.
+    template <std::size_t count> std::array<double, count> region(const std::array<std::span<const float>, count>& values,
+        const PixelSet& set, const MeanFilm& film, const std::array<Largest*, count>& largest) const {
+        std::vector<std::array<QuantityPart, count>> parts((set.pixels.size() + chunk - 1) / chunk);
+        std::array<float, count> least{};
+        std::array<const double*, count> mean{};
+        for (std::size_t q = 0; q < count; ++q) least[q] = largest[q]->least(), mean[q] = film.of(q).mean.data();
         parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
+            std::array<double, count> sum{};
             for (std::size_t k = c * chunk; k < std::min(set.pixels.size(), (c + 1) * chunk); ++k) {
-                const double value = static_cast<double>(values[set.pixels[k]]),
-                             off = value - plane.mean[set.pixels[k]];
-                parts[c].sum += value;
-                if (const auto x = static_cast<float>(off * off); x > least) parts[c].large.push_back(x);
+                const std::size_t i = set.pixels[k];
+                for (std::size_t q = 0; q < count; ++q) {
+                    const double value = static_cast<double>(values[q][i]), off = value - mean[q][i];
+                    sum[q] += value;
+                    if (const auto x = static_cast<float>(off * off); x > least[q]) parts[c][q].large.push_back(x);
+                }
             }
+            for (std::size_t q = 0; q < count; ++q) parts[c][q].sum = sum[q];
         });
-        double sum = 0;
-        for (const QuantityPart& p : parts) {
-            sum += p.sum;
-            for (const float x : p.large) largest.add(x);
-        }
-        return sum / static_cast<double>(set.pixels.size());
+        std::array<double, count> out{};
+        for (const auto& part : parts)
+            for (std::size_t q = 0; q < count; ++q) {
+                out[q] += part[q].sum;
+                for (const float x : part[q].large) largest[q]->add(x);
+            }
+        for (double& sum : out) sum /= static_cast<double>(set.pixels.size());
+        return out;
     }
 
     /// A pixel's deviation that would be an outlier among its K (Grubbs 1950) is a rare event: noise that one sample in
@@ -352,20 +373,27 @@ private:
         return out;
     }
 
-    void quantity(std::span<const float> values, ArmStats& arm, std::size_t q, std::vector<Largest>& largest) const {
+    template <std::size_t count> void region_means(const std::array<std::span<const float>, count>& values, ArmStats& arm,
+        std::vector<std::vector<Largest>>& largest) const {
+        for (std::size_t q = 0; q < count; ++q) arm.quantities[q].regions.emplace_back();
+        for (std::size_t r = 0; r < all_.regions.size(); ++r) {
+            std::array<Largest*, count> of_region{};
+            for (std::size_t q = 0; q < count; ++q) of_region[q] = &largest[q][r];
+            const auto means = region<count>(values, all_.regions[r], arm.film, of_region);
+            for (std::size_t q = 0; q < count; ++q) arm.quantities[q].regions.back().push_back(means[q]);
+        }
+    }
+
+    void tiles(std::span<const float> values, ArmStats& arm, std::size_t q) const {
         const MeanPlane& plane = arm.film.of(q);
         QuantityReadings& to = arm.quantities[q];
-        std::vector<double> means;
-        for (std::size_t r = 0; r < all_.regions.size(); ++r)
-            means.push_back(region(values, all_.regions[r], plane, largest[r]));
-        to.regions.push_back(std::move(means));
-        std::vector<TileReading> tiles(all_.tiles.count());
-        std::vector<Outliers> rare(tiles.size());
+        std::vector<TileReading> readings(all_.tiles.count());
+        std::vector<Outliers> rare(readings.size());
         const double lone = lone_share(arm.film.count);
-        parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
-            tiles[t] = tile(values, all_.tiles.box(t, all_.width, all_.height), plane, lone, rare[t]);
+        parallel_for(std::size_t{0}, readings.size(), [&](std::size_t t) {
+            readings[t] = tile(values, all_.tiles.box(t, all_.width, all_.height), plane, lone, rare[t]);
         });
-        to.tiles.push_back(std::move(tiles));
+        to.tiles.push_back(std::move(readings));
         for (const Outliers& o : rare) to.rise = std::max(to.rise, o.rise), to.fall = std::max(to.fall, o.fall);
     }
 

@@ -16,6 +16,8 @@ public:
     /// first that does not fit.
     void arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
         const std::optional<double>& spp);
+    /// Takes the means and spreads of an arm from its file of moments; it must be the first arm.
+    void moments(ArmStats& to, const std::string& path);
     /// Of all files so far, into the readings.
     void report_warnings() { all_.warnings = warnings_.lines(); }
 

@@ -20,6 +20,7 @@ struct RenderArm {
     std::string name;
     SourceLocation at;
     std::vector<std::string> files;
+    bool moments = false;           // one file with the moments of the renders, see moments.h
     std::string layer;              // part or layer to read; "": the beauty
     std::optional<double> spp;      // samples a pixel of one render
     std::optional<double> seconds;  // that one render took
@@ -58,6 +59,7 @@ struct ComparePlan {
     bool flip = true;                    // whether FLIP is measured
     std::optional<double> brightest;     // the most that Y of a pixel of one render can be
     Expectation expect = Expectation::nothing;
+    bool count_pixel_p = true;  // whether the p of every pixel is counted for the report
     double smallest = 0.01;  // with expect = "same": the relative difference of Y that must have been seen
 };
 

@@ -11,6 +11,7 @@
 
 #include "base/npy.h"
 #include "compare/metrics.h"
+#include "compare/moments.h"
 #include "compare/open_file.h"
 #include "compare/passes.h"
 #include "compare/plan.h"
@@ -133,7 +134,8 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const Re
     FirstPass first(all, monitor);
     all.arms.resize(plan.arms.size());
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        first.arm(all.arms[a], files.arms[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
+        if (plan.arms[a].moments) first.moments(all.arms[a], files.arms[a].front());
+        else first.arm(all.arms[a], files.arms[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
     if (!files.reference.empty())
         first.arm(all.reference.emplace(), files.reference, plan.reference_layer, "the reference", {});
     first.report_warnings();
@@ -145,7 +147,8 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const Re
     monitor.begin("second pass: what each render says", static_cast<double>(files.total));
     const MeanFilm* truth = all.reference ? &all.reference->film : nullptr;
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        second_pass(plan, all, all.source, all.arms[a], plan.arms[a].layer, truth, monitor);
+        if (plan.arms[a].moments) read_moments_regions(files.arms[a].front(), plan, all, all.arms[a]);
+        else second_pass(plan, all, all.source, all.arms[a], plan.arms[a].layer, truth, monitor);
     if (all.reference) second_pass(plan, all, all.source, *all.reference, plan.reference_layer, nullptr, monitor);
     return all;
 }

@@ -111,7 +111,7 @@ std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, 
 }
 
 std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b) {
-    if (a.files.size() < 2 || b.files.size() < 2) return {};
+    if (a.files.size() < 2 || b.files.size() < 2 || a.sampled.empty() || b.sampled.empty()) return {};
     const SeedSamples at = seed_samples(all);
     const double level = shared_seed_level / static_cast<double>(a.files.size() * b.files.size());
     std::vector<SeedPair> found;

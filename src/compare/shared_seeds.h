@@ -30,7 +30,8 @@ inline constexpr double shared_seed_level = 1e-3;
 
 /// Renders of the two sides with correlated residuals, by the t-test over blocks of the mean product of residuals at
 /// shared_seed_level over all pairs of renders; of these the pairs of which each has no other partner and at least half
-/// of the largest correlation. Empty where some side has one render.
+/// of the largest correlation. Empty where some side has one render, or its single renders
+/// are not known (moments).
 std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b);
 
 }  // namespace crescent::inline comparing

@@ -62,6 +62,8 @@ void filter(std::vector<float>& plane, int side, int width) {
         }
 }
 
+}  // namespace
+
 Render made_render(
     const std::string& path, const SyntheticNoise& noise, std::uint32_t seed, const SyntheticScene& world) {
     Render out(path, world.width, world.width);
@@ -79,6 +81,8 @@ Render made_render(
         if (noise.filter > 1) filter(*channel, world.width, noise.filter);
     return out;
 }
+
+namespace {
 
 /// Of the k-th render of arm a (0) or b (1).
 std::uint32_t seed_of_render(const SyntheticScene& world, std::uint32_t seed, std::uint32_t k, std::uint32_t arm) {

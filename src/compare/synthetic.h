@@ -37,6 +37,9 @@ struct SyntheticScene {
 
 /// One pixel of a grey render `width` pixels wide: a pure function of its arguments.
 double made_pixel(const SyntheticNoise& noise, std::uint32_t seed, std::uint32_t pixel, int width);
+/// A whole render: grey, or in colour where the scene's channels have noise of their own; `scene` states its size.
+Render made_render(
+    const std::string& path, const SyntheticNoise& noise, std::uint32_t seed, const SyntheticScene& scene);
 /// Whether each arm whose noise is events or sparks met one in some pixel of some render.
 bool met_events(const SyntheticScene& world, std::uint32_t seed);
 /// How bright an event or a spark is on average; 0 of noise that has none.

@@ -117,6 +117,7 @@ BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const C
     const Rgb weights = luminance_weights_of(all.primaries);  // a channel may be 1 / weight times as bright as Y
     referred = second >= readings.arms.size();
     brightest = plan.brightest.value_or(0);
+    count_pixel_p = plan.count_pixel_p;
     if (const double weight = quantity > 0 ? weights[quantity - 1] : 1; weight > 0) brightest /= weight;
     if (!referred) other = &measured.arms[second];
     const RegionResult& frame = arm.region(whole_frame);

@@ -60,6 +60,7 @@ struct BiasPair {
     const ArmResult* other = nullptr;  // none: the reference
     double brightest = 0;              // the most that a pixel of one render can be; 0: not known
     bool referred = false, dependent = false;
+    bool count_pixel_p = true;  // see ComparePlan
     double low_frequencies = 1;  // of the noise's power, over that of its high ones
     std::size_t quantity = 0;    // see quantities.h
     const std::vector<RenderPair>* pairs = nullptr;

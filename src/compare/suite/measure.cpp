@@ -1,12 +1,14 @@
 // One view: its renders are read once into memory where they fit, copies are left out, and the tests of `crescent
 // compare` are made of the candidate against the baseline; then the variances of both sides are compared.
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 #include <xxhash.h>
 
 #include "base/parallel.h"
 #include "compare/metrics.h"
+#include "compare/moments.h"
 #include "compare/suite/pictures.h"
 #include "compare/suite/power.h"
 #include "compare/suite/suite.h"
@@ -19,15 +21,6 @@ namespace {
 /// Renders of one view that are kept for the second reading: at most 768 MiB, 30 renders of 1920 x 1080. A view with
 /// more is read from its files again.
 constexpr std::size_t most_kept = std::size_t{768} << 20;
-
-/// Of the pixels as the file has them.
-std::uint64_t pixel_hash(const Render& render) {
-    const std::array<std::uint64_t, 5> parts{static_cast<std::uint64_t>(render.width),
-        static_cast<std::uint64_t>(render.height), XXH3_64bits(render.r.data(), render.r.size() * sizeof(float)),
-        XXH3_64bits(render.g.data(), render.g.size() * sizeof(float)),
-        XXH3_64bits(render.b.data(), render.b.size() * sizeof(float))};
-    return XXH3_64bits(parts.data(), sizeof parts);
-}
 
 /// The renders of a view by path, with their hashes.
 class ViewFiles {
@@ -68,13 +61,18 @@ public:
                 copies.size() > 1 ? ", and others" : ""));
         return out;
     }
-    /// Reads from memory what is kept there.
-    RenderSource reader() const {
+    /// Gives each render that is kept twice from memory, as often as the tests read it, unless they compare pairs; later
+    /// from its file.
+    RenderSource reader() {
         RenderSource out = source_;
         out.expand = [](const std::vector<std::string>& paths, const SourceLocation&) { return paths; };
         out.read = [this](const std::string& path, const std::string& layer) {
             const auto found = files_.find(path);
-            if (found != files_.end() && found->second.render.size() > 0) return found->second.render;
+            {
+                const Guard guard(lock_);
+                if (found != files_.end() && found->second.render.size() > 0)
+                    return found->second.given++ == 0 ? found->second.render : std::move(found->second.render);
+            }
             return source_.read(path, layer);
         };
         return out;
@@ -84,6 +82,7 @@ private:
     struct File {
         std::uint64_t hash = 0;
         Render render;  // without pixels if it is not kept
+        int given = 0;
     };
     const RenderSource& source_;
     std::map<std::string, File> files_;
@@ -91,16 +90,32 @@ private:
     Mutex lock_;
 };
 
+/// Renders in memory have no file.
+bool is_moments(const std::string& path) { return std::filesystem::is_regular_file(path) && holds_moments(path); }
+
+/// Of a baseline stored as moments; nothing if it is stored as renders. Throws InputError if both are there.
+std::optional<MomentsHeader> moments_of(const SuiteView& view) {
+    for (const std::string& path : view.baseline) {
+        if (!is_moments(path)) continue;
+        if (view.baseline.size() > 1)
+            throw InputError({path, 0, 0},
+                fmt::format("expected the baseline of {} as moments or as renders, found both", view.name));
+        return read_moments_header(path);
+    }
+    return {};
+}
+
 ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vector<std::string>& baseline,
     const std::vector<std::string>& candidate) {
     ComparePlan plan;
     plan.file = suite.file.empty() ? "crescent compare" : suite.file, plan.title = view.name;
     for (const auto& [name, files] : {std::pair{"baseline", baseline}, std::pair{"candidate", candidate}}) {
         RenderArm& arm = plan.arms.emplace_back();
+        arm.moments = files.size() == 1 && is_moments(files.front());
         arm.name = name, arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
     }
     plan.regions = view.regions;
-    plan.flip = false, plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
+    plan.flip = plan.count_pixel_p = false, plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
     return plan;
 }
 
@@ -215,22 +230,35 @@ bool is_constant(const std::vector<std::string>& files, const std::vector<std::s
 
 }  // namespace
 
+std::uint64_t pixel_hash(const Render& render) {
+    const std::array<std::uint64_t, 5> parts{static_cast<std::uint64_t>(render.width),
+        static_cast<std::uint64_t>(render.height), XXH3_64bits(render.r.data(), render.r.size() * sizeof(float)),
+        XXH3_64bits(render.g.data(), render.g.size() * sizeof(float)),
+        XXH3_64bits(render.b.data(), render.b.size() * sizeof(float))};
+    return XXH3_64bits(parts.data(), sizeof parts);
+}
+
 ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,
     const RenderSource& source) {
     ViewResult out;
     out.name = view.name, out.smallest = suite.smallest(view);
-    const ViewFiles files(view, suite.options.layer, source, monitor);
+    ViewFiles files(view, suite.options.layer, source, monitor);
     const std::vector<std::string> baseline = files.different(view.baseline, "baseline", out.notes),
                                    candidate = files.different(view.candidate, "candidate", out.notes);
-    out.baseline_renders = baseline.size(), out.candidate_renders = candidate.size();
+    const std::optional<MomentsHeader> moments = moments_of(view);
+    out.baseline_renders = moments ? moments->renders : baseline.size(), out.candidate_renders = candidate.size();
+    out.moments = moments.has_value();
     if (baseline.empty() || candidate.empty()) {
         out.state = baseline.empty() ? ViewState::added : ViewState::missing;
         picture_one_side(suite, view, files.reader(), out);
         return out;
     }
-    const bool constant_baseline = is_constant(view.baseline, baseline),
+    if (moments)
+        out.notes.push_back("The baseline is stored as moments: whether it shares random numbers or renders with the "
+                            "candidate is not tested.");
+    const bool constant_baseline = moments ? moments->constant : is_constant(view.baseline, baseline),
                constant_candidate = is_constant(view.candidate, candidate);
-    out.exact = baseline.size() == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
+    out.exact = out.baseline_renders == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
     const ComparePlan plan = plan_for(suite, view, baseline, candidate);
     ProgressMonitor quiet;
     const RenderStats all = read_all(plan, quiet, files.reader());

@@ -52,6 +52,7 @@ struct Suite {
 struct SuiteFlags {
     std::vector<CompareFlag> keys;    // of [suite]
     std::string baseline, candidate;  // folders with VIEW/*.exr or VIEW-SEED.exr; "": the file's patterns
+    bool baseline_only = false;       // no renders of the candidate are needed
 };
 
 /// Whether the file is a suite: it has a table [suite].
@@ -122,6 +123,9 @@ struct SuiteResult {
 
 /// The exit code: 1 for changed, noisier or missing views (if `strict` also for new ones), 4 for too few renders, 0.
 int exit_code(const SuiteResult& result, bool strict);
+
+/// Of the pixels of a render, to find copies.
+std::uint64_t pixel_hash(const Render& render);
 
 /// Reads and tests one view. `compared`: the number of views that share alpha.
 ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,

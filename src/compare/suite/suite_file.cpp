@@ -29,7 +29,7 @@ Section suite_table() {
                 to<&SuiteOptions::baseline>},
             {"candidate", Type::texts, none, "", optional, "--candidate", "The same of the renders to be compared.",
                 to<&SuiteOptions::candidate>},
-            {"smallest", Type::number, share, "", defaulted, "\"1 %\"",
+            {"smallest", Type::number, share, "", defaulted, "0.01",
                 "Relative difference of mean Y that must be found: a number, or text such as \"2 %\".",
                 to<&SuiteOptions::smallest>},
             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
@@ -117,10 +117,11 @@ std::map<std::string, std::vector<std::string>> files_by_view(
     return out;
 }
 
-void find_renders(Suite& suite, const SourceLocation& baseline_at, const SourceLocation& candidate_at) {
+void find_renders(
+    Suite& suite, const SourceLocation& baseline_at, const SourceLocation& candidate_at, bool baseline_only) {
     auto baseline = files_by_view(suite.options.baseline, baseline_at);
     auto candidate = files_by_view(suite.options.candidate, candidate_at);
-    if (candidate.empty())
+    if (candidate.empty() && !baseline_only)
         throw InputError(candidate_at,
             fmt::format("expected renders of the candidate, found no file that matches '{}'",
                 fmt::join(suite.options.candidate, "', '")));
@@ -130,6 +131,10 @@ void find_renders(Suite& suite, const SourceLocation& baseline_at, const SourceL
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     std::vector<Diagnostic> unknown;
+    for (const SuiteView& view : suite.views)
+        for (const Region& region : view.regions)
+            if (region.name == whole_frame)
+                unknown.push_back({region.at, "the name 'frame' stands for all pixels: expected another"});
     for (const SuiteView& view : suite.views)
         if (!std::binary_search(names.begin(), names.end(), view.name))
             unknown.push_back({view.at,
@@ -187,8 +192,8 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     if (!flags.baseline.empty()) o.baseline = patterns_in(flags.baseline, "--baseline");
     if (!flags.candidate.empty()) o.candidate = patterns_in(flags.candidate, "--candidate");
     if (o.baseline.empty()) throw InputError(baseline_at, "expected suite.baseline, or --baseline DIR");
-    if (o.candidate.empty()) throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
-    find_renders(suite, baseline_at, candidate_at);
+    if (o.candidate.empty() && !flags.baseline_only) throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
+    find_renders(suite, baseline_at, candidate_at, flags.baseline_only);
     return suite;
 }
 

@@ -26,7 +26,7 @@ main, header, footer { max-width: 76rem; }
 .views summary { cursor: pointer; list-style: none; }
 .views summary::-webkit-details-marker { display: none; }
 .views summary:focus-visible { outline: 2px solid var(--accent); outline-offset: -2px; }
-.views summary img { display: block; width: 100%; aspect-ratio: 16 / 9; object-fit: contain; background: #000; }
+.views summary img { display: block; width: 100%; height: auto; aspect-ratio: 16 / 9; object-fit: contain; background: #000; }
 .views details[open] summary img { display: none; }
 .views .title { display: flex; justify-content: space-between; gap: 0.6rem; padding: 0.5rem 0.8rem; font-weight: 600; }
 .views .title span:first-child { overflow-wrap: anywhere; }
@@ -46,6 +46,7 @@ main, header, footer { max-width: 76rem; }
 .difference i { position: absolute; outline: 2px solid #fff; box-shadow: 0 0 0 3px #000; min-width: 4px; min-height: 4px; }
 .views .table { margin: 1rem 0 0; width: auto; } .views .table table { min-width: 0; margin: 0; }
 .views ul { margin: 0.6rem 0 0; font-size: 0.9rem; }
+footer { margin-top: 2rem; }
 [hidden] { display: none !important; }
 </style>
 <script>

@@ -1,0 +1,24 @@
+// --accept: the candidate of some views becomes the baseline, at once for all of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/suite/suite.h"
+
+namespace crescent::inline comparing {
+
+struct Acceptance {
+    std::vector<std::string> views;           // names; empty: all that have a candidate
+    std::string because, date, program;       // for the manifest
+};
+
+/// Replaces the baseline's files of these views, stored as the suite states, and writes baseline.json beside them: the
+/// files with their hashes, mean and spread of each region, program, date and reason of each view. A kill leaves the
+/// old baseline or the new one. Returns a line for each accepted view. Throws InputError, OutputError, Interrupted.
+std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acceptance, ProgressMonitor& monitor);
+
+/// The folder that holds the baseline: what precedes the first wildcard of its first pattern.
+std::string baseline_folder(const Suite& suite);
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,129 @@
+// Both sides are taken to have the variance of the baseline, which falls as 1/N with N samples.
+#include "compare/suite/render_plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "compare/metrics.h"
+#include "compare/moments.h"
+#include "compare/suite/power.h"
+#include "math/hypotheses.h"
+#include "output/format.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compared) {
+    ViewPlan out;
+    out.name = view.name, out.smallest = suite.smallest(view);
+    ComparePlan plan;
+    plan.file = suite.file.empty() ? "crescent compare" : suite.file;
+    RenderArm& arm = plan.arms.emplace_back();
+    arm.name = "baseline", arm.at = {plan.file, 0, 0}, arm.layer = suite.options.layer;
+    arm.moments = view.baseline.size() == 1 && holds_moments(view.baseline.front());
+    std::vector<std::uint64_t> hashes;
+    for (const std::string& path : view.baseline) {
+        const std::uint64_t hash = pixel_hash(read_render(path, arm.moments ? "" : arm.layer));
+        if (std::find(hashes.begin(), hashes.end(), hash) == hashes.end())
+            hashes.push_back(hash), arm.files.push_back(path);
+    }
+    plan.regions = view.regions, plan.flip = false;
+    ProgressMonitor quiet;
+    const RenderStats all = read_all(plan, quiet);
+    const ArmStats& baseline = all.arms[0];
+    out.renders = baseline.files.size(), out.spp = baseline.files[0].spp;
+    if (out.renders < 2) {
+        out.why = view.baseline.size() > 1 ? "deterministic: its renders have the same pixels, one is enough"
+                                           : "one render has no variance: two or more are needed";
+        return out;
+    }
+    const double level = suite.options.alpha * share_of_means / static_cast<double>(compared) / 2 /
+        static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
+    for (std::size_t r = 0; r < all.regions.size(); ++r) {
+        std::vector<double> means;
+        for (const auto& render : baseline.regions) means.push_back(render[r].y);
+        const MeanInterval m = mean_interval(means, confidence);
+        const double variance = m.se * m.se * static_cast<double>(m.n);
+        std::array<std::optional<std::size_t>, 3> needed;
+        for (std::size_t s = 0; s < plan_samples.size(); ++s) {
+            RegionPower power;
+            power.mean = std::fabs(m.mean), power.variance_a = power.variance_b = variance / plan_samples[s];
+            needed[s] = renders_needed(power, out.smallest, level);
+        }
+        constexpr std::size_t as_rendered = 1;
+        const auto& most = out.needed[as_rendered];
+        if (!out.region.empty() && needed[as_rendered] && (!most || *needed[as_rendered] <= *most)) continue;
+        out.region = all.regions[r].name, out.needed = needed, out.mean = m.mean, out.deviation = std::sqrt(variance);
+    }
+    return out;
+}
+
+std::string samples_text(const ViewPlan& plan, std::size_t s) {
+    const std::string renders =
+        plan.needed[s] ? plural(*plan.needed[s], "render") : std::string("more than 100000 renders");
+    return plan.spp ? fmt::format("{} at {} spp", renders, compact(*plan.spp * plan_samples[s]))
+                    : fmt::format("{} at {} times the samples", renders, compact(plan_samples[s]));
+}
+
+}  // namespace
+
+std::vector<ViewPlan> plan_renders(const Suite& suite, ProgressMonitor& monitor) {
+    std::vector<ViewPlan> out;
+    std::size_t views = 0;
+    for (const SuiteView& view : suite.views) views += !view.baseline.empty();
+    if (views == 0)
+        throw InputError({suite.file, 0, 0},
+            fmt::format("--plan: expected renders of the baseline, found no file that matches '{}'",
+                fmt::join(suite.options.baseline, "', '")));
+    monitor.begin("views", static_cast<double>(views));
+    for (const SuiteView& view : suite.views) {
+        monitor.check();
+        if (view.baseline.empty()) continue;
+        out.push_back(plan_view(suite, view, views));
+        monitor.advance(1);
+    }
+    return out;
+}
+
+std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& plans) {
+    std::string out = fmt::format(
+        "Renders of each side with which a difference of the stated size is found with a probability of 90 %, at alpha "
+        "= {} over {}:\n",
+        compact(suite.options.alpha), plural(plans.size(), "view"));
+    std::size_t longest = 0;
+    for (const ViewPlan& plan : plans) longest = std::max(longest, width(plan.name));
+    for (const ViewPlan& plan : plans) {
+        out += left(plan.name, longest) + "  ";
+        if (!plan.why.empty()) {
+            out += plan.why + "\n";
+            continue;
+        }
+        std::vector<std::string> choices;
+        for (std::size_t s = 0; s < plan_samples.size(); ++s) choices.push_back(samples_text(plan, s));
+        out += fmt::format("{} of mean Y in {}: {}; the baseline has {}\n", percent(plan.smallest, 2), plan.region,
+            fmt::join(choices, ", "), plan.renders);
+    }
+    return out;
+}
+
+std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans) {
+    Json out = {{"format", "crescent render plan 1"}, {"alpha", number(suite.options.alpha)}, {"views", Json::array()}};
+    for (const ViewPlan& plan : plans) {
+        Json view = {{"view", plan.name}, {"renders", plan.renders}, {"smallest", number(plan.smallest)}};
+        if (plan.spp) view["spp"] = number(*plan.spp);
+        if (!plan.why.empty()) view["why"] = plan.why;
+        else {
+            view["region"] = plan.region, view["mean_y"] = number(plan.mean);
+            view["standard_deviation_of_render_mean"] = number(plan.deviation);
+            for (std::size_t s = 0; s < plan_samples.size(); ++s)
+                view["needed"].push_back({{"samples", plan_samples[s]},
+                    {"renders", plan.needed[s] ? Json(*plan.needed[s]) : Json(nullptr)}});
+        }
+        out["views"].push_back(std::move(view));
+    }
+    return text(out);
+}
+
+}  // namespace crescent::inline comparing

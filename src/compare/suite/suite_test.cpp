@@ -1,0 +1,261 @@
+// Suites: patterns, decisions over all views, power, on renders in memory whose truth is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "compare/suite/power.h"
+#include "compare/suite/suite.h"
+#include "compare/suite/suite_outputs.h"
+#include "compare/synthetic.h"
+#include "math/hypotheses.h"
+#include "tests/support/scratch_folder.h"
+
+namespace crescent::inline comparing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Kind = SyntheticNoise::Kind;
+
+constexpr int side = 32;
+
+/// A suite whose renders are in memory: "VIEW/baseline/K" and "VIEW/candidate/K".
+class MemorySuite {
+public:
+    void put(const std::string& view, const std::string& which, int k, const SyntheticNoise& noise, std::uint32_t seed) {
+        const std::string path = view + "/" + which + "/" + std::to_string(k);
+        Render render(path, side, side);
+        for (std::uint32_t i = 0; i < render.size(); ++i)
+            render.r[i] = render.g[i] = render.b[i] = static_cast<float>(made_pixel(noise, seed, i, side));
+        renders[path] = std::move(render);
+        auto found = std::find_if(
+            suite.views.begin(), suite.views.end(), [&](const SuiteView& v) { return v.name == view; });
+        if (found == suite.views.end()) suite.views.emplace_back().name = view, found = suite.views.end() - 1;
+        (which == "baseline" ? found->baseline : found->candidate).push_back(path);
+    }
+    void put_both(const std::string& view, const SyntheticNoise& baseline, const SyntheticNoise& candidate,
+        std::uint32_t seed, int count = 8) {
+        for (int k = 0; k < count; ++k) {
+            put(view, "baseline", k, baseline, seed + 2 * static_cast<std::uint32_t>(k));
+            put(view, "candidate", k, candidate, seed + 2 * static_cast<std::uint32_t>(k) + 1);
+        }
+    }
+    SuiteResult compare() const {
+        RenderSource source;
+        source.read = [this](const std::string& path, const std::string&) { return renders.at(path); };
+        ProgressMonitor monitor;
+        return compare_suite(suite, monitor, source);
+    }
+    Suite suite;
+    std::map<std::string, Render> renders;
+};
+
+const ViewResult& view_of(const SuiteResult& result, const std::string& name) {
+    return *std::find_if(
+        result.views.begin(), result.views.end(), [&](const ViewResult& view) { return view.name == name; });
+}
+
+constexpr SyntheticNoise noise{Kind::gamma, 0.2};
+constexpr SyntheticNoise brighter{Kind::gamma, 0.2, 0.03};
+constexpr SyntheticNoise calmer{Kind::gamma, 0.1};
+
+TEST(Suites, EachViewEndsInTheStateOfItsRenders) {
+    MemorySuite s;
+    s.suite.options.smallest = 0.02;
+    s.put_both("same", noise, noise, 100);
+    s.put_both("changed", noise, brighter, 200);
+    s.put_both("improved", noise, calmer, 300);
+    s.put_both("noisier", calmer, noise, 400);
+    s.put_both("few", {Kind::gamma, 1}, {Kind::gamma, 1}, 500, 3);
+    s.put("added", "candidate", 0, noise, 600);
+    s.put("gone", "baseline", 0, noise, 700);
+    for (int k = 0; k < 3; ++k)
+        for (const char* which : {"baseline", "candidate"}) s.put("fixed", which, k, noise, 800);
+    for (int k = 0; k < 3; ++k) s.put("moved", "baseline", k, noise, 900), s.put("moved", "candidate", k, noise, 901);
+    const SuiteResult result = s.compare();
+    EXPECT_EQ(view_of(result, "same").state, ViewState::same);
+    EXPECT_EQ(view_of(result, "changed").state, ViewState::changed);
+    EXPECT_EQ(view_of(result, "improved").state, ViewState::improved);
+    EXPECT_EQ(view_of(result, "noisier").state, ViewState::noisier);
+    EXPECT_EQ(view_of(result, "few").state, ViewState::too_few);
+    EXPECT_EQ(view_of(result, "added").state, ViewState::added);
+    EXPECT_EQ(view_of(result, "gone").state, ViewState::missing);
+    EXPECT_EQ(view_of(result, "fixed").state, ViewState::same);
+    EXPECT_EQ(view_of(result, "moved").state, ViewState::changed);
+    EXPECT_TRUE(view_of(result, "moved").exact);
+    EXPECT_EQ(result.tested, 5u);
+    EXPECT_EQ(exit_code(result, false), 1);
+    EXPECT_GT(*view_of(result, "few").renders_needed, 3u);
+}
+
+TEST(Suites, TheFirstExitCodeThatAppliesIsTaken) {
+    const auto code = [](std::initializer_list<ViewState> states, bool strict = false) {
+        SuiteResult result;
+        for (const ViewState state : states) result.views.emplace_back().state = state;
+        return exit_code(result, strict);
+    };
+    EXPECT_EQ(code({ViewState::same, ViewState::improved, ViewState::added}), 0);
+    EXPECT_EQ(code({ViewState::same, ViewState::added}, true), 1);
+    EXPECT_EQ(code({ViewState::too_few, ViewState::same}), 4);
+    EXPECT_EQ(code({ViewState::too_few, ViewState::missing}), 1);
+    EXPECT_EQ(code({ViewState::too_few, ViewState::noisier}), 1);
+    EXPECT_EQ(code({ViewState::too_few, ViewState::added}, true), 1);
+}
+
+TEST(Suites, TheRendersThatWouldDoAreEnough) {
+    MemorySuite few;
+    few.suite.options.smallest = 0.004;
+    few.put_both("view", noise, noise, 1000, 6);
+    const ViewResult first = few.compare().views[0];
+    ASSERT_EQ(first.state, ViewState::too_few);
+    ASSERT_TRUE(first.renders_needed);
+    MemorySuite enough;
+    enough.suite.options.smallest = 0.004;
+    enough.put_both("view", noise, noise, 1000, static_cast<int>(*first.renders_needed * 3 / 2));
+    EXPECT_EQ(enough.compare().views[0].state, ViewState::same);
+}
+
+TEST(Suites, PowerFollowsTheNumberOfRenders) {
+    RegionPower power{1, 0.01, 0.01, false, 0};
+    const auto n = renders_needed(power, 0.05, 0.01);
+    ASSERT_TRUE(n);
+    EXPECT_LE(detectable_with(power, *n, 0.01), 0.05);
+    EXPECT_GT(detectable_with(power, *n - 1, 0.01), 0.05);
+    EXPECT_FALSE(renders_needed(power, 1e-9, 0.01));
+    // n equal groups: t quantiles of many degrees of freedom are those of the normal distribution.
+    const double z = 2.5758 + 1.2816;
+    EXPECT_NEAR(detectable_with(power, 10000, 0.01), z * std::sqrt(2 * 0.01 / 10000), 1e-6);
+}
+
+TEST(Suites, CopiesWithinASideAreLeftOut) {
+    MemorySuite s;
+    s.put_both("view", noise, noise, 2000);
+    s.put("view", "candidate", 90, noise, 2001);  // the seed of candidate/0
+    const SuiteResult result = s.compare();
+    EXPECT_EQ(result.views[0].candidate_renders, 8u);
+    ASSERT_FALSE(result.views[0].notes.empty());
+    EXPECT_THAT(result.views[0].notes[0], HasSubstr("view/candidate/90 is a copy of view/candidate/0"));
+}
+
+TEST(Suites, EqualSeedsOnOneSideAreFound) {
+    MemorySuite s;
+    for (int k = 0; k < 6; ++k)
+        s.put("view", "baseline", k, noise, 2100 + static_cast<std::uint32_t>(k)), s.put("view", "candidate", k, noise, 5);
+    const ViewResult& view = s.compare().views[0];
+    EXPECT_EQ(view.state, ViewState::too_few);
+    EXPECT_THAT(view.sentence, HasSubstr("give each render its own seed"));
+}
+
+TEST(Suites, RendersWithTheSameSeedsAreComparedInPairs) {
+    MemorySuite s;
+    for (int k = 0; k < 6; ++k)
+        for (const auto& [which, of] : {std::pair{"baseline", noise}, std::pair{"candidate", brighter}})
+            s.put("view", which, k, of, 2200 + static_cast<std::uint32_t>(k));
+    const SuiteResult result = s.compare();
+    EXPECT_EQ(result.views[0].state, ViewState::changed);
+    EXPECT_TRUE(result.views[0].means->paired);
+}
+
+TEST(Suites, AHeavyTailIsStatedAndNotDecided) {
+    MemorySuite s;
+    s.suite.options.smallest = 0.05;
+    s.put_both("view", {Kind::pareto, 1.2}, {Kind::pareto, 1.2}, 2300);
+    const ViewResult view = s.compare().views[0];
+    EXPECT_EQ(view.state, ViewState::too_few);
+    for (const VarianceTest& t : view.variances) EXPECT_THAT(t.why, HasSubstr("heavy tail"));
+}
+
+TEST(Suites, MistakesOfAllViewsAreReportedTogether) {
+    MemorySuite s;
+    s.put_both("one", noise, noise, 2400, 2);
+    s.put_both("two", noise, noise, 2500, 2);
+    s.renders["one/candidate/0"] = Render("one/candidate/0", 4, 4);
+    s.renders["two/candidate/1"] = Render("two/candidate/1", 5, 4);
+    try {
+        s.compare();
+        FAIL() << "sizes that differ are accepted";
+    } catch (const InputError& e) {
+        ASSERT_EQ(e.diagnostics().size(), 2u);
+        EXPECT_EQ(e.diagnostics()[0].at.file, "one/candidate/0");
+        EXPECT_EQ(e.diagnostics()[1].at.file, "two/candidate/1");
+    }
+}
+
+TEST(Suites, MarkdownStaysBelowSixtyKilobytesAndEscapesNames) {
+    SuiteResult result;
+    for (int k = 0; k < 3000; ++k) {
+        ViewResult& view = result.views.emplace_back();
+        view.name = "a|b<i>" + std::to_string(k), view.state = ViewState::changed;
+        view.sentence = std::string(300, 'x');
+    }
+    const std::string text = suite_markdown({}, result, {});
+    EXPECT_LT(text.size(), 60'000u);
+    EXPECT_THAT(text, HasSubstr("a\\|b&lt;i>"));
+    EXPECT_THAT(text, HasSubstr("more; the report has them"));
+}
+
+class SuitePatterns : public ScratchFolder {};
+class SuiteFiles : public ScratchFolder {};
+
+TEST_F(SuitePatterns, ViewsAndSeedsAreReadFromNames) {
+    const std::string root = path("");
+    std::filesystem::create_directories(root + "b/inner");
+    for (const char* name : {"b/crown-1.exr", "b/crown-12.exr", "b/crown-hall-3.exr", "b/crown.exr", "b/inner/7.exr"})
+        std::ofstream(root + name) << "x";
+    const auto views = [&](const std::string& pattern) {
+        std::vector<std::string> out;
+        for (const MatchedFile& file : match_views(root + pattern))
+            out.push_back(file.view + ":" + (file.wildcards.empty() ? "" : file.wildcards[0]));
+        return out;
+    };
+    EXPECT_THAT(views("b/{view}-*.exr"), ElementsAre("crown:1", "crown:12", "crown-hall:3"));
+    EXPECT_THAT(views("b/{view}-%d.exr"), ElementsAre("crown:1", "crown:12", "crown-hall:3"));
+    EXPECT_THAT(views("b/{view}-?.exr"), ElementsAre("crown:1", "crown-hall:3"));
+    EXPECT_THAT(views("b/{view}/*.exr"), ElementsAre("inner:7"));
+    EXPECT_THAT(views("{view}/{view}*.exr"), ElementsAre());
+    EXPECT_EQ(path_from("x/{view}-*.exr", "crown", {"12"}), "x/crown-12.exr");
+    EXPECT_EQ(path_from("x/{view}/{view}-%03d-[ab].exr", "v", {"1", "a"}), "x/v/v-1-a.exr");
+    EXPECT_EQ(path_from("x/{view}.exr", "v", {"1"}), std::nullopt);
+}
+
+TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
+    const std::string root = path("");
+    for (const char* name : {"b-v-1.exr", "c-v-1.exr", "c-w-1.exr"}) std::ofstream(root + name) << "x";
+    const auto read = [&](const std::string& more) {
+        std::ofstream(root + "s.toml") << "[suite]\nbaseline = \"b-{view}-*.exr\"\ncandidate = \"c-{view}-*.exr\"\n" << more;
+        return read_suite(root + "s.toml", {});
+    };
+    const Suite good = read("smallest = \"2 %\"\n[view.v]\nsmallest = \"0.5 %\"\nregions.lamp = [1, 2, 3, 4]\n");
+    ASSERT_EQ(good.views.size(), 2u);
+    EXPECT_EQ(good.options.smallest, 0.02);
+    EXPECT_EQ(good.smallest(good.views[0]), 0.005);
+    ASSERT_EQ(good.views[0].regions.size(), 1u);
+    EXPECT_EQ(good.views[0].regions[0].name, "lamp");
+    EXPECT_EQ(good.views[0].regions[0].box.y1, 4);
+    EXPECT_TRUE(good.views[1].baseline.empty());
+    const auto mistake = [&](const std::string& more) { return refusal([&] { return read(more); }); };
+    EXPECT_THAT(mistake("alhpa = 0.1\n"), HasSubstr("s.toml:4:1: "));
+    EXPECT_THAT(mistake("alhpa = 0.1\n"), HasSubstr("did you mean 'alpha'?"));
+    EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("s.toml:4:"));
+    EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("did you mean 'v'?"));
+    EXPECT_THAT(mistake("smallest = \"much\"\n"), HasSubstr("s.toml:4:12: "));
+    EXPECT_THAT(mistake("[view.v]\nregions.lamp = [1, 2, 3]\n"), HasSubstr("s.toml:5:"));
+    EXPECT_THAT(mistake("[view.v]\nregions.frame = [1, 2, 3, 4]\n"), HasSubstr("expected another"));
+}
+
+TEST(Hypotheses, SimesPIsTheLevelOfTheFirstDiscovery) {
+    const std::vector<double> p{0.001, 0.004, 0.02, 0.5};
+    for (const bool dependent : {false, true}) {
+        const double level = simes_p(p, 10, dependent);
+        EXPECT_EQ(discovered(p, 10, level * (1 - 1e-9), dependent), 0u);
+        EXPECT_GT(discovered(p, 10, level * (1 + 1e-9), dependent), 0u);
+    }
+    EXPECT_EQ(simes_p({}, 10, false), 1);
+}
+
+}  // namespace
+}  // namespace crescent::inline comparing

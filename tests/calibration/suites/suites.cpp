@@ -1,0 +1,197 @@
+// crescent_suites [--suites 100] [--views 50] [--repeats 200] [--seed S]: how often whole suites of unchanged views
+// report a change, and how often a change of the size that a view states is found. Prints a section of
+// docs/error-rates.md. Renders are synthetic, so their truth is known.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <fmt/format.h>
+#include <map>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "compare/suite/suite.h"
+#include "compare/synthetic.h"
+#include "math/simd/random.h"
+#include "math/statistics.h"
+
+namespace {
+
+using namespace crescent;
+using Kind = SyntheticNoise::Kind;
+
+constexpr int side = 32, renders = 8;
+constexpr double alpha = 0.05;
+
+/// One kind of view, the same noise on both sides.
+struct ViewKind {
+    std::string name;
+    SyntheticNoise noise;
+    double own = 0;              // 0: grey; else in colour, see SyntheticScene
+    bool deterministic = false;  // all renders have the same pixels
+    int baseline = renders, candidate = renders;
+};
+
+std::vector<ViewKind> view_kinds() {
+    SyntheticNoise filtered{Kind::gamma, 0.3};
+    filtered.filter = 3;
+    SyntheticNoise failing{Kind::gamma, 0.2};
+    failing.failing = 0.002;
+    return {{"gamma, 20 %, grey", {Kind::gamma, 0.2}}, {"gamma, 50 %, colour", {Kind::gamma, 0.5}, 0.5},
+        {"gamma, 20 %, 12 and 4 renders", {Kind::gamma, 0.2}, 0, false, 12, 4},
+        {"gamma filtered over 3 x 3 (correlated), grey", filtered},
+        {"gamma filtered over 3 x 3 (correlated), colour", filtered, 0.5},
+        {"lognormal, sigma 1 (heavy-tailed), grey", {Kind::lognormal, 1}},
+        {"Pareto, index 1.5 (heavy-tailed), grey", {Kind::pareto, 1.5}},
+        {"bright events in 1 of 1000 pixels, grey", {Kind::events, 1e-3}},
+        {"hits of 16 samples, 5 %, colour", {Kind::hits, 0.05}, 0.5},
+        {"1 of 500 values is NaN, gamma 20 %, grey", failing},
+        {"deterministic", {Kind::gamma, 0.2}, 0, true}};
+}
+
+std::uint32_t seed_for(std::uint32_t seed, std::uint32_t suite, std::uint32_t view, std::uint32_t render) {
+    return seed_of(seed_of(seed_of(seed, suite), view), render);
+}
+
+/// The view "K" of a suite; `bias` makes the candidate brighter.
+class SyntheticViews {
+public:
+    SyntheticViews(std::uint32_t seed, std::uint32_t suite) : seed_(seed), suite_(suite) {}
+
+    SuiteView add(const ViewKind& kind, double bias = 0) {
+        const auto index = static_cast<std::uint32_t>(kinds_.size());
+        kinds_.push_back(&kind), biases_.push_back(bias);
+        SuiteView view;
+        view.name = std::to_string(index);
+        for (int k = 0; k < kind.baseline; ++k) view.baseline.push_back(fmt::format("{} b {}", index, k));
+        for (int k = 0; k < kind.candidate; ++k) view.candidate.push_back(fmt::format("{} c {}", index, k));
+        return view;
+    }
+    RenderSource source() const {
+        RenderSource out;
+        out.read = [this](const std::string& path, const std::string&) {
+            const std::size_t gap = path.find(' ');
+            const auto view = static_cast<std::uint32_t>(std::stoul(path.substr(0, gap)));
+            const bool candidate = path[gap + 1] == 'c';
+            const ViewKind& kind = *kinds_[view];
+            const auto k = static_cast<std::uint32_t>(std::stoul(path.substr(gap + 3)));
+            SyntheticNoise noise = kind.noise;
+            if (candidate) noise.bias = biases_[view];
+            SyntheticScene scene;
+            scene.width = side, scene.own = kind.own;
+            const std::uint32_t render = kind.deterministic ? 0 : 2 * k + (candidate ? 1 : 0);
+            return made_render(path, noise, seed_for(seed_, suite_, view, render), scene);
+        };
+        return out;
+    }
+
+private:
+    std::uint32_t seed_, suite_;
+    std::vector<const ViewKind*> kinds_;
+    std::vector<double> biases_;
+};
+
+Suite empty_suite() {
+    Suite out;
+    out.options.alpha = alpha, out.options.smallest = 0.05;
+    return out;
+}
+
+/// States of one kind over all suites.
+struct Counts {
+    std::array<std::uint64_t, view_state_names.size()> states{};
+    std::uint64_t of(ViewState state) const { return states[static_cast<std::size_t>(state)]; }
+    std::uint64_t total() const {
+        std::uint64_t sum = 0;
+        for (const std::uint64_t n : states) sum += n;
+        return sum;
+    }
+};
+
+void print_false_alarms(const std::vector<ViewKind>& kinds, std::uint32_t suites, std::uint32_t views, std::uint32_t seed) {
+    std::vector<SuiteResult> results(suites);
+    parallel_for(std::uint32_t{0}, suites, [&](std::uint32_t s) {
+        SyntheticViews made(seed, s);
+        Suite suite = empty_suite();
+        for (std::uint32_t v = 0; v < views; ++v) suite.views.push_back(made.add(kinds[v % kinds.size()]));
+        ProgressMonitor monitor;
+        results[s] = compare_suite(suite, monitor, made.source());
+    });
+    std::vector<Counts> counts(kinds.size());
+    std::uint64_t alarms = 0, failing = 0, improved = 0;
+    for (const SuiteResult& result : results) {
+        for (const ViewResult& view : result.views)
+            ++counts[std::stoul(view.name) % kinds.size()].states[static_cast<std::size_t>(view.state)];
+        const bool fails = exit_code(result, false) == 1, better = result.count(ViewState::improved) > 0;
+        alarms += fails || better, failing += fails, improved += better;
+    }
+    fmt::print(
+        "### False alarms of suites\n\n{} suites of {} unchanged views, {} x {} pixels, {} renders of each side unless "
+        "stated; alpha = {}.\n\n| of the suites | |\n|---|---|\n| some view is changed, noisier or improved | {} |\n| exit "
+        "code 1: changed or noisier | {} |\n| some view is improved | {} |\n\n",
+        suites, views, side, side, renders, alpha, rate_text(alarms, suites), rate_text(failing, suites),
+        rate_text(improved, suites));
+    fmt::print("| kind of view | views | changed | noisier | improved | too few renders | same |\n|---|---|---|---|---|---|---|\n");
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+        fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n", kinds[k].name, counts[k].total(),
+            counts[k].of(ViewState::changed), counts[k].of(ViewState::noisier), counts[k].of(ViewState::improved),
+            counts[k].of(ViewState::too_few), counts[k].of(ViewState::same));
+}
+
+/// A view among `views`, brighter by what it states as found with 90 %; level alpha / views, as Holm's method has it for
+/// the first.
+void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std::uint32_t views, std::uint32_t seed) {
+    fmt::print("\n### Power of suites\n\nOne view of {}, brighter by a multiple of the difference that the unchanged view "
+               "states (found with a probability of 90 %); {} repeats.\n\n| kind of view | difference stated, mean | found "
+               "at that size | at half of it |\n|---|---|---|---|\n",
+        views, repeats);
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        const ViewKind& kind = kinds[k];
+        if (kind.deterministic) continue;
+        std::vector<double> stated(repeats);
+        std::array<std::vector<char>, 2> found{std::vector<char>(repeats), std::vector<char>(repeats)};
+        parallel_for(std::uint32_t{0}, repeats, [&](std::uint32_t r) {
+            const auto measured = [&](std::uint32_t stream, double bias) {
+                SyntheticViews made(seed_of(seed, 1000 + static_cast<std::uint32_t>(k)), 3 * r + stream);
+                const Suite suite = empty_suite();
+                ProgressMonitor monitor;
+                return measure_view(suite, made.add(kind, bias), views, monitor, made.source());
+            };
+            const MeanTest& frame = measured(0, 0).means->regions.back();
+            stated[r] = frame.why.empty() ? frame.smallest : std::nan("");
+            if (std::isnan(stated[r])) return;
+            for (std::uint32_t half = 0; half < 2; ++half)
+                found[half][r] = measured(half + 1, half ? stated[r] / 2 : stated[r]).mean_p / share_of_means <= alpha / views;
+        });
+        std::uint64_t of = 0, whole = 0, halved = 0;
+        double sum = 0;
+        for (std::uint32_t r = 0; r < repeats; ++r) {
+            if (std::isnan(stated[r])) continue;
+            ++of, sum += stated[r], whole += found[0][r] != 0, halved += found[1][r] != 0;
+        }
+        if (of == 0) fmt::print("| {} | heavy tail: none is stated | – | – |\n", kind.name);
+        else
+            fmt::print("| {} | {:.2g} % | {} | {} |\n", kind.name, 100 * sum / static_cast<double>(of),
+                rate_text(whole, of), rate_text(halved, of));
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Measures the error rates of suites of golden images."};
+    std::uint32_t suites = 100, views = 50, repeats = 200, seed = 1;
+    app.add_option("--suites", suites, "suites of unchanged views")->capture_default_str();
+    app.add_option("--views", views, "views of each")->capture_default_str();
+    app.add_option("--repeats", repeats, "of each measurement of power")->capture_default_str();
+    app.add_option("--seed", seed, "of all renders")->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const std::vector<ViewKind> kinds = view_kinds();
+        print_false_alarms(kinds, suites, views, seed);
+        if (repeats > 0) print_power(kinds, repeats, views, seed);
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "crescent_suites: {}\n", e.what());
+        return 3;
+    }
+    return 0;
+}

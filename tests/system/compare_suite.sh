@@ -1,0 +1,148 @@
+#!/bin/bash
+# `crescent compare SUITE.toml` as a build server calls it: states, exit codes, outputs, --accept, --plan; bad input is
+# named with its place and nothing is written; a killed --accept leaves the old baseline or the new one.
+. "$(dirname "$0")/common.sh"
+
+expect 0 /usr/bin/python3 - <<'END'
+import os, random, struct
+def write(path, seed, scale=1.0, shape=25, side=24):
+    rng = random.Random(seed)
+    pixels = [scale * mean * rng.gammavariate(shape, 1 / shape) for _ in range(side * side) for mean in (1.0, 0.8, 0.6)]
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as out:
+        out.write(b"PF\n%d %d\n-1.0\n" % (side, side) + struct.pack("<%df" % len(pixels), *pixels))
+for k in range(8):
+    for view, base, out in (("same", {}, {}), ("changed", {}, {"scale": 1.05}), ("noisier", {}, {"shape": 12}),
+                            ("improved", {"shape": 12}, {})):
+        write(f"base/{view}-{k}.pfm", f"{view} base {k}", **base)
+        write(f"out/{view}-{k}.pfm", f"{view} out {k}", **out)
+    write(f"base/gone-{k}.pfm", f"gone {k}")
+    write(f"out/added-{k}.pfm", f"added {k}")
+    if k < 3:
+        write(f"base/few-{k}.pfm", f"few base {k}", shape=1)
+        write(f"out/few-{k}.pfm", f"few out {k}", shape=1)
+        write(f"base/fixed-{k}.pfm", "fixed")
+        write(f"out/fixed-{k}.pfm", "fixed")
+END
+cat >suite.toml <<'END'
+[suite]
+alpha = 0.01
+baseline = "base/{view}-*.pfm"
+candidate = "out/{view}-*.pfm"
+smallest = "4 %"
+[view.same]
+smallest = "6 %"
+regions.corner = [0, 0, 11, 11]
+END
+expect 1 "$CRESCENT" compare suite.toml --json all.json --junit all.xml --markdown all.md --out one --quiet
+expect 1 "$CRESCENT" compare suite.toml --json two.json --out two --quiet
+cmp all.json two.json || die "equal inputs give other numbers"
+same_outputs one two
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import json, os, sys, xml.etree.ElementTree as tree
+import jsonschema
+result = json.load(open("all.json"))
+jsonschema.validate(result, json.load(open(sys.argv[1] + "/docs/suite.schema.json")))
+states = {v["view"]: v["state"] for v in result["views"]}
+assert states == {"same": "same", "changed": "changed", "noisier": "noisier", "improved": "improved", "gone": "missing",
+                  "added": "new", "few": "too few renders", "fixed": "same"}, states
+views = {v["view"]: v for v in result["views"]}
+assert set(views["same"]["means"]) == {"corner", "frame"} and views["same"]["smallest"] == 0.06
+assert views["fixed"]["deterministic"] and views["few"]["renders_needed"] > 3
+assert result["exit_code"] == 1 and result["views_tested"] == 5
+cases = {c.get("name"): [e.tag for e in c] for c in tree.parse("all.xml").getroot().iter("testcase")}
+assert cases == {"same": [], "improved": [], "fixed": [], "changed": ["failure"], "noisier": ["failure"],
+                 "gone": ["failure"], "few": ["error"], "added": ["skipped"]}, cases
+text = open("all.md").read()
+assert "| ❌ changed | changed |" in text and "fixed" not in text and len(text.encode()) < 60000, text
+page = open("one/report.html").read()
+assert page.count("<details") == 8 and "http" not in page.replace("http://www.w3.org", ""), "not one offline page"
+END
+
+# Exit codes of parts of it, and --strict.
+part() {
+    rm -rf part
+    mkdir -p part/base part/out
+    for view; do cp base/"$view"-* part/base/ 2>/dev/null; cp out/"$view"-* part/out/ 2>/dev/null; done
+    sed '/^\[view/,$d' suite.toml >part/suite.toml
+}
+part same improved added
+expect 0 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+expect 1 "$CRESCENT" compare part/suite.toml --out nothing --strict --quiet
+part same few
+expect 4 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+grep -q 'renders of each side would do' printed || die "no number of renders: $(cat printed)"
+part few gone
+cp out/same-0.pfm part/out/
+expect 1 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+
+# --plan, also before anything is rendered.
+part same
+rm part/out/*
+expect 0 "$CRESCENT" compare part/suite.toml --plan --json plan.json --quiet
+grep -q '4 % of mean Y in frame' printed || die "no plan: $(cat printed)"
+expect 0 /usr/bin/python3 -c 'import json; v = json.load(open("plan.json"))["views"][0]
+assert v["needed"][0]["renders"] > v["needed"][2]["renders"] > 1, v'
+
+# --accept: as renders and as moments; the suite is then unchanged.
+part same changed added
+expect 0 "$CRESCENT" compare part/suite.toml --accept changed --because 'new sampler' --quiet
+cmp part/base/changed-3.pfm part/out/changed-3.pfm || die "the renders were not accepted"
+grep -q '"because": "new sampler"' part/base/baseline.json || die "no reason in the manifest"
+[ ! -e part/base/added-0.pfm ] || die "a view that was not named was accepted"
+expect 0 "$CRESCENT" compare part/suite.toml --accept --quiet
+expect 0 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+sed -i 's/{view}-\*.pfm"/{view}-*.*"/' part/suite.toml
+sed 's/base\/{view}-\*\.\*/base\/{view}-*.exr/' part/suite.toml >part/moments.toml
+expect 0 "$CRESCENT" compare part/moments.toml --accept same --store moments --quiet
+[ -s part/base/same-moments.exr ] || die "no moments: $(ls part/base)"
+cp out/same-*.pfm part/out/
+rm part/out/changed-* part/out/added-*
+expect 0 "$CRESCENT" compare part/moments.toml --json moments.json --out nothing --quiet
+grep -q '"moments": true' moments.json || die "the baseline was not read from its moments"
+
+# Folders without a file.
+mkdir -p folders/a/crown folders/b/crown
+bad() {
+    local message=$1
+    shift
+    expect 2 "$CRESCENT" compare "$@"
+    grep -qF -- "$message" said || die "no '$message' in: $(cat said)"
+}
+bad "found no file that matches 'folders/b/{view}/*.exr'" --baseline folders/a --candidate folders/b --out nowhere
+bad "expected a folder" --baseline folders/a --candidate absent --out nowhere
+sed 's/^alpha/alhpa/' suite.toml >wrong.toml
+bad "wrong.toml:2:1: " wrong.toml --out nowhere
+bad "did you mean 'alpha'?" wrong.toml --out nowhere
+sed 's/view.same/view.sane/' suite.toml >wrong.toml
+bad "did you mean 'same'?" wrong.toml --out nowhere
+sed 's/11, 11/99, 11/' suite.toml >wrong.toml
+bad "wrong.toml:8:" wrong.toml --out nowhere
+sed 's/{view}-/view-/' suite.toml >wrong.toml
+bad "expected {view} in the pattern" wrong.toml --out nowhere
+bad "did you mean 'changed'?" suite.toml --accept chnaged
+bad "expected --accept with it" suite.toml --because x
+bad "expected a suite" --arm a=out/same-0.pfm --markdown x.md
+bad "expected no such flag" suite.toml --arm a=out/same-0.pfm
+head -c 100 out/same-0.pfm >out/same-9.pfm
+head -c 100 out/few-0.pfm >out/few-9.pfm
+bad "out/few-9.pfm" suite.toml --out nowhere --json nowhere.json
+grep -q "out/same-9.pfm" said || die "only the first of two damaged files is named: $(cat said)"
+[ ! -e nowhere ] && [ ! -e nowhere.json ] && [ ! -e x.md ] || die "a wrong call left an output"
+rm out/same-9.pfm out/few-9.pfm
+expect 3 "$CRESCENT" compare suite.toml --json absent/folder/x.json --out nothing --quiet
+
+# Killed at any time, --accept leaves one of the two baselines.
+hash_of() { cat "$1"/same-*.pfm | sha256sum; }
+new=$(hash_of out)
+for delay in 0.005 0.01 0.02 0.03 0.05; do
+    rm -rf part && mkdir -p part && cp -r base out part/
+    sed '/^\[view/,$d' suite.toml >part/suite.toml
+    old=$(hash_of part/base)
+    "$CRESCENT" compare part/suite.toml --accept same --quiet >/dev/null 2>&1 &
+    sleep "$delay"
+    kill -9 $! 2>/dev/null
+    wait $! 2>/dev/null
+    now=$(hash_of part/base)
+    [ "$now" = "$old" ] || [ "$now" = "$new" ] || die "a killed --accept left a mixed baseline"
+done
