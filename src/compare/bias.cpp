@@ -62,7 +62,7 @@ MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     const PixelSet& set = sides.all.regions[r];
     MeanTest t;
     t.region = quantity_names[sides.quantity], t.paired = sides.in_pairs();
-    t.a = mean_interval(a, confidence).mean, t.b = mean_interval(b, confidence).mean;
+    t.a = mean_and_error(a).mean, t.b = mean_and_error(b).mean;
     t.why = why_not(sides, r);
     if (!t.why.empty()) return t;
     const SetVariance noise = sides.noise_of(set);
@@ -155,7 +155,7 @@ TileTest test_tile(const BiasPair& sides, std::size_t t, double level) {
     const Values a = sides.tile_means(sides.a, t), b = sides.tile_means(sides.b, t);
     const SetVariance noise = sides.noise_of(sides.all.tiles.box(t, sides.all.width, sides.all.height));
     if (noise.pixels == 0) return out;  // none is finite
-    const double d = out.difference = mean_interval(a, confidence).mean - mean_interval(b, confidence).mean;
+    const double d = out.difference = mean_and_error(a).mean - mean_and_error(b).mean;
     out.left_out = sides.lone_pixel_in(t);
     if (out.left_out) return out;
     const Welch w = sides.test(a, b, noise, true);
@@ -425,7 +425,8 @@ Moments moments(const BiasPair& s, std::size_t i, bool floored) {
                y = static_cast<int>(i / static_cast<std::size_t>(s.all.width));
     const std::size_t t = s.all.tiles.of(x, y), q = s.quantity;
     const auto over_renders = [&](const ArmStats& side, const std::vector<double>& tiles, const ArmStats& bright) {
-        double v = side.film.variance(i, q);
+        const MeanFilm& film = side.film;
+        double v = film.count >= 2 ? film.of(q).m2[i] / static_cast<double>(film.count - 1) : film.variance(i, q);
         if (floored) v = std::max(v, scaled(bright.quantities[q], t, tiles[t], bright.film.of(q).mean[i]));
         return v / static_cast<double>(side.files.size());
     };

@@ -251,8 +251,9 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
         }
         if (!grey) {
             film.planes[0].mean.resize(pixels);
-            for (std::size_t i = 0; i < pixels; ++i)
-                for (std::size_t c = 0; c < 3; ++c) film.planes[0].mean[i] += weights[c] * film.planes[c + 1].mean[i];
+            for (std::size_t i = 0; i < pixels; ++i)  // rounded as Render::y() is
+                film.planes[0].mean[i] = static_cast<double>(static_cast<float>(weights[0] * film.planes[1].mean[i] +
+                    weights[1] * film.planes[2].mean[i] + weights[2] * film.planes[3].mean[i]));
         }
         for (const float v : read("variance.Y")) film.planes[0].m2.push_back(below * static_cast<double>(v));
         if (file.header().channels().findChannel("failed.N")) {

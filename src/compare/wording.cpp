@@ -107,6 +107,19 @@ bool one_pixel_decides(const ArmStats& arm, std::size_t quantity, std::size_t ti
 
 }  // namespace
 
+MeanInterval mean_and_error(std::span<const double> values) {
+    MeanInterval out;
+    out.n = values.size();
+    const double n = static_cast<double>(out.n);
+    out.mean = out.n ? std::accumulate(values.begin(), values.end(), 0.0) / n : std::nan("");
+    out.low = out.high = out.se = std::nan("");
+    if (out.n < 2) return out;
+    double squares = 0;
+    for (const double v : values) squares += (v - out.mean) * (v - out.mean);
+    out.se = std::sqrt(squares / (n - 1) / n);
+    return out;
+}
+
 BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& measured,
     std::size_t first, std::size_t second, std::size_t of, const PairedRenders* paired)
     : all(readings),
@@ -189,11 +202,11 @@ Welch BiasPair::test(
     if (pairs) {
         std::vector<double> each;
         for (std::size_t k = 0; k < pairs->size(); ++k) each.push_back(va[k] - vb[k]);
-        const MeanInterval mean = mean_interval(each, confidence);
+        const MeanInterval mean = mean_and_error(each);
         return paired_test(floored ? floored_at(mean, noise.a / noise.pixels) : mean);
     }
-    MeanInterval ours = mean_interval(va, confidence);
-    MeanInterval theirs = vb.size() > 1 ? mean_interval(vb, confidence) : one_file(vb[0], noise);
+    MeanInterval ours = mean_and_error(va);
+    MeanInterval theirs = vb.size() > 1 ? mean_and_error(vb) : one_file(vb[0], noise);
     if (floored) ours = floored_at(ours, noise.a / noise.pixels);
     if (floored && vb.size() > 1) theirs = floored_at(theirs, noise.b / noise.pixels);
     return welch_test(ours, theirs);

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 
 #include "compare/plan.h"
 #include "compare/results.h"
 
 namespace crescent::inline comparing {
+
+/// Mean and standard error over renders; without the ends of an interval, whose quantile takes longer than the rest.
+MeanInterval mean_and_error(std::span<const double> values);
 
 /// Noise of a set of pixels: means over it of the variance of a pixel, of one render.
 struct SetVariance {

@@ -60,12 +60,12 @@ const ViewResult& view_of(const SuiteResult& result, const std::string& name) {
 }
 
 constexpr SyntheticNoise noise{Kind::gamma, 0.2};
-constexpr SyntheticNoise brighter{Kind::gamma, 0.2, 0.03};
+constexpr SyntheticNoise brighter{Kind::gamma, 0.2, 0.05};
 constexpr SyntheticNoise calmer{Kind::gamma, 0.1};
 
 TEST(Suites, EachViewEndsInTheStateOfItsRenders) {
     MemorySuite s;
-    s.suite.options.smallest = 0.02;
+    s.suite.options.smallest = 0.03;
     s.put_both("same", noise, noise, 100);
     s.put_both("changed", noise, brighter, 200);
     s.put_both("improved", noise, calmer, 300);
