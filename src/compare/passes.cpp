@@ -318,7 +318,7 @@ private:
             const auto i =
                 static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
             return all_.bad[i] ? 0.0 : scale * (y(i) - about->y()[i]);
-        });
+        }, plan_.spectrum_blocks);
     }
 
     /// Means and largest squared deviations of all quantities in a region; the quantities go through the pixels

@@ -103,9 +103,10 @@ void add_block(std::vector<double>& power, int x0, int y0, const std::function<d
 
 }  // namespace
 
-void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error) {
+void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error,
+    int most_blocks) {
     const int across = box.width() / spectrum_block, count = across * (box.height() / spectrum_block);
-    const int step = (count + spectrum_blocks_most - 1) / spectrum_blocks_most;
+    const int step = (count + most_blocks - 1) / most_blocks;
     for (int k = 0; k < count; k += step) {
         power.resize(spectrum_bins);
         add_block(power, box.x0 + k % across * spectrum_block, box.y0 + k / across * spectrum_block, error);

@@ -14,11 +14,12 @@ namespace crescent::inline comparing {
 inline constexpr int spectrum_block = 32;                 // pixels a side of a block
 inline constexpr int spectrum_bins = spectrum_block / 2;  // frequencies 1..16 cycles a block; the mean is left out
 
-inline constexpr int spectrum_blocks_most = 1024;  // of a box; of more, every second, third, ... is taken
+inline constexpr int spectrum_blocks_most = 1024;  // of a box, by default; of more, every second, third, ... is taken
 
 /// Adds the radial power of `error(i, j)` over whole blocks of the box to `power` (spectrum_bins values). The box must
 /// hold a block; smaller ones add nothing. Error units squared.
-void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error);
+void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error,
+    int most_blocks = spectrum_blocks_most);
 
 /// What the noise is like, from the share of power below and above half the Nyquist frequency beside that of white
 /// noise.

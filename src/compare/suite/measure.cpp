@@ -115,7 +115,9 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
         arm.name = name, arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
     }
     plan.regions = view.regions;
-    plan.flip = plan.count_pixel_p = false, plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
+    constexpr int blocks = 256;  // a quarter: over the renders of a side they are enough to find correlation
+    plan.flip = plan.count_pixel_p = false, plan.spectrum_blocks = blocks;
+    plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
     return plan;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Budgets: of all pictures, which base64 makes a third larger in a page under 60 MB, and of one view.
 constexpr std::size_t most_bytes = 36'000'000, most_of_view = 2'000'000;
-constexpr int largest_width = 960, smallest_width = 48;
+constexpr int largest_width = 800, smallest_width = 48;
 /// The difference map's colours end at this multiple of the difference that must be found, or where 1 % of the map
 /// lies beyond.
 constexpr double ends_at = 5, beyond = 0.99;
@@ -78,9 +78,13 @@ double scale_of(const std::vector<double>& values, double smallest) {
     return std::max(ends_at * smallest, sizes.empty() ? 0 : quantile(std::move(sizes), beyond));
 }
 
-/// Calls draw(width), which sets the pictures, until they fit the budget.
-template <class Draw> void within_budget(const Suite& suite, int width, ViewPictures& to, const Draw& draw) {
-    for (int w = std::min(width, largest_width);;) {
+/// Calls draw(width), which sets the pictures, until they fit the budget. `bytes`: of a picture of the largest width.
+template <class Draw>
+void within_budget(const Suite& suite, int width, std::size_t bytes_of_one, ViewPictures& to, const Draw& draw) {
+    constexpr double pictures = 3;
+    const double first = std::sqrt(static_cast<double>(budget(suite)) / (pictures * static_cast<double>(bytes_of_one)));
+    const int widest = std::min(width, largest_width);
+    for (int w = std::clamp(static_cast<int>(widest * first), std::min(widest, smallest_width), widest);;) {
         draw(w);
         const std::size_t bytes = to.baseline.size() + to.candidate.size() + to.difference.size();
         if (bytes <= budget(suite) || w <= smallest_width) return;
@@ -99,7 +103,8 @@ void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSou
     const Render first = in_rec709(all, read);
     out.width = first.width, out.height = first.height;
     ViewPictures& to = out.pictures;
-    within_budget(suite, first.width, to, [&](int width) {
+    const std::size_t bytes = png_of(photograph(first, largest_width, suite.options.exposure)).size();
+    within_budget(suite, first.width, bytes, to, [&](int width) {
         const plates::Block block = photograph(first, width, suite.options.exposure);
         to.width = block.width, to.height = block.height;
         (added ? to.candidate : to.baseline) = png_of(block);
@@ -109,10 +114,15 @@ void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSou
 void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasResult& means, ViewResult& out) {
     const Render baseline = in_rec709(all, all.arms[0].film), candidate = in_rec709(all, all.arms[1].film);
     ViewPictures& to = out.pictures;
-    within_budget(suite, all.width, to, [&](int width) {
+    const plates::Block largest = photograph(candidate, largest_width, suite.options.exposure);
+    const std::vector<unsigned char> largest_png = png_of(largest);
+    within_budget(suite, all.width, largest_png.size(), to, [&](int width) {
         const plates::Block first = photograph(baseline, width, suite.options.exposure);
         to.width = first.width, to.height = first.height;
-        to.baseline = png_of(first), to.candidate = png_of(photograph(candidate, width, suite.options.exposure));
+        to.baseline = png_of(first);
+        to.candidate = to.width == largest.width && to.height == largest.height
+            ? largest_png
+            : png_of(photograph(candidate, width, suite.options.exposure));
         const std::vector<double> values = relative_differences(all, means, to.width, to.height);
         to.scale = scale_of(values, out.smallest);
         to.difference = png_of(difference_block(values, to.width, to.height, to.scale));
