@@ -25,7 +25,7 @@ struct RunFlags {
     std::string file;
     std::vector<std::string> overrides;  // PATH=VALUE
     std::string out, isa;                // "": the default
-    std::string instrument = "cpu";
+    std::string backend = "cpu";
     std::string only, seed_range;  // "metrics,report", "1:8"; "": all
     std::string gl_context;        // "": EGL
     int gl_device = -1;            // -1: a GPU where there is one
@@ -88,10 +88,10 @@ struct CompareFlags {
     bool crop = false, pair = false, schema = false, schema_as_json = false, quiet = false;
     unsigned error_rates = 0, seed = 1;  // error_rates: how many calls; 0: not asked for
     // Of a suite.
-    std::string baseline, candidate;            // folders; "": the file's patterns
-    std::string json, junit, markdown;          // files to write
-    std::string because, store;                 // of accept
-    std::vector<std::string> views;             // to accept; empty: all
+    std::string baseline, candidate;    // folders; "": the file's patterns
+    std::string json, junit, markdown;  // files to write
+    std::string because, store;         // of accept
+    std::vector<std::string> views;     // to accept; empty: all
     bool strict = false, plan = false, accept = false;
 };
 int compare(const CompareFlags& flags);

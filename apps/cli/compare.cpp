@@ -1,4 +1,4 @@
-// crescent compare: renders of other programs -> meters, bias tests, plates, report.
+// crescent compare: renders of other programs -> metrics, bias tests, plates, report.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -129,7 +129,8 @@ void forbid_suite_flags(const CompareFlags& f) {
         {"--strict", f.strict}, {"--plan", f.plan}, {"--accept", f.accept}};
     for (const auto& [flag, given] : only)
         if (given)
-            throw InputError({flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
+            throw InputError(
+                {flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
 }
 
 /// A section of docs/error-rates.md.

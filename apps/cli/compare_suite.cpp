@@ -39,8 +39,8 @@ void forbid_other_flags(const CompareFlags& f) {
     const std::pair<const char*, bool> others[] = {{"--arm", !f.arms.empty()}, {"--reference", !f.reference.empty()},
         {"--region", !f.regions.empty()}, {"--mask", !f.masks.empty()}, {"--spp", !f.spp.empty()},
         {"--seconds", !f.seconds.empty()}, {"--assert", !f.assertions.empty()}, {"--align", !f.align.empty()},
-        {"--expect", !f.expect.empty()}, {"--trim", !f.trim.empty()}, {"--theme", !f.theme.empty()},
-        {"--crop", f.crop}, {"--pair", f.pair}};
+        {"--expect", !f.expect.empty()}, {"--trim", !f.trim.empty()}, {"--theme", !f.theme.empty()}, {"--crop", f.crop},
+        {"--pair", f.pair}};
     for (const auto& [flag, given] : others)
         if (given) throw InputError({flag, 0, 0}, "expected no such flag: a suite compares a baseline and a candidate");
     if (!f.because.empty() && !f.accept) throw InputError({"--because", 0, 0}, "expected --accept with it");

@@ -21,28 +21,36 @@ DIR: report.html. Exit codes: 1 a view changed, is noisier or is missing; 4 too 
 /// The flags of a suite.
 void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
     const auto file = [&](const char* flag, std::string& to, const char* means) {
-        c.add_option(flag, to, means)->type_name("FILE")->check(told);
+        c.add_option(flag, to, means)->type_name("FILE")->check(not_empty);
     };
     c.add_option("--baseline", f->baseline, "folder with VIEW/*.exr or VIEW-SEED.exr, in place of the suite's pattern")
-        ->type_name("DIR")->check(told);
-    c.add_option("--candidate", f->candidate, "the same of the renders to be compared")->type_name("DIR")->check(told);
+        ->type_name("DIR")
+        ->check(not_empty);
+    c.add_option("--candidate", f->candidate, "the same of the renders to be compared")
+        ->type_name("DIR")
+        ->check(not_empty);
     c.add_flag("--strict", f->strict, "of a suite: new views fail");
     c.add_flag("--plan", f->plan, "of a suite: how many renders the smallest difference needs, from the baseline");
     c.add_option_function<std::vector<std::string>>(
-         "--accept", [f](const std::vector<std::string>& views) {
+         "--accept",
+         [f](const std::vector<std::string>& views) {
              f->accept = true;
              for (const std::string& view : views)
                  if (!view.empty()) f->views.push_back(view);
          },
          "of a suite: make the candidate of these views (none named: of all) the baseline")
-        ->type_name("[VIEW...]")->expected(0, -1);
-    c.add_option("--because", f->because, "with --accept: the reason, for the manifest")->type_name("TEXT")->check(told);
+        ->type_name("[VIEW...]")
+        ->expected(0, -1);
+    c.add_option("--because", f->because, "with --accept: the reason, for the manifest")
+        ->type_name("TEXT")
+        ->check(not_empty);
     c.add_option("--store", f->store, "with --accept: renders, or moments (mean and variance of each pixel)")
         ->type_name("renders|moments");
     c.add_option_function<std::string>(
          "--json", [f](const std::string& path) { f->json = path, f->schema_as_json = true; },
          "of a suite: every number; with --schema: as a JSON Schema")
-        ->type_name("[FILE]")->expected(0, 1);
+        ->type_name("[FILE]")
+        ->expected(0, 1);
     file("--junit", f->junit, "of a suite: one case for each view");
     file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
 }
@@ -54,7 +62,12 @@ void add_compare(CLI::App& app, Work& work) {
     CLI::App* c = command(app, work, "compare", "Compare renders of any program: noise, bias, where.", compare, f);
     c->footer(compare_footer);
     const auto many = [&](const char* flag, std::vector<std::string>& to, const char* means, const char* type) {
-        c->add_option(flag, to, means)->type_name(type)->take_all()->expected(1)->allow_extra_args(false)->check(told);
+        c->add_option(flag, to, means)
+            ->type_name(type)
+            ->take_all()
+            ->expected(1)
+            ->allow_extra_args(false)
+            ->check(not_empty);
     };
     c->add_option("FILE", f->file, "a TOML file; flags stand over it")->type_name("");
     many("--arm", f->arms, "renders of one arm; may be given again", "NAME=FILES");
@@ -78,7 +91,7 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_option("--brightest", f->brightest, "the most that Y of a pixel of one render can be, e.g. a clamp")
         ->type_name("Y");
     c->add_option("--theme", f->theme, "of plates: dark, light")->type_name("THEME");
-    c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(told);
+    c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(not_empty);
     add_suite_flags(*c, f);
     c->add_flag("--schema", f->schema, "every key of FILE");
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");

@@ -2,7 +2,7 @@
 // Nothing is looked up, and nothing is computed here.
 import { Opening } from "./jobs";
 import { Answer, Lesson, Measured } from "./lessons";
-import { Box } from "./door";
+import { Box } from "./api";
 import { Model, Region } from "./model";
 import { quoted, Source } from "./state";
 

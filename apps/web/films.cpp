@@ -42,7 +42,7 @@ void reference_room() {
         ReferenceFilm& film = bench().reference;
         film.width = bench().experiment.image.width, film.height = bench().experiment.image.height;
         film.s = bench().scene.s();
-        say(ordered_json::object());
+        respond(ordered_json::object());
     });
     begin(std::move(parts));
 }
@@ -117,7 +117,7 @@ CRESCENT_EXPORT(film_room)(int index)->void {
     parts.emplace_back([=] {
         slot(index).film.width = bench().experiment.image.width,
         slot(index).film.height = bench().experiment.image.height;
-        say(ordered_json::object());
+        respond(ordered_json::object());
     });
     begin(std::move(parts));
 }
@@ -165,6 +165,6 @@ CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
 }
 
 /// The hash of film `index`, of the reference for -1.
-CRESCENT_EXPORT(hash_of)(int index)->void { say(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
+CRESCENT_EXPORT(hash_of)(int index)->void { respond(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
 
 }  // namespace crescent::web

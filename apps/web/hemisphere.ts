@@ -1,7 +1,7 @@
 // The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
 // running mean, the largest sample taken apart.
 import { choice } from "./controls";
-import { DoorError } from "./door";
+import { DoorError } from "./api";
 import { el, made } from "./dom";
 import { Model } from "./model";
 import { State } from "./state";

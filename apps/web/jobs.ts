@@ -1,5 +1,5 @@
 // What a worker can be asked, and how any instance answers: the same code in a worker and on the page's own thread.
-import { Box, Door, DoorError, pixelsOf } from "./door";
+import { Box, Door, DoorError, pixelsOf } from "./api";
 
 export interface Opening { file: string; text: string; set: string[]; published: string }
 

@@ -1,6 +1,6 @@
 // The bench behind the pictures: an experiment as it is set, its films growing rung by rung, its reference, its meters.
 // One instance of the module on the page's own thread puts the tiles together; workers compute them.
-import { Box, Door, DoorError, pixelsOf } from "./door";
+import { Box, Door, DoorError, pixelsOf } from "./api";
 import { Opening } from "./jobs";
 import { Pool } from "./pool";
 import { Turns } from "./turns";

@@ -18,7 +18,7 @@ function bundle(entry) {
 
 /** The door itself, to ask what only the core knows: the style of the report, and what each experiment holds. */
 async function opened(module) {
-  const made = execFileSync("esbuild", [join(web, "door.ts"), "--format=esm", "--target=es2022"], { encoding: "utf8" });
+  const made = execFileSync("esbuild", [join(web, "api.ts"), "--format=esm", "--target=es2022"], { encoding: "utf8" });
   writeFileSync(join(build, "door.mjs"), made);
   const { Door } = await import(join(build, "door.mjs"));
   return new Door(module);

@@ -2,7 +2,7 @@
 import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, Door, DoorError } from "./door";
+import { Box, Door, DoorError } from "./api";
 import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";

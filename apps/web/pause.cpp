@@ -49,8 +49,8 @@ public:
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
         ask(at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner().true_f(a, o); });
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner().reference_f(a, o); });
     }
     void yield_to_host(std::size_t steps) const override { make_room(steps * step_cost); }
 

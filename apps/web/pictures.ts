@@ -1,5 +1,5 @@
 // The pictures side by side, each with its meters, the hash of its film and the program's.
-import { Box } from "./door";
+import { Box } from "./api";
 import { el, made, minus } from "./dom";
 import { Arm, Described, Meter, Model, Shown } from "./model";
 import { byKey, Frame, Outlined, Picking } from "./frame";

@@ -1,6 +1,6 @@
 // Jobs -> answers, in workers or, where a browser has none, in slices on the page's own thread. A new opening cancels
 // all that was asked before it: what is under way is dropped when it comes.
-import { Box, DoorError } from "./door";
+import { Box, DoorError } from "./api";
 import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
 import { Turns } from "./turns";
 

@@ -45,8 +45,8 @@ public:
     std::string path(const std::string& name);
     void write(const std::string& name, std::span<const unsigned char> bytes);
     void write(const std::string& name, const std::string& text);
-    /// Files of the user in the folder that commit() replaces or removes, as if an earlier run had written them. They are
-    /// listed at once; call it last before commit().
+    /// Files of the user in the folder that commit() replaces or removes, as if an earlier run had written them. They
+    /// are listed at once; call it last before commit().
     void adopt(const std::vector<std::string>& names);
     /// A folder for what is needed on the way; it goes with the stage.
     std::string scratch() const { return (work_ / "scratch").string(); }

@@ -17,7 +17,7 @@
 #include "compare/wording.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -339,12 +339,12 @@ std::size_t BiasResult::shown() const {
 
 std::string reference_error_from(const ArmStats& reference) {
     if (reference.files.size() > 1) return fmt::format("over its {} files", reference.files.size());
-    if (!reference.film.told_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
+    if (!reference.film.stated_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
     return "one file that does not say it: taken from how its difference from the arms varies between neighbouring "
            "pixels";
 }
 
-BiasResult judge_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
+BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor) {
     const BiasPair sides(plan, all, measured, a, b);
     BiasResult out;
@@ -496,9 +496,7 @@ PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double a
             const Moments m = moments(s, pixels[k], false);
             if (!m.known) continue;
             if (s.quantity == 0 && table)
-                ++out.histogram[m.se > 0             ? table->of(m.difference / m.se, m.df)
-                        : m.difference == 0 ? bins - 1
-                                            : 0];
+                ++out.histogram[m.se > 0 ? table->of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0];
             known = true, small |= m.se > 0 ? !(std::fabs(m.difference) < least[s.quantity] * m.se) : m.difference != 0;
         }
         out.tested += known;
@@ -520,15 +518,16 @@ double pixel_level(const BiasPair& s, double alpha) {
 
 double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, BiasResult& out) {
     const BiasPair& s = sides[0];
-    if (s.lone_reference() && s.b.film.told_variance.empty()) return std::nan("");
+    if (s.lone_reference() && s.b.film.stated_variance.empty()) return std::nan("");
     const std::size_t count = s.all.regions.back().pixels.size();
     const double level = pixel_level(s, levels.each);
     std::optional<Bins> table;
     if (s.count_pixel_p) table.emplace(count > table_from ? most_degrees(s) : 0);
     const LeastT least = least_t(sides, levels.named);
     std::vector<PixelCounts> parts((count + pixels_at_once - 1) / pixels_at_once);
-    parallel_for(std::size_t{0}, parts.size(),
-        [&](std::size_t c) { parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, least, table ? &*table : nullptr); });
+    parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
+        parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, least, table ? &*table : nullptr);
+    });
     out.pixel_p.assign(bins, 0), out.pixels_by.assign(sides.size(), 0);
     std::vector<Candidate> small;
     for (const PixelCounts& part : parts) {
@@ -553,4 +552,4 @@ double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, Bia
     return simes_p(p, static_cast<double>(out.pixels_tested), s.dependent);
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -22,7 +22,7 @@
 #include "math/hypotheses.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -47,7 +47,8 @@ std::vector<double> take(
     const auto* found = header.findTypedAttribute<Imf::FloatVectorAttribute>(name);
     if (!found || (count > 0 && found->value().size() != count))
         throw InputError({path, 0, 0},
-            fmt::format("attribute '{}': expected {} numbers, found {}", name, count, found ? found->value().size() : 0));
+            fmt::format(
+                "attribute '{}': expected {} numbers, found {}", name, count, found ? found->value().size() : 0));
     return {found->value().begin(), found->value().end()};
 }
 
@@ -64,7 +65,8 @@ template <class Use> void with_file(const std::string& path, const Use& use) {
 Json header_json(const std::string& path, const Imf::Header& header) {
     const auto* text = header.findTypedAttribute<Imf::StringAttribute>(text_attribute);
     const Json out = text ? Json::parse(text->value(), nullptr, false) : Json();
-    if (!out.is_object() || out.value("format", "") != format_name || !out.value("renders", Json()).is_number_unsigned())
+    if (!out.is_object() || out.value("format", "") != format_name ||
+        !out.value("renders", Json()).is_number_unsigned())
         throw InputError({path, 0, 0}, fmt::format("attribute '{}': expected '{}'", text_attribute, format_name));
     return out;
 }
@@ -139,7 +141,8 @@ void put_readings(Imf::Header& header, const RenderStats& all, const ArmStats& a
         for (std::size_t t = 0; t < all.tiles.count(); ++t) {
             std::vector<double> means;
             double most = 0;
-            for (const auto& render : readings.tiles) means.push_back(render[t].mean), most = std::max(most, render[t].largest);
+            for (const auto& render : readings.tiles)
+                means.push_back(render[t].mean), most = std::max(most, render[t].largest);
             deviations.push_back(deviation_of(means)), largest.push_back(most);
         }
         put(header, attribute_name("tiles", 0, q), deviations);
@@ -195,15 +198,14 @@ void write_moments(const std::string& path, const RenderStats& all, std::size_t 
                 std::vector<half>& to = halves.emplace_back(plane.values.begin(), plane.values.end());
                 first = reinterpret_cast<char*>(to.data());
             }
-            buffer.insert(plane.name, Imf::Slice(plane.type, first + bytes * width * (rows - 1), static_cast<std::size_t>(bytes),
-                                          static_cast<std::size_t>(-bytes * width)));
+            buffer.insert(plane.name,
+                Imf::Slice(plane.type, first + bytes * width * (rows - 1), static_cast<std::size_t>(bytes),
+                    static_cast<std::size_t>(-bytes * width)));
         }
         Imf::OutputFile file(path.c_str(), header, 1);
         file.setFrameBuffer(buffer);
         file.writePixels(all.height);
-    } catch (const std::exception& e) {
-        throw OutputError(fmt::format("cannot write {}: {}", path, e.what()));
-    }
+    } catch (const std::exception& e) { throw OutputError(fmt::format("cannot write {}: {}", path, e.what())); }
 }
 
 MomentsHeader read_moments_header(const std::string& path) {
@@ -232,7 +234,8 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
             char* first = reinterpret_cast<char*>(out.data()) + row * (all.height - 1);
             Imf::FrameBuffer buffer;
             buffer.insert(name,
-                Imf::Slice(Imf::FLOAT, first - 4 * window.min.x + row * window.min.y, 4, static_cast<std::size_t>(-row)));
+                Imf::Slice(
+                    Imf::FLOAT, first - 4 * window.min.x + row * window.min.y, 4, static_cast<std::size_t>(-row)));
             file.setFrameBuffer(buffer);
             file.readPixels(window.min.y, window.max.y);
             return out;
@@ -299,7 +302,8 @@ TileReading tile_mean(const RenderStats& all, const MeanPlane& plane, std::size_
     double pixels = 0;
     for (int y = box.y0; y <= box.y1; ++y)
         for (int x = box.x0; x <= box.x1; ++x) {
-            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
+            const auto i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
             if (all.bad[i]) continue;
             out.mean += plane.mean[i], out.spread += plane.m2[i] / renders, pixels += 1;
         }
@@ -317,8 +321,7 @@ void read_moments_regions(const std::string& path, const ComparePlan& plan, cons
         to.regions.assign(renders, std::vector<RegionStats>(all.regions.size()));
         to.quantities.assign(all.quantities, {});
         to.power.assign(all.regions.size(), {});
-        if (!to.not_finite.empty())
-            to.failed_groups.assign(renders, std::vector<std::uint32_t>(all.regions.size()));
+        if (!to.not_finite.empty()) to.failed_groups.assign(renders, std::vector<std::uint32_t>(all.regions.size()));
         for (QuantityReadings& q : to.quantities)
             q.regions.assign(renders, std::vector<double>(all.regions.size())),
                 q.tiles.assign(renders, std::vector<TileReading>(all.tiles.count()));
@@ -357,4 +360,4 @@ void read_moments_regions(const std::string& path, const ComparePlan& plan, cons
     });
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -12,7 +12,7 @@
 #include "compare/plan.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Whether the file holds moments.
 bool holds_moments(const std::string& path);
@@ -32,4 +32,4 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
 /// What the second pass would read; the regions of `all` must be among those of the file. Throws InputError.
 void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& all, ArmStats& to);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -18,7 +18,7 @@
 #include "math/hypotheses.h"
 #include "math/tail.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 Tiles::Tiles(int width, int height) {
     const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
@@ -314,17 +314,21 @@ private:
         if (!set.box || !about) return;
         const double renders = static_cast<double>(arm.film.count);
         const double scale = arm.film.count > 1 ? std::sqrt(renders / (renders - 1)) : 1;
-        add_spectrum(power, *set.box, [&](int x, int row) {
-            const auto i =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
-            return all_.bad[i] ? 0.0 : scale * (y(i) - about->y()[i]);
-        }, plan_.spectrum_blocks);
+        add_spectrum(
+            power, *set.box,
+            [&](int x, int row) {
+                const auto i =
+                    static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
+                return all_.bad[i] ? 0.0 : scale * (y(i) - about->y()[i]);
+            },
+            plan_.spectrum_blocks);
     }
 
     /// Means and largest squared deviations of all quantities in a region; the quantities go through the pixels
     /// together, which hides the latency of their sums.
-    template <std::size_t count> std::array<double, count> region(const std::array<std::span<const float>, count>& values,
-        const PixelSet& set, const MeanFilm& film, const std::array<Largest*, count>& largest) const {
+    template <std::size_t count>
+    std::array<double, count> region(const std::array<std::span<const float>, count>& values, const PixelSet& set,
+        const MeanFilm& film, const std::array<Largest*, count>& largest) const {
         std::vector<std::array<QuantityPart, count>> parts((set.pixels.size() + chunk - 1) / chunk);
         std::array<float, count> least{};
         std::array<const double*, count> mean{};
@@ -373,8 +377,8 @@ private:
         return out;
     }
 
-    template <std::size_t count> void region_means(const std::array<std::span<const float>, count>& values, ArmStats& arm,
-        std::vector<std::vector<Largest>>& largest) const {
+    template <std::size_t count> void region_means(const std::array<std::span<const float>, count>& values,
+        ArmStats& arm, std::vector<std::vector<Largest>>& largest) const {
         for (std::size_t q = 0; q < count; ++q) arm.quantities[q].regions.emplace_back();
         for (std::size_t r = 0; r < all_.regions.size(); ++r) {
             std::array<Largest*, count> of_region{};
@@ -423,4 +427,4 @@ void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSo
         for (const Largest& values : deviations[q]) arm.quantities[q].largest.push_back(values.falling());
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -13,7 +13,7 @@
 #include "experiment/tree.h"
 #include "output/color_map.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..], %d for digits).
 struct RenderArm {
@@ -60,8 +60,8 @@ struct ComparePlan {
     std::optional<double> brightest;     // the most that Y of a pixel of one render can be
     Expectation expect = Expectation::nothing;
     int spectrum_blocks = 1024;  // of the noise's spectrum, see spectrum.h
-    bool count_pixel_p = true;  // whether the p of every pixel is counted for the report
-    double smallest = 0.01;  // with expect = "same": the relative difference of Y that must have been seen
+    bool count_pixel_p = true;   // whether the p of every pixel is counted for the report
+    double smallest = 0.01;      // with expect = "same": the relative difference of Y that must have been seen
 };
 
 /// A flag of the command line: the key it stands for, its value, and the words it was typed as.
@@ -92,4 +92,4 @@ const std::vector<QuantityWord>& compare_words();
 /// The region that is every pixel; a footnote, never a headline.
 inline constexpr const char* whole_frame = "frame";
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Pixels that are looked at, in square blocks of the image.
 struct SeedSamples {
@@ -34,4 +34,4 @@ inline constexpr double shared_seed_level = 1e-3;
 /// are not known (moments).
 std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

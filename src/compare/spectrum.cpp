@@ -11,7 +11,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -103,8 +103,8 @@ void add_block(std::vector<double>& power, int x0, int y0, const std::function<d
 
 }  // namespace
 
-void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error,
-    int most_blocks) {
+void add_spectrum(
+    std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error, int most_blocks) {
     const int across = box.width() / spectrum_block, count = across * (box.height() / spectrum_block);
     const int step = (count + most_blocks - 1) / most_blocks;
     for (int k = 0; k < count; k += step) {
@@ -132,4 +132,4 @@ const char* to_string(NoiseColour colour) {
     return "unknown";
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

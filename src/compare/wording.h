@@ -8,7 +8,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Mean and standard error over renders; without the ends of an interval, whose quantile takes longer than the rest.
 MeanInterval mean_and_error(std::span<const double> values);
@@ -64,7 +64,7 @@ struct BiasPair {
     const ArmResult* other = nullptr;  // none: the reference
     double brightest = 0;              // the most that a pixel of one render can be; 0: not known
     bool referred = false, dependent = false;
-    bool count_pixel_p = true;  // see ComparePlan
+    bool count_pixel_p = true;   // see ComparePlan
     double low_frequencies = 1;  // of the noise's power, over that of its high ones
     std::size_t quantity = 0;    // see quantities.h
     const std::vector<RenderPair>* pairs = nullptr;
@@ -82,4 +82,4 @@ private:
 /// the reference varies from one pixel to the next, less the arm's own share; a bias is taken to be smooth.
 double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

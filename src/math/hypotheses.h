@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 /// P(|T| > |t|) of Student's t with df > 0 degrees of freedom.
 double two_sided_p(double t, double df);
@@ -47,9 +47,10 @@ double lone_share(std::size_t k);
 std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent);
 /// How many of the smallest p, rising, fall; `of` were tested. Those above alpha may be left out.
 std::size_t discovered(std::span<const double> rising, double of, double alpha, bool dependent);
-/// The smallest alpha at which discovered() is above 0, at most 1: the p-value of "no hypothesis is false" (Simes 1986).
+/// The smallest alpha at which discovered() is above 0, at most 1: the p-value of "no hypothesis is false" (Simes
+/// 1986).
 double simes_p(std::span<const double> rising, double of, bool dependent);
 /// The same with the chance of any false one at most alpha (Holm 1979).
 std::vector<bool> holm(std::span<const double> p, double alpha);
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

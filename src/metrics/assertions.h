@@ -10,12 +10,12 @@
 #include "experiment/experiment.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 /// Bytes of every plate that was drawn, by its name.
 using PlateBytes = std::map<std::string, std::size_t>;
 
-/// The value of a quantity at `seed`, in the unit of its meter; NaN where it was not measured. A plate that is not in
+/// The value of a quantity at `seed`, in the unit of its metric; NaN where it was not measured. A plate that is not in
 /// `plate_bytes` has 0 bytes.
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
     const PlateBytes& plate_bytes);
@@ -27,4 +27,4 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 std::vector<AssertionResult> judge(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -5,7 +5,7 @@
 
 #include "metrics/assertions.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 namespace {
 
 Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
@@ -76,9 +76,9 @@ TEST(Assertions, OnAnRmseThatTheReferencesOwnErrorMayMakeDoNotPass) {
     EXPECT_TRUE(verdict("rmse.H(a, n=4) < 1", false, m)) << "0.5 is five times the error";
     EXPECT_FALSE(verdict("rmse.H(a, n=16) < 1", false, m)) << "0.125 is not";
     EXPECT_FALSE(verdict("rmse.H(a, n=16) < rmse.H(a, n=4)", false, m));
-    const AssertionResult told = judge(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
-    EXPECT_FALSE(told.reference_good);
-    EXPECT_NE(told.text.find("not good enough"), std::string::npos) << told.text;
+    const AssertionResult describe = judge(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
+    EXPECT_FALSE(describe.reference_good);
+    EXPECT_NE(describe.text.find("not good enough"), std::string::npos) << describe.text;
 }
 
 TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
@@ -125,4 +125,4 @@ TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
 }
 
 }  // namespace
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -4,7 +4,7 @@
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -55,7 +55,7 @@ Shot heat(const Data& data) {
     for (int j = 0; j < 128; ++j) bar.set(0, j, turbo(1 - j / 127.0));
 
     Shot shot;
-    shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::instrument;
+    shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::backend;
     shot.seen = Words(
         "Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue "
         "for little, red for much, "
@@ -90,4 +90,4 @@ Shot heat(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

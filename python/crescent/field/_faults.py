@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._check import check
-from .._judgement import CheckResult
+from .._result import CheckResult
 from .._sampler import Sampler
 
 
@@ -24,8 +24,8 @@ class Fault:
     sampler: Sampler
     mended: Sampler
 
-    def judged(self, mended: bool = False) -> CheckResult:
-        """The judgement of the fault, or of what it became."""
+    def checked(self, mended: bool = False) -> CheckResult:
+        """The result of the fault, or of what it became."""
         return check(self.mended if mended else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
 
 

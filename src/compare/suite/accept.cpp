@@ -1,5 +1,5 @@
-// The new folder of the baseline is written beside the old one and exchanged with it (base/files.h). Files of views that
-// are not accepted are linked into it.
+// The new folder of the baseline is written beside the old one and exchanged with it (base/files.h). Files of views
+// that are not accepted are linked into it.
 #include "compare/suite/accept.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 #include "math/hypotheses.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -69,8 +69,8 @@ std::vector<Accepted> renders_of(const Suite& suite, const SuiteView& view, cons
         for (std::size_t j = 0; j < i; ++j)
             if (out[i].name == out[j].name)
                 throw InputError({out[i].from, 0, 0},
-                    fmt::format("expected a name of its own in the baseline, found that of {}: {}", out[j].from,
-                        out[i].name));
+                    fmt::format(
+                        "expected a name of its own in the baseline, found that of {}: {}", out[j].from, out[i].name));
     return out;
 }
 
@@ -80,7 +80,8 @@ std::string moments_name(const Suite& suite, const SuiteView& view, const std::s
         if (const auto path = path_from(pattern, view.name, {"moments"}); path && path->ends_with(".exr"))
             return relative_to(*path, folder);
     throw InputError({suite.file, 0, 0},
-        fmt::format("store = \"moments\": expected a pattern of the baseline with one * that ends with .exr, found '{}'",
+        fmt::format(
+            "store = \"moments\": expected a pattern of the baseline with one * that ends with .exr, found '{}'",
             fmt::join(suite.options.baseline, "', '")));
 }
 
@@ -145,8 +146,7 @@ std::vector<const SuiteView*> wanted_views(const Suite& suite, const std::vector
     }
     for (const std::string& name : names)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw InputError({"--accept " + name, 0, 0},
-                "no candidate of this view: " + expected_one_of(known, name));
+            throw InputError({"--accept " + name, 0, 0}, "no candidate of this view: " + expected_one_of(known, name));
     return out;
 }
 
@@ -174,7 +174,8 @@ std::string baseline_folder(const Suite& suite) {
     for (const std::string& other : suite.options.baseline)
         if (folder != "." && !other.starts_with(folder + "/"))
             throw InputError({suite.file, 0, 0},
-                fmt::format("--accept: expected patterns of the baseline in one folder, found {} and '{}'", folder, other));
+                fmt::format(
+                    "--accept: expected patterns of the baseline in one folder, found {} and '{}'", folder, other));
     return folder;
 }
 
@@ -219,4 +220,4 @@ std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acce
     return lines;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

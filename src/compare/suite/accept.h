@@ -6,11 +6,11 @@
 
 #include "compare/suite/suite.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 struct Acceptance {
-    std::vector<std::string> views;           // names; empty: all that have a candidate
-    std::string because, date, program;       // for the manifest
+    std::vector<std::string> views;      // names; empty: all that have a candidate
+    std::string because, date, program;  // for the manifest
 };
 
 /// Replaces the baseline's files of these views, stored as the suite states, and writes baseline.json beside them: the
@@ -21,4 +21,4 @@ std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acce
 /// The folder that holds the baseline: what precedes the first wildcard of its first pattern.
 std::string baseline_folder(const Suite& suite);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

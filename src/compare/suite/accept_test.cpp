@@ -19,7 +19,7 @@
 #include "compare/synthetic.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::HasSubstr;
@@ -53,7 +53,8 @@ protected:
         file.writePixels(side);
     }
     void renders(const std::string& stem, const SyntheticNoise& of, std::uint32_t seed, int count = 6) {
-        for (int k = 0; k < count; ++k) render(stem + std::to_string(k) + ".exr", of, seed + static_cast<std::uint32_t>(k));
+        for (int k = 0; k < count; ++k)
+            render(stem + std::to_string(k) + ".exr", of, seed + static_cast<std::uint32_t>(k));
     }
     Suite suite(const std::string& more = "") {
         write("s.toml",
@@ -82,8 +83,9 @@ TEST_F(Accepting, TheCandidateBecomesTheBaseline) {
     write("base/README", "mine");
     const std::string candidate = contents_of(path("out/a-1.exr"));
     accept({"a"});
-    EXPECT_THAT(baseline(), UnorderedElementsAre("a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "README", "baseline.json",
-                                ".crescent-baseline"));
+    EXPECT_THAT(baseline(),
+        UnorderedElementsAre(
+            "a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "README", "baseline.json", ".crescent-baseline"));
     EXPECT_EQ(contents_of(path("base/a-1.exr")), candidate);
     EXPECT_EQ(contents_of(path("base/README")), "mine");
     const auto entry = manifest()["views"]["a"];
@@ -92,8 +94,9 @@ TEST_F(Accepting, TheCandidateBecomesTheBaseline) {
     EXPECT_EQ(entry["files"].size(), 2u);
     EXPECT_NEAR(entry["statistics"]["regions"]["frame"]["mean_y"].get<double>(), 1.05, 0.01);
     accept({});  // the rest too; a second time nothing of the first is kept aside
-    EXPECT_THAT(baseline(), UnorderedElementsAre("a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "README", "baseline.json",
-                                ".crescent-baseline"));
+    EXPECT_THAT(baseline(),
+        UnorderedElementsAre(
+            "a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "README", "baseline.json", ".crescent-baseline"));
     EXPECT_EQ(manifest()["views"].size(), 2u);
     for (const ViewResult& view : compare().views) EXPECT_EQ(view.state, ViewState::same) << view.sentence;
 }
@@ -122,8 +125,8 @@ TEST_F(Accepting, MomentsLeadToTheNumbersOfTheirRenders) {
     const SuiteResult before = compare(region);
     fs::rename(path("out"), path("candidate")), fs::rename(path("base"), path("out"));
     accept({}, "store = \"moments\"\n" + region);
-    EXPECT_THAT(
-        baseline(), UnorderedElementsAre("same-moments.exr", "other-moments.exr", "baseline.json", ".crescent-baseline"));
+    EXPECT_THAT(baseline(),
+        UnorderedElementsAre("same-moments.exr", "other-moments.exr", "baseline.json", ".crescent-baseline"));
     EXPECT_LT(static_cast<double>(fs::file_size(path("base/same-moments.exr"))),
         2.1 * static_cast<double>(fs::file_size(path("out/same-0.exr"))));
     fs::remove_all(path("out")), fs::rename(path("candidate"), path("out"));
@@ -176,4 +179,4 @@ TEST_F(Accepting, ThePlanStatesRendersThatAreEnough) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -5,7 +5,7 @@
 #include "compare/suite/suite.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -78,8 +78,8 @@ std::string power_sentence(const BiasResult& means) {
 }
 
 std::string too_few_sentence(const ViewResult& view) {
-    std::string out = fmt::format("Too few renders ({} and {}): {}.", view.baseline_renders, view.candidate_renders,
-        view.too_few);
+    std::string out =
+        fmt::format("Too few renders ({} and {}): {}.", view.baseline_renders, view.candidate_renders, view.too_few);
     if (view.renders_needed) out += fmt::format(" {} renders of each side would do.", *view.renders_needed);
     return out;
 }
@@ -89,8 +89,9 @@ std::string exact_sentence(const ViewResult& view) {
     if (means.identical) return "Deterministic: all renders of both sides have the same pixels.";
     if (!means.single) return "Deterministic, and its pixels changed.";
     const SingleDifference& s = *means.single;
-    return fmt::format("Deterministic, and {} of {} pixels changed; the largest difference of a channel is {} at "
-                       "({}, {}).",
+    return fmt::format(
+        "Deterministic, and {} of {} pixels changed; the largest difference of a channel is {} at "
+        "({}, {}).",
         s.different, s.pixels, figures(s.largest, 3), s.at.x0, s.at.y0);
 }
 
@@ -150,11 +151,11 @@ void decide(const Suite& suite, SuiteResult& result) {
             view.sentence = fmt::format("New: there is no baseline yet; --accept {} makes these {} the baseline.",
                 view.name, plural(view.candidate_renders, "render"));
         else if (view.state == ViewState::missing)
-            view.sentence =
-                fmt::format("Missing: the baseline has {}, the candidate none.", plural(view.baseline_renders, "render"));
+            view.sentence = fmt::format(
+                "Missing: the baseline has {}, the candidate none.", plural(view.baseline_renders, "render"));
         else decide_compared(suite, view);
     }
     result.sentence = suite_sentence(suite, result);
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -14,7 +14,7 @@
 #include "compare/suite/suite.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -54,15 +54,16 @@ public:
             else copies.emplace_back(path, before->second);
         }
         if (!copies.empty() && out.size() > 1)
-            notes.push_back(fmt::format("{} of the {} renders of the {} {} the same pixels as another and {} left out: "
-                                        "{} is a copy of {}{}",
-                copies.size(), paths.size(), side, copies.size() == 1 ? "has" : "have",
-                copies.size() == 1 ? "is" : "are", copies[0].first, copies[0].second,
-                copies.size() > 1 ? ", and others" : ""));
+            notes.push_back(
+                fmt::format("{} of the {} renders of the {} {} the same pixels as another and {} left out: "
+                            "{} is a copy of {}{}",
+                    copies.size(), paths.size(), side, copies.size() == 1 ? "has" : "have",
+                    copies.size() == 1 ? "is" : "are", copies[0].first, copies[0].second,
+                    copies.size() > 1 ? ", and others" : ""));
         return out;
     }
-    /// Gives each render that is kept twice from memory, as often as the tests read it, unless they compare pairs; later
-    /// from its file.
+    /// Gives each render that is kept twice from memory, as often as the tests read it, unless they compare pairs;
+    /// later from its file.
     RenderSource reader() {
         RenderSource out = source_;
         out.expand = [](const std::vector<std::string>& paths, const SourceLocation&) { return paths; };
@@ -182,14 +183,12 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
     }
     const double seen = detectable(test.welch, level), stated = test.smallest * power.mean;
     if (stated > seen * (1 + 1e-9))
-        power.missed = stated *
-            static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
+        power.missed = stated * static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
     return renders_needed(power, smallest, level);
 }
 
 /// Why equality of the means cannot be stated, and the renders that would do.
-void state_power(
-    const RenderStats& all, const CompareResult& measured, double level, ViewResult& out) {
+void state_power(const RenderStats& all, const CompareResult& measured, double level, ViewResult& out) {
     const BiasResult& means = *out.means;
     bool known = true;
     std::size_t needed = 0;
@@ -199,10 +198,9 @@ void state_power(
         for (const MeanTest& c : t.channels)
             if (why.empty() && !c.why.empty()) why = fmt::format("{}: {}", c.region, c.why);
         if (why.empty() && !(t.smallest <= out.smallest))
-            why = std::isfinite(t.smallest)
-                ? fmt::format("a difference of {} of mean Y would be found, {} is required", percent(t.smallest, 2),
-                      percent(out.smallest, 2))
-                : "no difference of mean Y would be found";
+            why = std::isfinite(t.smallest) ? fmt::format("a difference of {} of mean Y would be found, {} is required",
+                                                  percent(t.smallest, 2), percent(out.smallest, 2))
+                                            : "no difference of mean Y would be found";
         if (why.empty()) continue;
         if (out.too_few.empty()) out.too_few = fmt::format("in {} {}", t.region, why);
         const double of_region = level / 2 / static_cast<double>(means.regions.size()) * level_share(0, all.quantities);
@@ -210,8 +208,9 @@ void state_power(
         known &= n.has_value(), needed = std::max(needed, n.value_or(0));
     }
     if (means.non_finite.undecided && out.too_few.empty())
-        out.too_few = fmt::format("{} pixels are not finite in half of the renders of one side or more and in none of "
-                                  "the other",
+        out.too_few = fmt::format(
+            "{} pixels are not finite in half of the renders of one side or more and in none of "
+            "the other",
             means.non_finite.undecided),
         known = false;
     if (!out.too_few.empty() && known) out.renders_needed = needed;
@@ -256,8 +255,9 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         return out;
     }
     if (moments)
-        out.notes.push_back("The baseline is stored as moments: whether it shares random numbers or renders with the "
-                            "candidate is not tested.");
+        out.notes.push_back(
+            "The baseline is stored as moments: whether it shares random numbers or renders with the "
+            "candidate is not tested.");
     const bool constant_baseline = moments ? moments->constant : is_constant(view.baseline, baseline),
                constant_candidate = is_constant(view.candidate, candidate);
     out.exact = out.baseline_renders == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
@@ -269,7 +269,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     for (std::size_t a = 0; a < all.arms.size(); ++a) measured.arms.push_back(measure_arm(plan, all, a, quiet));
     const double alpha = suite.options.alpha * share_of_means;
     const BiasLevel level{alpha / static_cast<double>(compared), alpha};
-    out.means = judge_bias(plan, all, measured, 1, 0, level, quiet);
+    out.means = test_bias(plan, all, measured, 1, 0, level, quiet);
     out.mean_p = out.means->p;
     out.width = all.width, out.height = all.height, out.outline = outline_of(all);
     out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
@@ -279,8 +279,9 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         if (!out.means->identical) state_power(all, measured, level.each, out);
         const auto side = constant_baseline ? "baseline" : "candidate";
         if (constant_baseline || constant_candidate)
-            out.too_few = fmt::format("all {} renders of the {} have the same pixels, those of the other side do not: "
-                                      "give each render its own seed",
+            out.too_few = fmt::format(
+                "all {} renders of the {} have the same pixels, those of the other side do not: "
+                "give each render its own seed",
                 constant_baseline ? view.baseline.size() : view.candidate.size(), side),
             out.renders_needed = 3;
     }
@@ -307,4 +308,4 @@ SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const Re
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

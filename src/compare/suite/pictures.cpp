@@ -1,5 +1,5 @@
-// Means over renders as photographs; the difference of the means over their mean brightness, blue where the candidate is
-// darker and orange where it is brighter. All pictures of a report together take 36 MB at most.
+// Means over renders as photographs; the difference of the means over their mean brightness, blue where the candidate
+// is darker and orange where it is brighter. All pictures of a report together take 36 MB at most.
 #include "compare/suite/pictures.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include "math/statistics.h"
 #include "report/plates/raster.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -43,11 +43,13 @@ std::vector<double> relative_differences(const RenderStats& all, const BiasResul
     std::vector<double> difference(cells), brightness(cells), count(cells);
     for (int y = 0; y < all.height; ++y)
         for (int x = 0; x < all.width; ++x) {
-            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
+            const auto i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
             if (all.bad[i]) continue;
             const int cx = static_cast<int>(static_cast<std::int64_t>(x) * width / all.width),
                       cy = static_cast<int>(static_cast<std::int64_t>(all.height - 1 - y) * height / all.height);
-            const auto c = static_cast<std::size_t>(cy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(cx);
+            const auto c =
+                static_cast<std::size_t>(cy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(cx);
             difference[c] += a.mean[i] - b.mean[i];
             brightness[c] += (std::fabs(a.mean[i]) + std::fabs(b.mean[i])) / 2;
             count[c] += 1;
@@ -65,7 +67,8 @@ plates::Block difference_block(const std::vector<double>& values, int width, int
     plates::Block out(width, height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const double v = values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+            const double v =
+                values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
             out.set(x, y, plates::diverging(v / scale, Theme::dark));
         }
     return out;
@@ -129,4 +132,4 @@ void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasRe
     });
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

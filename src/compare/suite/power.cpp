@@ -7,7 +7,7 @@
 
 #include "math/hypotheses.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -35,4 +35,4 @@ std::optional<std::size_t> renders_needed(const RegionPower& power, double small
     return high;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

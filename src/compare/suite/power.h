@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// What is known of the mean of a region before more renders are made.
 struct RegionPower {
@@ -21,4 +21,4 @@ double detectable_with(const RegionPower& power, std::size_t renders, double lev
 /// 100 000.
 std::optional<std::size_t> renders_needed(const RegionPower& power, double smallest, double level);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

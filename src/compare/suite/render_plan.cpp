@@ -11,7 +11,7 @@
 #include "math/hypotheses.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& pl
     return text(out);
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -8,7 +8,7 @@
 
 #include "compare/suite/suite.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Samples of a render over those of a render of the baseline, for which the plan states renders.
 inline constexpr std::array<double, 3> plan_samples = {0.25, 1, 4};
@@ -27,4 +27,4 @@ std::vector<ViewPlan> plan_renders(const Suite& suite, ProgressMonitor& monitor)
 std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& plans);
 std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -12,7 +12,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Share of a view's level for the tests of equal means and of finite values; the rest is for the variances.
 inline constexpr double share_of_means = 0.75;
@@ -137,4 +137,4 @@ void decide(const Suite& suite, SuiteResult& result);
 /// Measures and decides every view, one view in memory at a time. Throws one InputError with the mistakes of all views.
 SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source = {});
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -10,7 +10,7 @@
 #include "experiment/parser.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -58,8 +58,8 @@ Section view_table() {
 }
 
 const Section& suite_schema() {
-    static const Section root = {"", Multiplicity::one, required, "Golden images of several views.", {}, {},
-        {suite_table(), view_table()}};
+    static const Section root = {
+        "", Multiplicity::one, required, "Golden images of several views.", {}, {}, {suite_table(), view_table()}};
     return root;
 }
 
@@ -192,7 +192,8 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     if (!flags.baseline.empty()) o.baseline = patterns_in(flags.baseline, "--baseline");
     if (!flags.candidate.empty()) o.candidate = patterns_in(flags.candidate, "--candidate");
     if (o.baseline.empty()) throw InputError(baseline_at, "expected suite.baseline, or --baseline DIR");
-    if (o.candidate.empty() && !flags.baseline_only) throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
+    if (o.candidate.empty() && !flags.baseline_only)
+        throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
     find_renders(suite, baseline_at, candidate_at, flags.baseline_only);
     return suite;
 }
@@ -296,4 +297,4 @@ std::optional<std::string> path_from(
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

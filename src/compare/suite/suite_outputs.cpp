@@ -9,7 +9,7 @@
 #include "output/format.h"
 #include "output/junit.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -41,8 +41,8 @@ Json places_json(const std::vector<Found>& found) {
 }
 
 Json view_json(const ViewResult& view) {
-    Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"sentence", view.sentence},
-        {"width", view.width}, {"height", view.height},
+    Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"sentence", view.sentence}, {"width", view.width},
+        {"height", view.height},
         {"renders", {{"baseline", view.baseline_renders}, {"candidate", view.candidate_renders}}},
         {"smallest", number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
         {"p", {{"means", p_json(view.mean_p)}, {"variances", p_json(view.variance_p)}}}, {"level", number(view.level)},
@@ -120,8 +120,8 @@ std::string suite_json(const Suite& suite, const SuiteResult& result, bool stric
 std::string suite_junit(const Suite& suite, const SuiteResult& result, bool strict) {
     JunitSuite out{suite.options.title, {{"alpha", shortest(suite.options.alpha)}}, {}};
     for (const ViewResult& view : result.views)
-        out.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name,
-            junit_state(view, strict), fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
+        out.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name, junit_state(view, strict),
+            fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
     return junit_text(out);
 }
 
@@ -163,4 +163,4 @@ std::string suite_summary(const Suite& suite, const SuiteResult& result) {
     return out + "\n" + result.sentence + "\n";
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

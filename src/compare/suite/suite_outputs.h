@@ -4,7 +4,7 @@
 #include "compare/suite/suite.h"
 #include "report/report.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// docs/suite.schema.json has its keys; equal inputs give equal bytes.
 std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& provenance);
@@ -19,4 +19,4 @@ std::string suite_html(const Suite& suite, const SuiteResult& result, const Prov
 /// Views in the order of their states, changed first, then by name.
 std::vector<const ViewResult*> by_state(const SuiteResult& result);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

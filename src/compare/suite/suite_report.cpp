@@ -7,7 +7,7 @@
 #include "output/format.h"
 #include "output/html.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -99,8 +99,9 @@ const char* class_of(ViewState state) {
 }
 
 std::string filter_bar(const SuiteResult& result) {
-    std::string out = "<div class=\"filter\"><input type=\"search\" placeholder=\"name of a view\" "
-                      "aria-label=\"Filter by name\" />";
+    std::string out =
+        "<div class=\"filter\"><input type=\"search\" placeholder=\"name of a view\" "
+        "aria-label=\"Filter by name\" />";
     for (std::size_t k = 0; k < view_state_names.size(); ++k)
         if (const std::size_t n = result.count(static_cast<ViewState>(k)))
             out += fmt::format("<label><input type=\"checkbox\" checked=\"checked\" value=\"{0}\" /> {0} ({1})</label>",
@@ -131,8 +132,7 @@ std::string pictures(const ViewResult& view) {
     if (p.difference.empty()) {
         const bool added = p.baseline.empty();
         return fmt::format("<div class=\"pictures\"><figure>{}<figcaption>{}</figcaption></figure></div>\n",
-            picture({}, p, added ? "candidate" : "baseline"),
-            added ? "candidate, one render" : "baseline, one render");
+            picture({}, p, added ? "candidate" : "baseline"), added ? "candidate, one render" : "baseline, one render");
     }
     return fmt::format(
         "<div class=\"pictures\"><figure><div class=\"wipe\">{}{}<input type=\"range\" min=\"0\" max=\"100\" "
@@ -140,9 +140,9 @@ std::string pictures(const ViewResult& view) {
         "class=\"sides\"><span>baseline, mean of {}</span><span>candidate, mean of {}</span></figcaption></figure>\n"
         "<figure><div class=\"difference\">{}{}</div><figcaption>Difference of the means: orange, the candidate is "
         "brighter, blue, darker; full colour at {}.</figcaption></figure></div>\n",
-        picture(p.baseline, p, "baseline"), picture({}, p, "candidate"),
-        plural(view.baseline_renders, "render"), plural(view.candidate_renders, "render"),
-        picture(p.difference, p, "difference map"), frames(view), html::number(percent(p.scale, 2)));
+        picture(p.baseline, p, "baseline"), picture({}, p, "candidate"), plural(view.baseline_renders, "render"),
+        plural(view.candidate_renders, "render"), picture(p.difference, p, "difference map"), frames(view),
+        html::number(percent(p.scale, 2)));
 }
 
 std::string relative(double candidate, double baseline) {
@@ -198,4 +198,4 @@ std::string suite_html(const Suite& suite, const SuiteResult& result, const Prov
     return page_html(frame, {{"views", "Views", grid + "</div>\n"}});
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

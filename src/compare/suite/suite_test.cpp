@@ -14,7 +14,7 @@
 #include "math/hypotheses.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::ElementsAre;
@@ -26,14 +26,15 @@ constexpr int side = 32;
 /// A suite whose renders are in memory: "VIEW/baseline/K" and "VIEW/candidate/K".
 class MemorySuite {
 public:
-    void put(const std::string& view, const std::string& which, int k, const SyntheticNoise& noise, std::uint32_t seed) {
+    void put(
+        const std::string& view, const std::string& which, int k, const SyntheticNoise& noise, std::uint32_t seed) {
         const std::string path = view + "/" + which + "/" + std::to_string(k);
         Render render(path, side, side);
         for (std::uint32_t i = 0; i < render.size(); ++i)
             render.r[i] = render.g[i] = render.b[i] = static_cast<float>(made_pixel(noise, seed, i, side));
         renders[path] = std::move(render);
-        auto found = std::find_if(
-            suite.views.begin(), suite.views.end(), [&](const SuiteView& v) { return v.name == view; });
+        auto found =
+            std::find_if(suite.views.begin(), suite.views.end(), [&](const SuiteView& v) { return v.name == view; });
         if (found == suite.views.end()) suite.views.emplace_back().name = view, found = suite.views.end() - 1;
         (which == "baseline" ? found->baseline : found->candidate).push_back(path);
     }
@@ -144,7 +145,8 @@ TEST(Suites, CopiesWithinASideAreLeftOut) {
 TEST(Suites, EqualSeedsOnOneSideAreFound) {
     MemorySuite s;
     for (int k = 0; k < 6; ++k)
-        s.put("view", "baseline", k, noise, 2100 + static_cast<std::uint32_t>(k)), s.put("view", "candidate", k, noise, 5);
+        s.put("view", "baseline", k, noise, 2100 + static_cast<std::uint32_t>(k)),
+            s.put("view", "candidate", k, noise, 5);
     const ViewResult& view = s.compare().views[0];
     EXPECT_EQ(view.state, ViewState::too_few);
     EXPECT_THAT(view.sentence, HasSubstr("give each render its own seed"));
@@ -226,7 +228,8 @@ TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
     const std::string root = path("");
     for (const char* name : {"b-v-1.exr", "c-v-1.exr", "c-w-1.exr"}) std::ofstream(root + name) << "x";
     const auto read = [&](const std::string& more) {
-        std::ofstream(root + "s.toml") << "[suite]\nbaseline = \"b-{view}-*.exr\"\ncandidate = \"c-{view}-*.exr\"\n" << more;
+        std::ofstream(root + "s.toml") << "[suite]\nbaseline = \"b-{view}-*.exr\"\ncandidate = \"c-{view}-*.exr\"\n"
+                                       << more;
         return read_suite(root + "s.toml", {});
     };
     const Suite good = read("smallest = \"2 %\"\n[view.v]\nsmallest = \"0.5 %\"\nregions.lamp = [1, 2, 3, 4]\n");
@@ -258,4 +261,4 @@ TEST(Hypotheses, SimesPIsTheLevelOfTheFirstDiscovery) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

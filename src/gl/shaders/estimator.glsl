@@ -9,7 +9,7 @@
 // Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no
 // more than three times 16 roundings (relative error < 3e-6, a tenth of that as a rule); the
 // program adds draws up in double.
-#include "site.glsl"
+#include "shading_point.glsl"
 #include "disk_hit.glsl"
 #include "random.glsl"
 

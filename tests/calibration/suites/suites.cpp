@@ -43,8 +43,7 @@ std::vector<ViewKind> view_kinds() {
         {"Pareto, index 1.5 (heavy-tailed), grey", {Kind::pareto, 1.5}},
         {"bright events in 1 of 1000 pixels, grey", {Kind::events, 1e-3}},
         {"hits of 16 samples, 5 %, colour", {Kind::hits, 0.05}, 0.5},
-        {"1 of 500 values is NaN, gamma 20 %, grey", failing},
-        {"deterministic", {Kind::gamma, 0.2}, 0, true}};
+        {"1 of 500 values is NaN, gamma 20 %, grey", failing}, {"deterministic", {Kind::gamma, 0.2}, 0, true}};
 }
 
 std::uint32_t seed_for(std::uint32_t seed, std::uint32_t suite, std::uint32_t view, std::uint32_t render) {
@@ -106,7 +105,8 @@ struct Counts {
     }
 };
 
-void print_false_alarms(const std::vector<ViewKind>& kinds, std::uint32_t suites, std::uint32_t views, std::uint32_t seed) {
+void print_false_alarms(
+    const std::vector<ViewKind>& kinds, std::uint32_t suites, std::uint32_t views, std::uint32_t seed) {
     std::vector<SuiteResult> results(suites);
     parallel_for(std::uint32_t{0}, suites, [&](std::uint32_t s) {
         SyntheticViews made(seed, s);
@@ -125,23 +125,27 @@ void print_false_alarms(const std::vector<ViewKind>& kinds, std::uint32_t suites
     }
     fmt::print(
         "### False alarms of suites\n\n{} suites of {} unchanged views, {} x {} pixels, {} renders of each side unless "
-        "stated; alpha = {}.\n\n| of the suites | |\n|---|---|\n| some view is changed, noisier or improved | {} |\n| exit "
+        "stated; alpha = {}.\n\n| of the suites | |\n|---|---|\n| some view is changed, noisier or improved | {} |\n| "
+        "exit "
         "code 1: changed or noisier | {} |\n| some view is improved | {} |\n\n",
         suites, views, side, side, renders, alpha, rate_text(alarms, suites), rate_text(failing, suites),
         rate_text(improved, suites));
-    fmt::print("| kind of view | views | changed | noisier | improved | too few renders | same |\n|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "| kind of view | views | changed | noisier | improved | too few renders | same "
+        "|\n|---|---|---|---|---|---|---|\n");
     for (std::size_t k = 0; k < kinds.size(); ++k)
         fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n", kinds[k].name, counts[k].total(),
             counts[k].of(ViewState::changed), counts[k].of(ViewState::noisier), counts[k].of(ViewState::improved),
             counts[k].of(ViewState::too_few), counts[k].of(ViewState::same));
 }
 
-/// A view among `views`, brighter by what it states as found with 90 %; level alpha / views, as Holm's method has it for
-/// the first.
+/// A view among `views`, brighter by what it states as found with 90 %; level alpha / views, as Holm's method has it
+/// for the first.
 void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std::uint32_t views, std::uint32_t seed) {
-    fmt::print("\n### Power of suites\n\nOne view of {}, brighter by a multiple of the difference that the unchanged view "
-               "states (found with a probability of 90 %); {} repeats.\n\n| kind of view | difference stated, mean | found "
-               "at that size | at half of it |\n|---|---|---|---|\n",
+    fmt::print(
+        "\n### Power of suites\n\nOne view of {}, brighter by a multiple of the difference that the unchanged view "
+        "states (found with a probability of 90 %); {} repeats.\n\n| kind of view | difference stated, mean | found "
+        "at that size | at half of it |\n|---|---|---|---|\n",
         views, repeats);
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const ViewKind& kind = kinds[k];
@@ -159,7 +163,8 @@ void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std:
             stated[r] = frame.why.empty() ? frame.smallest : std::nan("");
             if (std::isnan(stated[r])) return;
             for (std::uint32_t half = 0; half < 2; ++half)
-                found[half][r] = measured(half + 1, half ? stated[r] / 2 : stated[r]).mean_p / share_of_means <= alpha / views;
+                found[half][r] =
+                    measured(half + 1, half ? stated[r] / 2 : stated[r]).mean_p / share_of_means <= alpha / views;
         });
         std::uint64_t of = 0, whole = 0, halved = 0;
         double sum = 0;

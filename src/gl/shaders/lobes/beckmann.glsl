@@ -1,6 +1,6 @@
 // beckmann, as src/lobes/beckmann.h: D G1 G1 / (4 cos cos), separable G.
 // Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": (25), 1/sr, (26), (20).
-#include "site.glsl"
+#include "shading_point.glsl"
 
 float exp_of_minus(float x) {  // x >= 0
     float y = -1.4426950408889634 * x;

@@ -1,6 +1,6 @@
 // blinn-phong, as src/lobes/blinn_phong.h: (s+2)(s+4)/(8 pi (2^(-s/2) + s)) (n.h)^s.
 // Giesen 2009, "Phong and Blinn-Phong normalization factors".
-#include "site.glsl"
+#include "shading_point.glsl"
 
 float lobe_blinn_phong(vec3 wo, vec3 wi) {
     float s = site.s;

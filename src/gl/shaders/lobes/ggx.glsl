@@ -1,6 +1,6 @@
 // ggx, as src/lobes/ggx.h: D G1 G1 / (4 cos cos), separable G.
 // Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": (33), 1/sr.
-#include "site.glsl"
+#include "shading_point.glsl"
 
 float ggx_D(vec3 m, float alpha) {
     float t = dot(m.xy, m.xy) + sqr(alpha) * sqr(m.z);

@@ -26,8 +26,8 @@ using nlohmann::ordered_json;
 
 /// The request in room(), and the answer.
 ordered_json request();
-void say(std::string text);
-void say(const ordered_json& answer);
+void respond(std::string text);
+void respond(const ordered_json& answer);
 
 /// Bytes for the page, kept until the next call.
 template <class T> std::vector<T>& scratch() {
@@ -35,7 +35,7 @@ template <class T> std::vector<T>& scratch() {
     return all;
 }
 
-/// A rung that is being filled in, tile by tile.
+/// A sample count that is being filled in, tile by tile.
 struct Slot {
     RunKey key;
     Film film;
@@ -47,11 +47,11 @@ struct Bench {
     Scene scene;
     ShapeMap shapes;
     std::vector<Slot> slots;
-    /// What primary rays met, by box, for the arms and rungs that follow; and of the last box that there was no room
-    /// for.
-    std::map<std::array<int, 4>, std::vector<ShadingPoints>> sites;
-    std::size_t sites_kept = 0;
-    std::array<int, 4> sites_last{};
+    /// What primary rays met, by box, for the arms and sample counts that follow; and of the last box that there was no
+    /// room for.
+    std::map<std::array<int, 4>, std::vector<ShadingPoints>> shading_points;
+    std::size_t points_kept = 0;
+    std::array<int, 4> points_last{};
     std::vector<ShadingPoints> last;
     ReferenceFilm reference;
     std::unique_ptr<PixelQuadrature> quadrature;
@@ -65,7 +65,7 @@ Bench& bench();
 Slot& slot(int index);
 
 /// NaN and infinities have no JSON: they are told by name, as in metrics.json.
-ordered_json told(double x);
+ordered_json json_number(double x);
 /// The arm `name` of the experiment; throws InputError where there is none.
 const ArmPlan& arm_of(const std::string& name);
 

@@ -1,4 +1,4 @@
-// One instance of the WebAssembly module, as apps/web/door.h describes it. Everything that is computed is computed there.
+// One instance of the WebAssembly module, as apps/web/api.h describes it. Everything that is computed is computed there.
 
 /** What the core said instead of an answer: "input" is the reader's mistake, "memory" and "bug" are not. */
 export class DoorError extends Error {

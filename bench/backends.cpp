@@ -28,7 +28,7 @@ struct Figures {
     double cpu = 0, gl = 0;  // Msamples/s
 };
 
-Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampler, std::uint64_t n, double samples) {
+Figures measure_arm(const Scene& scene, Backend& gl, const std::string& sampler, std::uint64_t n, double samples) {
     ProgressMonitor monitor;
     const Job job{sampler, sampler, {n}, scene.s(), 1};
     gl.films(scene, {sampler, sampler, {1}, job.s, 1}, monitor);  // compiles
@@ -47,7 +47,7 @@ std::string processor() {
     return "unknown processor";
 }
 
-void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<Instrument>& gl, double peak) {
+void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<Backend>& gl, double peak) {
     Scene scene(experiment);
     scene.remember_primaries();
     std::uint64_t pixels = 0, glossy = 0;
@@ -80,7 +80,7 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
 int main(int argc, char** argv) try {
     if (argc < 3 || argc > 6)
         throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
-    const auto kind = find_instrument("gl");
+    const auto kind = find_backend("gl");
     if (!kind) throw OutputError("this build has no GL instrument");
     Experiment experiment = load(argv[1]);
     for (Shape& shape : experiment.shapes)

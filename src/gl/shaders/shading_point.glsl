@@ -2,7 +2,7 @@
 // it to an arm. Directions in the local frame unless they are said to be the world's; lengths in m, radiance in
 // W/(sr m^2).
 //
-// `sites` has one texel a pixel and these layers, written by gl/site_texture.cpp:
+// `sites` has one texel a pixel and these layers, written by gl/point_texture.cpp:
 //   0  wo, s                  3  the frame's t (world), fill_d     6 + 2k  disk k: from the surface to its centre, d
 //   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
 //      rho_s, -               5  its n, lobe + 1 (-1: no surface)
