@@ -1,4 +1,4 @@
-"""The command `crescent` of the wheel: `crescent check`, samplers judged by themselves.
+"""The command `crescent` of the wheel: `crescent check`, samplers checked by themselves.
 
     crescent check                        every built-in arm
     crescent check phong --set s=32       one of them
@@ -15,7 +15,7 @@ import argparse
 import sys
 
 from . import CheckResult, __version__, _crescent, commit
-from ._check import _grid, _judge, _trials
+from ._check import _grid, _run_checks, _cases
 from ._files import names_a_file, sampler_at
 
 EXIT = {"right": 0, "wrong": 1, "error": 3, "inconclusive": 4}
@@ -50,8 +50,8 @@ def _one_subject(args: argparse.Namespace, own: bool) -> None:
         raise ValueError(f"--set is of a built-in arm: {given[0]} has its parameters in itself")
 
 
-def _trials_of(args: argparse.Namespace) -> tuple[_crescent.CheckCases, bool]:
-    """The trials, and whether they are of the whole list of arms."""
+def _cases_of(args: argparse.Namespace) -> tuple[_crescent.CheckCases, bool]:
+    """The cases, and whether they are of the whole list of arms."""
     at = [(word, *word.partition(",")[::2]) for word in args.wo]
     wo = [(_number(f"--wo {w}", theta), _number(f"--wo {w}", azimuth or "0")) for w, theta, azimuth in at] or None
     grid = _grid(wo)
@@ -59,12 +59,12 @@ def _trials_of(args: argparse.Namespace) -> tuple[_crescent.CheckCases, bool]:
     of_python = names_a_file(arm)
     _one_subject(args, bool(of_python or args.exec or args.plugin))
     if args.exec:
-        return _crescent.trials_of_program(args.exec, args.patience, args.full, grid), False
+        return _crescent.cases_of_program(args.exec, args.patience, args.full, grid), False
     if args.plugin:
-        return _crescent.trials_of_plugin(args.plugin, args.full, grid), False
+        return _crescent.cases_of_plugin(args.plugin, args.full, grid), False
     if of_python:
-        return _trials(sampler_at(arm), args.full, wo), False
-    return _crescent.trials_of_arm(arm, _settings(args.set), args.full, grid), not arm
+        return _cases(sampler_at(arm), args.full, wo), False
+    return _crescent.cases_of_arm(arm, _settings(args.set), args.full, grid), not arm
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -76,10 +76,10 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"crescent {__version__} ({commit})")
-    check = parser.add_subparsers(dest="command", required=True).add_parser("check", help="judge a sampler")
+    check = parser.add_subparsers(dest="command", required=True).add_parser("check", help="check a sampler")
     check.add_argument("sampler", nargs="?", help="an arm of the list, FILE.py:NAME or module:NAME")
-    check.add_argument("--exec", metavar="COMMAND", help="a program to judge")
-    check.add_argument("--plugin", metavar="FILE", help="a shared library to judge")
+    check.add_argument("--exec", metavar="COMMAND", help="a program to check")
+    check.add_argument("--plugin", metavar="FILE", help="a shared library to check")
     check.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="a parameter of an arm")
     check.add_argument("--wo", metavar="THETA[,AZIMUTH]", action="append", default=[], help="w_o, in degrees")
     check.add_argument("--alpha", type=float, default=1e-3, help="how often a right sampler may be called wrong")
@@ -92,24 +92,24 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _write(judgement: CheckResult, args: argparse.Namespace) -> None:
+def _write(result: CheckResult, args: argparse.Namespace) -> None:
     if args.json:
-        _crescent.write_whole(args.json, judgement.json())
+        _crescent.write_whole(args.json, result.json())
     if args.junit:
-        judgement.junit(args.junit)
+        result.junit(args.junit)
     if args.html:
-        judgement.html(args.html)
+        result.html(args.html)
 
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     args = _parser().parse_args(argv)
     try:
-        trials, whole_list = _trials_of(args)
+        cases, whole_list = _cases_of(args)
         command = "crescent " + " ".join(argv if argv is not None else sys.argv[1:])
-        judgement = _judge(trials, command, alpha=args.alpha, seed=args.seed, full=args.full)
-        print(judgement)
-        _write(judgement, args)
+        result = _run_checks(cases, command, alpha=args.alpha, seed=args.seed, full=args.full)
+        print(result)
+        _write(result, args)
     except KeyboardInterrupt:
         return 130
     except (ValueError, ImportError) as e:
@@ -119,8 +119,8 @@ def main(argv: list[str] | None = None) -> int:
         print(e, file=sys.stderr)
         return 3
     if whole_list:
-        return 0 if judgement.as_expected else 1
-    return EXIT[judgement.state]
+        return 0 if result.as_expected else 1
+    return EXIT[result.state]
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The command of the wheel: what it judges, and its exit codes."""
+"""The command of the wheel: what it checks, and its exit codes."""
 
 import json
 import sys
