@@ -1,4 +1,4 @@
-// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on
+// crescent_backends FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on
 // GL, in one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some
 // repetitions, CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's
 // arithmetic peak in Gflop/s as its maker states it; the last column is then the fraction of it that the samples'
@@ -79,7 +79,7 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
 
 int main(int argc, char** argv) try {
     if (argc < 3 || argc > 6)
-        throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
+        throw InputError({"crescent_backends", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
     const auto kind = find_backend("gl");
     if (!kind) throw OutputError("this build has no GL instrument");
     Experiment experiment = load(argv[1]);

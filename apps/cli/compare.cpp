@@ -167,7 +167,7 @@ int compare(const CompareFlags& flags) {
     const StopOnSignal stop(progress);
     std::string summary;
     const CompareResult result =
-        crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
+        crescent::compare_renders(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
     progress.clear();
     print(summary);
     return result.state == CompareResult::State::holds ? held

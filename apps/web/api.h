@@ -1,11 +1,11 @@
 // The C interface between crescent's core, compiled to WebAssembly, and the page. One bench an instance: the experiment
 // that was opened last.
 //
-// A call that answers in words takes its request as JSON in room(size) and leaves its answer, JSON or text, at
-// said_at(), said_size(). A call that answers in numbers leaves planes of 4 bytes a pixel at the address it returns;
-// they stand until the next call. Boxes are [x0, x1) x [y0, y1) in pixels from the bottom-left.
+// A call that answers in words takes its request as JSON in request_buffer(size) and leaves its answer, JSON or text,
+// at response_data(), response_size(). A call that answers in numbers leaves planes of 4 bytes a pixel at the address
+// it returns; they stand until the next call. Boxes are [x0, x1) x [y0, y1) in pixels from the bottom-left.
 //
-// There are no exceptions in WebAssembly as Debian's libraries have it: what throws calls `door.failed` of the page
+// There are no exceptions in WebAssembly as Debian's libraries have it: what throws calls `api.failed` of the page
 // with its kind and its message, and never returns. The page drops such an instance and makes another one.
 #pragma once
 
@@ -24,7 +24,7 @@ namespace crescent::web {
 
 using nlohmann::ordered_json;
 
-/// The request in room(), and the answer.
+/// The request in request_buffer(), and the answer.
 ordered_json request();
 void respond(std::string text);
 void respond(const ordered_json& answer);

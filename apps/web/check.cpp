@@ -1,4 +1,4 @@
-// `check` in the page: an arm of the list at one w_o, or a planted fault at the nearest of its own, judged by the same
+// `check` in the page: an arm of the list at one w_o, or a planted fault at the nearest of its own, checked by the same
 // calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence, of as many
 // evaluations.
 #include <algorithm>
@@ -52,7 +52,7 @@ CRESCENT_EXPORT(checked)()->void {
     ordered_json out = {{"name", name}, {"state", word(State::right)}, {"cases", ordered_json::array()}};
     bool wrong = false, doubt = false;
     for (const CheckCase& t : check_cases) {
-        ordered_json one = {{"surface", t.brdf}, {"trial", t.text()}, {"verdicts", ordered_json::array()}};
+        ordered_json one = {{"surface", t.brdf}, {"case", t.text()}, {"verdicts", ordered_json::array()}};
         for (const Verdict& v : result.verdicts) {
             if (t.baseline || v.check_case != t.text() || v.name == "efficiency") continue;
             one["verdicts"].push_back(verdict_fields(v));
@@ -77,7 +77,7 @@ CRESCENT_EXPORT(drawn)()->void {
     std::vector<Draw> draws(u.size());
     check_case.adapter->sample(0, check_case.wo, u, draws);
     const Disk disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z});
-    ordered_json out = {{"trial", check_case.text()}, {"draws", ordered_json::array()}};
+    ordered_json out = {{"case", check_case.text()}, {"draws", ordered_json::array()}};
     for (const Draw& d : draws)
         if (d.pdf > 0 && d.wi.z > 0) out["draws"].push_back(disk.place(d.wi));
     respond(out);

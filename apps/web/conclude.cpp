@@ -114,13 +114,13 @@ std::string state_of(const ordered_json& v) { return v.at("state").get<std::stri
 const ordered_json& case_on(const ordered_json& checked, const std::string& surface) {
     for (const auto& one : checked.at("cases"))
         if (surface.empty() || one.at("surface").get<std::string>() == surface) return one;
-    throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was judged on");
+    throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was checked on");
 }
 
 /// Whether light is out of reach.
 Found unbiased(const ordered_json& one) {
     const ordered_json& support = verdict_of(one, "support");
-    Found out{state_of(support), state_of(support), {"on " + one.at("trial").get<std::string>(), message_of(support)}};
+    Found out{state_of(support), state_of(support), {"on " + one.at("case").get<std::string>(), message_of(support)}};
     out.lines.push_back(message_of(verdict_of(one, "mean")));
     return out;
 }
@@ -191,7 +191,7 @@ Found concluded(const ordered_json& query) {
 
 }  // namespace
 
-/// {by, options, surface, of: [what measure or judged said], beside: [what else measure said]} -> {answer, kind,
+/// {by, options, surface, of: [what measure or checked said], beside: [what else measure said]} -> {answer, kind,
 /// lines}.
 CRESCENT_EXPORT(concluded)()->void {
     const Found found = concluded(request());

@@ -41,7 +41,7 @@ function marks(pen: CanvasRenderingContext2D, pixel: Opened): void {
   }
 }
 
-/** The draws: area by weight, those that met a light square, so that it is told without colour. */
+/** The draws: area by weight, those that met a light square, so that it is visible without colour. */
 function points(pen: CanvasRenderingContext2D, pixel: Opened): void {
   for (const [x, y, side, met] of pixel.draws) {
     if (met === -2) continue;

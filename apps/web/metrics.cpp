@@ -61,7 +61,7 @@ ordered_json metrics_of(const Slot& s) {
     const RunMetrics run = measure(b.experiment, s.key, s.film, b.reference, b.shapes);
     ordered_json out = {{"key", to_string(s.key)}, {"largest", json_number(run.largest)}, {"bad", run.bad}};
     for (const auto& [name, info] : metric_names(b.experiment))
-        if (!(info->from_two_samples && s.key.n < 2)) out["meters"][name] = one_metric(run, name);
+        if (!(info->from_two_samples && s.key.n < 2)) out["metrics"][name] = one_metric(run, name);
     for (const Region& region : b.experiment.regions) {
         const double error = rms(b.reference.error, b.reference.width, region.box);
         const double rmse = run.region(region.name)->rmse;
@@ -73,7 +73,7 @@ ordered_json metrics_of(const Slot& s) {
 }  // namespace
 
 /// Film `index` -> {key, metrics: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
-CRESCENT_EXPORT(meters)(int index)->void {
+CRESCENT_EXPORT(metrics)(int index)->void {
     const auto out = std::make_shared<ordered_json>();
     const auto hash = std::make_shared<FilmHash>();
     Parts parts{[=] {

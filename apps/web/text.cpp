@@ -8,7 +8,7 @@
 extern "C" {
 
 /// The page's: throws an error of its own out of the call.
-[[noreturn]] __attribute__((import_module("door"), import_name("failed"))) void api_failed(
+[[noreturn]] __attribute__((import_module("api"), import_name("failed"))) void api_failed(
     const char* kind, std::size_t kind_size, const char* text, std::size_t text_size);
 
 void* __cxa_allocate_exception(std::size_t size) { return std::malloc(size); }
@@ -43,12 +43,12 @@ ordered_json json_number(double x) {
     return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
 }
 
-CRESCENT_EXPORT(room)(std::size_t size)->char* {
+CRESCENT_EXPORT(request_buffer)(std::size_t size)->char* {
     query.assign(size, ' ');
     return query.data();
 }
-CRESCENT_EXPORT(said_at)()->const char* { return response.data(); }
-CRESCENT_EXPORT(said_size)()->std::size_t { return response.size(); }
+CRESCENT_EXPORT(response_data)()->const char* { return response.data(); }
+CRESCENT_EXPORT(response_size)()->std::size_t { return response.size(); }
 
 /// Words with formulas between dollar signs as HTML with MathML.
 CRESCENT_EXPORT(html)()->void { respond(formula::html(request().get<std::string>())); }

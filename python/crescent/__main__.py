@@ -50,7 +50,7 @@ def _one_subject(args: argparse.Namespace, own: bool) -> None:
         raise ValueError(f"--set is of a built-in arm: {given[0]} has its parameters in itself")
 
 
-def _trials_of(args: argparse.Namespace) -> tuple[_crescent.CheckCases, bool]:
+def _cases_of(args: argparse.Namespace) -> tuple[_crescent.CheckCases, bool]:
     """The cases, and whether they are of the whole list of arms."""
     at = [(word, *word.partition(",")[::2]) for word in args.wo]
     wo = [(_number(f"--wo {w}", theta), _number(f"--wo {w}", azimuth or "0")) for w, theta, azimuth in at] or None
@@ -105,7 +105,7 @@ def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     args = _parser().parse_args(argv)
     try:
-        cases, whole_list = _trials_of(args)
+        cases, whole_list = _cases_of(args)
         command = "crescent " + " ".join(argv if argv is not None else sys.argv[1:])
         result = _run_checks(cases, command, alpha=args.alpha, seed=args.seed, full=args.full)
         print(result)

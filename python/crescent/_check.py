@@ -181,7 +181,7 @@ def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
     return replace(sample, **known)
 
 
-def _trials_and_title(
+def _cases_and_title(
     sample: Any,
     pdf: Any,
     f: Any,
@@ -222,7 +222,7 @@ def describe(
     Nothing is checked, and neither pdf nor f is evaluated but to learn their shapes. `full` makes sixteen times as many
     draws.
     """
-    cases, _ = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    cases, _ = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     text, numbers = _crescent.describe(cases, seed=seed, full=full, threads=threads, progress=progress)
@@ -257,7 +257,7 @@ def check(
     sampler may be called wrong, over everything in the call. `against`: a second sampler, compared with the first.
     `progress(what, done, total)` is called some times a second.
     """
-    cases, title = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
     if isinstance(against, str):
         other = _crescent.baseline_of(against, cases)

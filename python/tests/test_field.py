@@ -1,4 +1,4 @@
-"""Faults of public projects: each is caught by the verdicts that it is said to be caught by, and mended it is right."""
+"""Faults of public projects: each is caught by the verdicts that it is said to be caught by, and fixed it is right."""
 
 import os
 from pathlib import Path
@@ -22,7 +22,7 @@ def test_there_are_thirteen_at_least_each_with_its_source():
 def test_a_fault_is_caught_and_mended_it_is_right(fault):
     broken = fault.checked().broken()
     assert set(fault.caught_by) <= set(broken), broken
-    assert fault.checked(mended=True).state == "right", str(fault.checked(mended=True))
+    assert fault.checked(fixed=True).state == "right", str(fault.checked(fixed=True))
 
 
 def test_every_bsdf_and_emitter_that_ships_is_judged_or_left_out_with_a_reason():

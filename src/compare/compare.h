@@ -8,7 +8,7 @@
 
 namespace crescent::inline comparison {
 
-// ---- RenderStats -> results: the steps that compare() takes, each usable alone.
+// ---- RenderStats -> results: the steps that compare_renders() takes, each usable alone.
 
 /// What one render of an arm cost, where it is known.
 struct Cost {

@@ -136,7 +136,7 @@ ExrFile::~ExrFile() { exr_finish(&context_); }
 
 namespace {
 
-thread_local std::string message;
+thread_local std::string last_message;
 
 /// The most that a byte of a chunk can hold. RLE: two bytes are 128. zlib: 1032 (its authors' bound); PXR24 leaves out
 /// a byte of four before it. PIZ: a run of 255 half words is no shorter than 9 bits. B44: three bytes are 32. DWA: a
@@ -169,20 +169,20 @@ struct Decoder {
 
 }  // namespace
 
-void keep_message(exr_const_context_t, exr_result_t, const char* message) { message = message ? message : ""; }
+void keep_message(exr_const_context_t, exr_result_t, const char* message) { last_message = message ? message : ""; }
 
-void forget_messages() { message.clear(); }
+void forget_messages() { last_message.clear(); }
 
 void expect_success(const OpenFile& file, exr_result_t result) {
     if (result == EXR_ERR_SUCCESS) return;
-    if (message.empty()) message = exr_get_default_error_message(result);
+    if (last_message.empty()) last_message = exr_get_default_error_message(result);
     expect_silence(file);
 }
 
 void expect_silence(const OpenFile& file) {
-    if (message.empty()) return;
-    const std::string why = std::move(message);
-    message.clear();
+    if (last_message.empty()) return;
+    const std::string why = std::move(last_message);
+    last_message.clear();
     file.fail("expected an OpenEXR file that can be read: " + why);
 }
 

@@ -99,7 +99,7 @@ namespace {
 void set_scene(const Program& program, const ShadingPoints& lights, const Bodies& bodies, const TileBox& box,
     int image_width, std::uint32_t seed) {
     program.use();
-    program.set("sites", 0);
+    program.set("shading_points", 0);
     program.set("corner", box.x0, box.y0);
     program.set("image_width", image_width);
     program.set("seed", seed);

@@ -133,7 +133,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
         [&](const RunKey& key) { return metrics.find(key.arm, key.n, key.s, key.seed); });
 }
 
-std::vector<AssertionResult> judge(
+std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
     const Measurements measurements{experiment, metrics, RunIndex(metrics.runs), plate_bytes, drawn};
     std::vector<AssertionResult> results;

@@ -120,7 +120,7 @@ void add_spreads(Measured& out) {
     metrics.bands = bands(experiment, metrics.runs, published);
     metrics.published_seed = published ? published->seed : std::nullopt;
     metrics.ladders = ladders(experiment, metrics.runs);
-    metrics.assertions = judge(experiment, metrics, {}, false);
+    metrics.assertions = evaluate_assertions(experiment, metrics, {}, false);
 }
 
 Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std::string& command) {

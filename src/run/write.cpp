@@ -71,7 +71,7 @@ void write_plates(const Measured& m, Staging& staging) {
 void check_plates(Measured& m) {
     PlateBytes bytes;
     for (const auto& [name, png] : m.plates) bytes[name] = png.size();
-    std::ranges::move(judge(m.experiment, m.metrics, bytes), m.metrics.assertions.begin());
+    std::ranges::move(evaluate_assertions(m.experiment, m.metrics, bytes), m.metrics.assertions.begin());
 }
 
 void write_reports(const Measured& m, Staging& staging, const OutputParts& parts) {

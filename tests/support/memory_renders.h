@@ -27,7 +27,7 @@ public:
     CompareResult compare(const std::vector<CompareFlag>& flags = {}) const {
         ProgressMonitor monitor;
         const ComparePlan planned = plan(flags);
-        return run_checks(planned, read_all(planned, monitor, source()), monitor);
+        return test_differences(planned, read_all(planned, monitor, source()), monitor);
     }
     std::map<std::string, Render> renders;
 

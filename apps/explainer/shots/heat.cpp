@@ -77,7 +77,7 @@ Shot heat(const Data& data) {
                 with(with(title_text, maps[k].ink), Align::centre), in);
             f.text({70 + 824.0 * double(k), r.bottom() + 12, 784, 48}, maps[k].above,
                 with(with(body_text, Vertical::middle), Align::centre), k == 0 ? f.ease(4, 4.6) : f.ease(9, 9.6));
-            mark(f, film::on_picture(r, crop, box_h), bright, f.ease(12.3, 12.8));
+            mark(f, explainer::on_picture(r, crop, box_h), bright, f.ease(12.3, 12.8));
         }
         const double scale = f.ease(2, 2.6);
         const double x = 1722, y = 250, h_bar = 512;

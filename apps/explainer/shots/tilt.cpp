@@ -13,7 +13,8 @@ namespace crescent::explainer {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double leans = 0.8, leant = 2.8, never = 3.2, above = 7.8, sweep = 12.4, swept = 15.6, shown = 16, end = 19.2;
+constexpr double leans = 0.8, leant = 2.8, never = 3.2, above = 7.8, sweep = 12.4, swept = 15.6, measured_at = 16,
+                 end = 19.2;
 constexpr double degree = pi / 180;
 constexpr Point side_centre{330, 640}, disc_centre{920, 520};
 constexpr double side_radius = 250, disc_radius = 250;
@@ -37,9 +38,9 @@ public:
     void draw(Frame& f) const {
         const double first = f.ease(leans, leant) * shown_, home = f.ease(sweep, sweep + 0.7),
                      up = f.ramp(sweep + 0.8, swept);
-        const double shown_of = f.ease(shown, shown + 0.8),
-                     last = most_ + (measures_.surround_lost.theta_R_deg - most_) * shown_of;
-        const double theta = shown_of > 0 ? last : up > 0 ? up * most_ : first * (1 - home);
+        const double share = f.ease(measured_at, measured_at + 0.8),
+                     last = most_ + (measures_.surround_lost.theta_R_deg - most_) * share;
+        const double theta = share > 0 ? last : up > 0 ? up * most_ : first * (1 - home);
         from_the_side(f, theta);
         from_above(f, theta);
         curve(f, up * most_);
@@ -116,7 +117,7 @@ private:
             if (l.theta_R_deg <= theta + 1e-9 && f.after(sweep + 0.8))
                 f.dot(axes_.at(l.theta_R_deg, 100 * l.measured), 9, alert);
         const LostSupport& here = measures_.surround_lost;
-        const double at = f.ease(shown + 0.8, shown + 1.2);
+        const double at = f.ease(measured_at + 0.8, measured_at + 1.2);
         f.line(axes_.at(here.theta_R_deg, 0), axes_.at(here.theta_R_deg, 100 * here.measured), bright, 2, at, 8);
         f.circle(axes_.at(here.theta_R_deg, 100 * here.measured), 13, bright, 3, at);
         f.dot({chart.x + 40, chart.y + 76}, 9, alert, shown);

@@ -121,8 +121,8 @@ def _faults_text(faults: list[Fault]) -> Iterator[str]:
     )
     rows = ["| fault | project | found by | corrected |", "|---|---|---|---|"]
     for fault in faults:
-        caught, mended = ", ".join(fault.checked().broken()), fault.checked(mended=True).state
-        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {mended} |")
+        caught, fixed = ", ".join(fault.checked().broken()), fault.checked(fixed=True).state
+        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {fixed} |")
         print(f"{fault.name}: {caught}", file=sys.stderr, flush=True)
     yield "\n".join(rows)
 

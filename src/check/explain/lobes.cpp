@@ -213,8 +213,7 @@ bool explains(const Shares& s) {
     const double degrees = s.cells - static_cast<double>(s.x.size());
     if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
     // What is left is within chance, or a fiftieth of what there was.
-    return statistics::chi_squared_tail(degrees, s.misfit) > fits_at ||
-        s.misfit - degrees < 0.02 * (s.before - degrees);
+    return statistics::chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
 std::string lobe_sentence(const LobeChooser& by, const Shares& s) {

@@ -245,17 +245,17 @@ std::string unseen_text(const CheckResult& result) {
     for (const Verdict& v : result.verdicts)
         for (const auto& [kind, size] : v.hidden)
             if (v.state == State::right) most[kind] = std::max(most[kind], size);
-    std::vector<std::string> message;
-    const auto message = [&](const char* kind, const char* words, double unit) {
+    std::vector<std::string> sizes;
+    const auto add = [&](const char* kind, const char* words, double unit) {
         if (const auto at = most.find(kind); at != most.end())
-            message.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
+            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
     };
-    message("constant", "a constant factor of {:.2g} %", 100);
-    message("leak", "{:.2g} % of the draws uniform", 100);
-    message("cap", "a cap with {:.2g} % of p never drawn", 100);
-    message("rotation", "a rotation by {:.2g} rad", 1);
-    message("parameter", "an exponent off by {:.2g} %", 100);
-    return message.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(message, ", "));
+    add("constant", "a constant factor of {:.2g} %", 100);
+    add("leak", "{:.2g} % of the draws uniform", 100);
+    add("cap", "a cap with {:.2g} % of p never drawn", 100);
+    add("rotation", "a rotation by {:.2g} rad", 1);
+    add("parameter", "an exponent off by {:.2g} %", 100);
+    return sizes.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(sizes, ", "));
 }
 
 std::string nothing_drawn_text(const CheckResult& result) {

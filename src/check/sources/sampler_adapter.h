@@ -62,6 +62,7 @@ struct Index : std::optional<Vec3d> {
 /// What a sampler is, apart from its answers: what it takes, what it gives, and what is known of its surface.
 struct Traits {
     enum class WoDomain { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
+    using Asked = WoDomain;
     int numbers = 2;                            // random numbers of a sample
     int channels = 1;                           // of f and of the weight, 1 or 3
     WoDomain wo = WoDomain::upper;

@@ -82,7 +82,7 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
 
 bool is_checked_as_expected(const std::string& sampler, const Grid& wo = {}) {
     ProgressMonitor monitor;
-    const CheckResult j = judge(make_cases(sampler, {}, false, wo), TestSettings::quick(), monitor);
+    const CheckResult j = run_checks(make_cases(sampler, {}, false, wo), TestSettings::quick(), monitor);
     if (!j.as_expected) std::cout << verdict_table(j);
     return j.as_expected;
 }
@@ -101,7 +101,7 @@ bool is_measured_and_drawn(const std::string& metric, const std::string& plate) 
     Metrics m;
     m.runs = {measure(e, key, film, truth, shapes)};
     m.bands = bands(e, m.runs, nullptr);
-    m.assertions = judge(e, m, {}, false);
+    m.assertions = evaluate_assertions(e, m, {}, false);
     const Picture drawn = draw_plate(
         e.plates[0], {e, m, shapes, [&](const RunKey&) { return &film; }, [&](double) { return &truth; }, "CPU"});
     const std::string json = metrics_json({e, m, {}, {}, {}}), csv = metrics_csv({e, m, {}, {}, {}});
@@ -113,7 +113,7 @@ bool is_measured_and_drawn(const std::string& metric, const std::string& plate) 
 
 bool has_every_verdict() {
     ProgressMonitor monitor;
-    const CheckResult j = judge(make_cases("cosine", {}, false, {{45, 0}}), TestSettings::quick(), monitor);
+    const CheckResult j = run_checks(make_cases("cosine", {}, false, {{45, 0}}), TestSettings::quick(), monitor);
     const std::string table = verdict_table(j), json = verdict_json(j, {});
     return j.as_expected && std::ranges::all_of(verdict_names, [&](std::string_view name) {
         const bool describe = table.find(" " + std::string(name)) != std::string::npos &&

@@ -19,7 +19,7 @@ float beckmann_G1(vec3 w, float alpha) {  // erf by Abramowitz & Stegun 1964, 7.
     return 2.0 / (2.0 + exp_of_minus(a * a) * (0.56418958354775629 / a - P));
 }
 float lobe_beckmann(vec3 wo, vec3 wi) {
-    float alpha = site.alpha;
+    float alpha = shading_point.alpha;
     float f = beckmann_D(unit(wo + wi), alpha) * beckmann_G1(wo, alpha) * beckmann_G1(wi, alpha) / (4.0 * wo.z * wi.z);
     return wo.z > 0.0 && wi.z > 0.0 ? f : 0.0;
 }

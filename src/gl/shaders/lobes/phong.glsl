@@ -2,4 +2,4 @@
 // Lafortune & Willems 1994, "Using the modified Phong BRDF".
 #include "shading_point.glsl"
 
-float lobe_phong(vec3 wo, vec3 wi) { return (site.s + 2.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), site.s); }
+float lobe_phong(vec3 wo, vec3 wi) { return (shading_point.s + 2.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), shading_point.s); }
