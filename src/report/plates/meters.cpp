@@ -171,7 +171,7 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
 
 }  // namespace
 
-void draw_metrics(Sheet& sheet) {
+void draw_meters(Sheet& sheet) {
     Table t = plan_table(sheet);
     backend_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG",
         fmt::format("measured at seed {}", sheet.experiment().seed));
