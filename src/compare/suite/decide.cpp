@@ -35,12 +35,9 @@ void forget_places(BiasResult& means) {
         t.differs = false;
         for (MeanTest& c : t.channels) c.differs = false;
     }
-    means.tiles.different = 0, means.tiles.differs.assign(means.tiles.differs.size(), false);
-    means.tiles_found.clear(), means.tiles_by.clear();
-    means.pixels_different = 0, means.pixels_found.clear(), means.different_pixels.clear(), means.pixels_by.clear();
-    NonFinite& n = means.non_finite;
-    n.one += n.a.pixels.size() + n.b.pixels.size(), n.a = n.b = {};
-    for (FailedGroups& g : n.groups) g.differs = false;
+    means.tiles.different = 0, means.tiles_found.clear(), means.tiles_by.clear();
+    means.pixels_different = 0, means.pixels_found.clear(), means.pixels_by.clear();
+    for (FailedGroups& g : means.non_finite.groups) g.differs = false;
     means.unless.reset();
 }
 
@@ -95,14 +92,13 @@ std::string exact_sentence(const ViewResult& view) {
         s.different, s.pixels, figures(s.largest, 3), s.at.x0, s.at.y0);
 }
 
-void decide_compared(const Suite& suite, ViewResult& view) {
+void decide_compared(ViewResult& view) {
     BiasResult& means = *view.means;
     const bool changed = view.mean_p / share_of_means <= view.level;
     const int variance = compare_variances(view);
     if (!changed) forget_places(means);
-    const double stated = suite.options.alpha * share_of_means / 2;
     if (view.exact) view.state = changed ? ViewState::changed : ViewState::same, view.sentence = exact_sentence(view);
-    else if (changed) view.state = ViewState::changed, view.sentence = sentence_of(view.outline, means, stated);
+    else if (changed) view.state = ViewState::changed, view.sentence = means.sentence;
     else if (variance > 0) view.state = ViewState::noisier, view.sentence = variance_sentence(view, 1);
     else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
     else if (variance < 0)
@@ -153,7 +149,7 @@ void decide(const Suite& suite, SuiteResult& result) {
         else if (view.state == ViewState::missing)
             view.sentence = fmt::format(
                 "Missing: the baseline has {}, the candidate none.", plural(view.baseline_renders, "render"));
-        else decide_compared(suite, view);
+        else decide_compared(view);
     }
     result.sentence = suite_sentence(suite, result);
 }

@@ -216,12 +216,11 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
     if (!out.too_few.empty() && known) out.renders_needed = needed;
 }
 
-/// What remains of the readings once the pixels are dropped: what sentences need.
-RenderStats outline_of(const RenderStats& all) {
-    RenderStats out;
-    out.width = all.width, out.height = all.height;
-    for (const ArmStats& arm : all.arms) out.arms.emplace_back().files = arm.files;
-    return out;
+/// The memory of a suite does not grow with the pixels of its views.
+void drop_places(BiasResult& means) {
+    means.different_pixels = {};
+    means.tiles.p = {}, means.tiles.quantity = {}, means.tiles.difference = {}, means.tiles.differs = {};
+    means.non_finite.a.pixels = {}, means.non_finite.b.pixels = {};
 }
 
 /// A side whose renders all have the same pixels although there are several.
@@ -271,7 +270,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     const BiasLevel level{alpha / static_cast<double>(compared), alpha};
     out.means = test_bias(plan, all, measured, 1, 0, level, quiet);
     out.mean_p = out.means->p;
-    out.width = all.width, out.height = all.height, out.outline = outline_of(all);
+    out.width = all.width, out.height = all.height;
     out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
     if (out.exact) out.mean_p = out.means->identical ? 1 : 0;
     else {
@@ -286,6 +285,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
             out.renders_needed = 3;
     }
     picture_both_sides(suite, all, *out.means, out);
+    drop_places(*out.means);
     return out;
 }
 

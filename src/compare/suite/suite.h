@@ -104,14 +104,13 @@ struct ViewResult {
     double smallest = 0;                                      // that must be found
     bool exact = false;                                       // both sides are deterministic
     bool moments = false;                                     // the baseline is stored as moments
-    std::optional<BiasResult> means;                          // of the candidate against the baseline
+    std::optional<BiasResult> means;  // of the candidate against the baseline; without what grows with the pixels
     std::vector<VarianceTest> variances;
     double mean_p = std::nan(""), variance_p = std::nan("");  // of no difference in any region; NaN: not tested
     double level = 0;                                         // at which the view was decided
     std::string too_few;                                      // why equality cannot be stated; "" if it can
     std::optional<std::size_t> renders_needed;                // of each side
     ViewPictures pictures;
-    RenderStats outline;  // sizes and files, without pixels
 };
 
 struct SuiteResult {
