@@ -171,6 +171,7 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
     RegionPower power;
     power.mean = std::fabs(test.b);
     power.paired = test.paired;
+    power.estimate_df = test.welch.df;
     if (test.paired) power.variance_a = test.welch.se * test.welch.se * (test.welch.df + 1);
     else {
         const auto variance = [&](const ArmStats& arm) {
@@ -181,10 +182,24 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
         };
         power.variance_a = variance(all.arms[means.arm_a]), power.variance_b = variance(all.arms[means.arm_b]);
     }
-    const double seen = detectable(test.welch, level), stated = test.smallest * power.mean;
+    const double seen = found_difference(test.welch, test.welch.df, level), stated = test.smallest * power.mean;
     if (stated > seen * (1 + 1e-9))
         power.missed = stated * static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
     return renders_needed(power, smallest, level);
+}
+
+/// Differences that a test finds, with what is not known of the noise; what rare events could hide stays.
+void restate_power(const RenderStats& all, double level, BiasResult& means) {
+    const double of_region = level / 2 / static_cast<double>(means.regions.size());
+    const auto restate = [&](MeanTest& t, std::size_t quantity) {
+        if (!t.why.empty()) return;
+        const double found = found_difference(t.welch, t.welch.df, of_region * level_share(quantity, all.quantities));
+        t.smallest = std::max(t.smallest, found / std::max(std::fabs(t.b), 1e-300));
+    };
+    for (MeanTest& t : means.regions) {
+        restate(t, 0);
+        for (std::size_t c = 0; c < t.channels.size(); ++c) restate(t.channels[c], c + 1);
+    }
 }
 
 /// Why equality of the means cannot be stated, and the renders that would do.
@@ -275,7 +290,10 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     if (out.exact) out.mean_p = out.means->identical ? 1 : 0;
     else {
         test_variances(all, measured, out);
-        if (!out.means->identical) state_power(all, measured, level.each, out);
+        if (!out.means->identical) {
+            restate_power(all, level.each, *out.means);
+            state_power(all, measured, level.each, out);
+        }
         const auto side = constant_baseline ? "baseline" : "candidate";
         if (constant_baseline || constant_candidate)
             out.too_few = fmt::format(

@@ -50,6 +50,7 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
         for (std::size_t s = 0; s < plan_samples.size(); ++s) {
             RegionPower power;
             power.mean = std::fabs(m.mean), power.variance_a = power.variance_b = variance / plan_samples[s];
+            power.estimate_df = static_cast<double>(m.n - 1);
             needed[s] = renders_needed(power, out.smallest, level);
         }
         constexpr std::size_t as_rendered = 1;

@@ -121,7 +121,7 @@ TEST(Suites, TheRendersThatWouldDoAreEnough) {
 }
 
 TEST(Suites, PowerFollowsTheNumberOfRenders) {
-    RegionPower power{1, 0.01, 0.01, false, 0};
+    RegionPower power{1, 0.01, 0.01, 1e9, false, 0};
     const auto n = renders_needed(power, 0.05, 0.01);
     ASSERT_TRUE(n);
     EXPECT_LE(detectable_with(power, *n, 0.01), 0.05);
