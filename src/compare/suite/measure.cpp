@@ -156,6 +156,15 @@ void test_variances(const RenderStats& all, const CompareResult& measured, ViewR
     if (tested > 0) out.variance_p = std::min(1.0, out.variance_p * tested);
 }
 
+/// Degrees of freedom with which the error of a test is known. Those of Welch's test are themselves estimated, and too
+/// many if the noise of the side with fewer renders is underestimated: at most those of two sides of equal noise.
+double known_df(const RenderStats& all, const MeanTest& test) {
+    if (test.paired) return test.welch.df;
+    const double a = static_cast<double>(all.arms[0].files.size()), b = static_cast<double>(all.arms[1].files.size());
+    const double equal = (1 / a + 1 / b) * (1 / a + 1 / b) / (1 / (a * a * (a - 1)) + 1 / (b * b * (b - 1)));
+    return std::min(test.welch.df, equal);
+}
+
 /// Renders of each side that the region needs; nothing if no number is known to do.
 std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult& means, const MeanTest& test,
     const std::vector<ArmResult>& arms, std::size_t region, double smallest, double level) {
@@ -171,7 +180,7 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
     RegionPower power;
     power.mean = std::fabs(test.b);
     power.paired = test.paired;
-    power.estimate_df = test.welch.df;
+    power.estimate_df = known_df(all, test);
     if (test.paired) power.variance_a = test.welch.se * test.welch.se * (test.welch.df + 1);
     else {
         const auto variance = [&](const ArmStats& arm) {
@@ -182,7 +191,9 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
         };
         power.variance_a = variance(all.arms[means.arm_a]), power.variance_b = variance(all.arms[means.arm_b]);
     }
-    const double seen = found_difference(test.welch, test.welch.df, level), stated = test.smallest * power.mean;
+    Welch known = test.welch;
+    known.df = power.estimate_df;
+    const double seen = found_difference(known, known.df, level), stated = test.smallest * power.mean;
     if (stated > seen * (1 + 1e-9))
         power.missed = stated * static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
     return renders_needed(power, smallest, level);
@@ -193,7 +204,9 @@ void restate_power(const RenderStats& all, double level, BiasResult& means) {
     const double of_region = level / 2 / static_cast<double>(means.regions.size());
     const auto restate = [&](MeanTest& t, std::size_t quantity) {
         if (!t.why.empty()) return;
-        const double found = found_difference(t.welch, t.welch.df, of_region * level_share(quantity, all.quantities));
+        Welch known = t.welch;
+        known.df = known_df(all, t);
+        const double found = found_difference(known, known.df, of_region * level_share(quantity, all.quantities));
         t.smallest = std::max(t.smallest, found / std::max(std::fabs(t.b), 1e-300));
     };
     for (MeanTest& t : means.regions) {
