@@ -136,8 +136,8 @@ namespace {
 std::vector<CheckCase> trials_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
     const bool python = names_python_sampler(flags.arm);
     if (python && !flags.settings.empty())
-        throw InputError({"--set " + flags.settings.front(), 0, 0}, "is for built-in samplers, and " + flags.arm +
-                " has its own parameters");
+        throw InputError({"--set " + flags.settings.front(), 0, 0},
+            "is for built-in samplers, and " + flags.arm + " has its own parameters");
     if (python || !flags.exec.empty()) {
         const auto subject = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
                                     : start_pipe(flags.exec, limits_of(flags, monitor));

@@ -23,8 +23,10 @@ std::shared_ptr<const SamplerAdapter> start_python_sampler(const std::string& wo
     const char* given = std::getenv("CRESCENT_PYTHON");
     const std::string python = given && *given ? given : "python3";
     // -P: a file of the current folder does not take the place of a module that the package imports. An interpreter
-    // that the shell cannot start (127) is reported as a package that is missing is.
-    const std::string command = fmt::format("{} -P -m crescent.serve {}; code=$?; [ $code -ne 127 ] || code=1; exit $code",
+    // that the shell cannot start (126, 127) is reported as a package that is missing is.
+    const std::string command = fmt::format(
+        "{} -P -m crescent.serve {}; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] "
+        "|| code=1; exit $code",
         shell_word(python), shell_word(word));
     try {
         return start_pipe(command, limits, word);
