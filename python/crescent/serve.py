@@ -110,7 +110,7 @@ def _serve(requests: BinaryIO, answers: BinaryIO, operations: dict[bytes, tuple[
             answers.write(struct.pack("<II", 0, len(text)) + text)
         else:
             answers.write(struct.pack("<I", count))
-            answers.write(memoryview(out).cast("B"))
+            answers.write(out.data)
         answers.flush()
 
 
