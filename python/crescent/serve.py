@@ -128,7 +128,7 @@ def main() -> int:
             raise ValueError("crescent.serve takes one FILE.py:NAME")
         handshake, operations = _started(sys.argv[1])
     except Exception as error:  # noqa: BLE001: an error of the module that is imported is one of the call
-        answers.write(f"error {_said(error)}\n".encode())
+        answers.write(f"error {_said(error).removeprefix(sys.argv[-1] + ': ')}\n".encode())
         answers.flush()
         return 2
     answers.write(handshake.encode(errors="replace") + b"\n")
