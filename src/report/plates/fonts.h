@@ -3,8 +3,8 @@
 
 namespace crescent::plates {
 
-/// Makes ../share/crescent/fonts/fonts.conf, seen from the program's folder, Fontconfig's configuration, where that file
-/// exists and FONTCONFIG_FILE is not set. Before Fontconfig is first used.
+/// Makes ../share/crescent/fonts/fonts.conf, seen from the program's folder, Fontconfig's configuration, where that
+/// file exists and FONTCONFIG_FILE is not set. Before Fontconfig is first used.
 void use_fonts_beside_program();
 
 }  // namespace crescent::plates
