@@ -4,7 +4,7 @@
     bench/page.py [--build FOLDER] [--page FILE] [--crescent PROGRAM] [--write]
 
 What ./page has built is measured: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
-three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last meter, and from a
+three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last metric, and from a
 slider's move to the first new pixels, the median of twenty moves, and to N = 64 again. --write puts all of it under
 "Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
 """
@@ -36,7 +36,7 @@ def rates(crescent, build):
 
 
 def opened(page):
-    """ms to the first picture, to the last film, to the last meter, of a browser that was just started."""
+    """ms to the first picture, to the last film, to the last metric, of a browser that was just started."""
     driver = browser.chromium()
     try:
         browser.open_page(driver, page)

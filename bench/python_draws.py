@@ -1,4 +1,4 @@
-"""How fast `crescent.check` asks NumPy callables: draws a second through the door alone, and in a whole judgement.
+"""How fast `crescent.check` asks NumPy callables: draws a second through the door alone, and in a whole result.
 
     PYTHONPATH=build/python python bench/python_draws.py [--repeats 20] [--write docs/python.md]
 
@@ -50,7 +50,7 @@ def numpy_alone():
 
 
 def asked():
-    """Rows that one judgement asks of sample, pdf and f."""
+    """Rows that one result asks of sample, pdf and f."""
     rows = {"sample": 0, "pdf": 0, "f": 0}
 
     def counted(call):
@@ -65,7 +65,7 @@ def asked():
 
 
 def spent_in_callables():
-    """The part of a judgement's processor time that the callables themselves take."""
+    """The part of a result's processor time that the callables themselves take."""
     spent = [0.0]
 
     def timed(call):
@@ -83,7 +83,7 @@ def spent_in_callables():
 
 
 def table(repeats):
-    trials = _check._trials(crescent.Sampler(sample, pdf, f), False, [])
+    cases = _check._cases(crescent.Sampler(sample, pdf, f), False, [])
     rows = asked()
     lines = [
         "| | draws | million draws per second of processor time | time relative to `sample` |",
@@ -92,7 +92,7 @@ def table(repeats):
     alone = None  # s of processor time a draw
     for what, draws, work in (
         ("`sample` alone, in NumPy", BATCHES * 32768, numpy_alone()),
-        ("drawn by crescent and discarded", BATCHES * 32768, lambda: _crescent.draw(trials, BATCHES)),
+        ("drawn by crescent and discarded", BATCHES * 32768, lambda: _crescent.draw(cases, BATCHES)),
         ("a complete check, nine verdicts at 8 w_o", rows["sample"], lambda: crescent.check(sample, pdf, f)),
     ):
         cpu = best(repeats, work)

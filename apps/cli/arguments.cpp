@@ -16,7 +16,7 @@
 
 namespace crescent::cli {
 
-std::string told(const std::string& text) {
+std::string not_empty(const std::string& text) {
     return text.find_first_not_of(" \t") == std::string::npos ? "is empty" : "";
 }
 

@@ -74,7 +74,7 @@ Vec3d direction_of(const std::string& text) {
 /// A w_o under the surface is for a sampler that answers for both sides alone.
 void check_sides(const CheckFlags& flags, const Traits& traits) {
     for (const std::string& text : flags.wo)
-        if (direction_of(text).z < 0 && traits.wo != Traits::Asked::both)
+        if (direction_of(text).z < 0 && traits.wo != Traits::WoDomain::both)
             throw InputError({"--wo " + text, 0, 0},
                 "is under the surface, and the sampler does not answer there: 0 to less than 90 degrees from the "
                 "normal, z > 0 (a program that does says wo=both)");
@@ -133,21 +133,21 @@ int exit_of(State state) {
 
 namespace {
 
-std::vector<CheckCase> trials_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
+std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
     const bool python = names_python_sampler(flags.arm);
     if (python && !flags.settings.empty())
         throw InputError({"--set " + flags.settings.front(), 0, 0},
             "is for built-in samplers, and " + flags.arm + " has its own parameters");
     if (python || !flags.exec.empty()) {
-        const auto subject = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
+        const auto adapter = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
                                     : start_pipe(flags.exec, limits_of(flags, monitor));
-        check_sides(flags, subject->traits());
-        return make_user_cases(subject, flags.full, grid_of(flags));
+        check_sides(flags, adapter->traits());
+        return make_user_cases(adapter, flags.full, grid_of(flags));
     }
     if (!flags.plugin.empty()) {
-        const auto subject = open_plugin(flags.plugin, limits_of(flags, monitor));
-        check_sides(flags, subject->traits());
-        return make_user_cases(subject, flags.full, grid_of(flags));
+        const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
+        check_sides(flags, adapter->traits());
+        return make_user_cases(adapter, flags.full, grid_of(flags));
     }
     check_sides(flags, {});
     if (flags.samples.empty()) return make_cases(flags.arm, settings_of(flags), flags.full, grid_of(flags));
@@ -184,7 +184,7 @@ TestSettings settings_of_list(const CheckFlags& flags) {
     return r;
 }
 
-/// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
+/// The command that checks alike; where the files go is left out, so that equal calls state equal commands.
 std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
@@ -213,7 +213,7 @@ void try_files(const CheckFlags& flags) {
 }  // namespace
 
 void write_files(const CheckFlags& flags, const CheckResult& j) {
-    const JudgementSource source{crescent::version(), crescent::commit(), command_of(flags)};
+    const ResultSource source{crescent::version(), crescent::commit(), command_of(flags)};
     if (!flags.json.empty()) write_whole(flags.json, verdict_json(j, source));
     if (!flags.timing.empty()) write_whole(flags.timing, verdict_timing(j, source));
     if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
@@ -223,32 +223,32 @@ void write_files(const CheckFlags& flags, const CheckResult& j) {
 namespace {
 
 /// How much a program will be asked, before it is asked for an hour.
-void tell_cost(std::span<const CheckCase> trials, const TestSettings& settings, ProgressMonitor& monitor) {
-    std::size_t judged = 0;
+void log_cost(std::span<const CheckCase> check_cases, const TestSettings& settings, ProgressMonitor& monitor) {
+    std::size_t checked = 0;
     bool program = false, light = false;
-    for (const CheckCase& t : trials) {
-        judged += !t.baseline, program = program || t.subject->limited();
-        light = light || t.subject->traits().wo == Traits::Asked::none;
+    for (const CheckCase& t : check_cases) {
+        checked += !t.baseline, program = program || t.adapter->limited();
+        light = light || t.adapter->traits().wo == Traits::WoDomain::none;
     }
     if (!program || !settings.full) return;
     const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
-    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
-        settings.questions, judged, more));
+    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", checked * settings.questions,
+        settings.questions, checked, more));
 }
 
-std::vector<std::string> names_of(std::span<const CheckCase> trials) {
+std::vector<std::string> names_of(std::span<const CheckCase> check_cases) {
     std::vector<std::string> out;
-    for (const CheckCase& t : trials)
+    for (const CheckCase& t : check_cases)
         if (!t.baseline && std::find(out.begin(), out.end(), t.arm) == out.end()) out.push_back(t.arm);
     return out;
 }
 
 /// What distribution the draws have; no verdict.
-int describe_draws(const CheckFlags& flags, std::span<const CheckCase> trials, Progress& monitor) {
+int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cases, Progress& monitor) {
     check::DescribeSettings settings;
     settings.seed = flags.seed;
     if (flags.full) settings.draws *= 16, settings.draws_of_limited *= 16;
-    const std::vector<check::Description> all = check::describe(trials, settings, monitor);
+    const std::vector<check::Description> all = check::describe(check_cases, settings, monitor);
     monitor.clear();
     std::string text;
     for (const check::Description& d : all) text += check::description_text(d) + "\n";
@@ -269,7 +269,7 @@ namespace {
 /// "2.1 s, 3.9 s of CPU time, 45 MB of memory at most; 9,700,000 evaluations ..."
 std::string cost_of(const CheckResult& j, double seconds) {
     std::set<std::pair<std::string, std::string>> cases;
-    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.check_case});
     const Usage used = usage();
     const double each =
         static_cast<double>(j.evaluations) / static_cast<double>(std::max<std::size_t>(cases.size(), 1));
@@ -299,12 +299,12 @@ int check(const CheckFlags& given) {
     if (same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
     const std::vector<Waiver> waivers = read_waivers(expected);
     try {
-        const std::vector<CheckCase> trials = trials_for(flags, monitor);
-        check_waivers(waivers, names_of(trials));
-        if (flags.describe) return describe_draws(flags, trials, monitor);
-        if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
-        tell_cost(trials, test_settings_of(flags), monitor);
-        j = judge(trials, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+        const std::vector<CheckCase> check_cases = cases_for(flags, monitor);
+        check_waivers(waivers, names_of(check_cases));
+        if (flags.describe) return describe_draws(flags, check_cases, monitor);
+        if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
+        log_cost(check_cases, test_settings_of(flags), monitor);
+        j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
     } catch (const SamplerError& fault) { j = complaint(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
@@ -328,11 +328,11 @@ CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const 
     for (std::string_view name : verdict_names) {
         Verdict v;
         v.arm = printable(command, 60);
-        v.trial = before_any_trial;
+        v.check_case = before_any_case;
         v.name = name;
         v.state = j.state;
-        v.say = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
-                                         : "It could not be asked: the sampler never came to be judged.";
+        v.message = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
+                                             : "It could not be asked: the sampler never came to be judged.";
         v.expected = false;
         j.verdicts.push_back(v);
     }
@@ -342,7 +342,7 @@ CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const 
 
 namespace {
 
-/// B on the trials of A: a built-in arm by its name, or a program.
+/// B on the cases of A: a built-in arm by its name, or a program.
 std::vector<CheckCase> others_of(
     const CheckFlags& flags, std::span<const CheckCase> a, const ProgressMonitor& monitor) {
     const std::vector<std::string> names = sampler_names();

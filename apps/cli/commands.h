@@ -25,7 +25,7 @@ struct RunFlags {
     std::string file;
     std::vector<std::string> overrides;  // PATH=VALUE
     std::string out, isa;                // "": the default
-    std::string instrument = "cpu";
+    std::string backend = "cpu";
     std::string only, seed_range;  // "metrics,report", "1:8"; "": all
     std::string gl_context;        // "": EGL
     int gl_device = -1;            // -1: a GPU where there is one

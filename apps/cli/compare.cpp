@@ -1,4 +1,4 @@
-// crescent compare: renders of other programs -> meters, bias tests, plates, report.
+// crescent compare: renders of other programs -> metrics, bias tests, plates, report.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -151,7 +151,7 @@ int compare(const CompareFlags& flags) {
     const StopOnSignal stop(progress);
     std::string summary;
     const CompareResult result =
-        crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
+        crescent::compare_renders(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
     progress.clear();
     print(summary);
     return result.state == CompareResult::State::holds ? held

@@ -25,7 +25,7 @@ template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* 
 }
 
 /// What is wrong with the text of a flag, "" where nothing: it is empty; it is no number of seconds from 0 to 1e9.
-std::string told(const std::string& text);
+std::string not_empty(const std::string& text);
 std::string seconds(const std::string& text);
 /// What a flag takes: a whole number, a number, one of some words. Another is told with what was expected.
 CLI::Validator whole_number(std::int64_t low, std::int64_t high);

@@ -33,7 +33,7 @@ std::string verdicts_in_order() {
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
         "hold the sampler against a built-in arm or a program: same distribution, same f, variance ratio");
-    against->type_name("ARM|FILE.py:NAME|'PROGRAM'")->check(told);
+    against->type_name("ARM|FILE.py:NAME|'PROGRAM'")->check(not_empty);
     return against;
 }
 
@@ -60,7 +60,7 @@ void outputs(CLI::App& c, CheckFlags& f) {
             c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
             c.add_option("--junit", f.junit, "write for a build server"),
             c.add_option("--html", f.html, "write one page with maps, histograms and roses")})
-        file->type_name("FILE")->check(told);
+        file->type_name("FILE")->check(not_empty);
 }
 
 /// A sampler of the caller's own.
@@ -71,11 +71,13 @@ struct Own {
 Own own_samplers(CLI::App& c, CheckFlags& f) {
     return {c.add_option("--exec", f.exec, "judge a program that answers over a pipe")
                 ->type_name("'PROGRAM ARGS'")
-                ->check(told),
+                ->check(not_empty),
         c.add_option("--plugin", f.plugin, "judge a shared library, see docs/plugins.md")
             ->type_name("FILE")
-            ->check(told),
-        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told)};
+            ->check(not_empty),
+        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")
+            ->type_name("FILE")
+            ->check(not_empty)};
 }
 
 /// How long a program may take.
@@ -121,7 +123,7 @@ void add_check(CLI::App& app, Work& work) {
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
         ->type_name("FILE")
         ->needs(samples)
-        ->check(told);
+        ->check(not_empty);
     auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
     auto* against = comparison(*c, *f);

@@ -43,7 +43,7 @@ std::vector<Word> lobes() {
     return out;
 }
 
-std::vector<Word> meters() {
+std::vector<Word> metrics() {
     std::vector<Word> out;
     for (const QuantityWord& word : quantity_words()) out.push_back({form_of(word), std::string(word.means)});
     return out;
@@ -65,7 +65,7 @@ std::vector<Word> instruction_sets() {
 /// What --gl-device can name, by number.
 std::vector<Word> devices() {
     std::vector<Word> out;
-    for (const auto& kind : instrument_kinds())
+    for (const auto& kind : backend_kinds())
         for (const BackendDevice& device : kind->devices())
             out.push_back({fmt::format("{}  {}", device.number, device.means), ""});
     return out;
@@ -83,7 +83,7 @@ const std::vector<Topic>& topics() {
         {"lights", "kinds of light", kinds<LightKinds>},
         {"brdfs", "lobes beside the Lambert term", lobes},
         {"plates", "kinds of picture", plates},
-        {"meters", "quantities that a check can name", meters},
+        {"meters", "quantities that a check can name", metrics},
         {"verdicts", "what `check` says of a sampler, in this order", verdicts},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
         {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},

@@ -1,11 +1,11 @@
-// crescent run: an experiment file -> films, meters, plates, report.
+// crescent run: an experiment file -> films, metrics, plates, report.
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 
 #include "commands.h"
 #include "crescent/crescent.h"
-#include "instruments.h"
+#include "backends.h"
 #include "progress.h"
 #include "signals.h"
 
@@ -20,7 +20,7 @@ std::string command_of(const RunFlags& flags) {
     for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
     if (!flags.seed_range.empty()) command += " --seed-range " + flags.seed_range;
-    if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
+    if (flags.backend != "cpu") command += " --instrument " + flags.backend;
     if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;
     if (flags.gl_device >= 0) command += " --gl-device " + std::to_string(flags.gl_device);
     return command;
@@ -62,7 +62,7 @@ int run(const RunFlags& flags) {
     options.keep_after_s = flags.keep_after;
     options.timeout_s = flags.timeout;
     options.command = command_of(flags);
-    options.instrument = instrument(flags);
+    options.backend = backend(flags);
 
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
@@ -73,7 +73,7 @@ int run(const RunFlags& flags) {
     return result.metrics.all_hold() ? held : failed;
 }
 
-// ---- Looks the word up among the kinds of instrument that registered themselves and opens the one it finds with the
+// ---- Looks the word up among the kinds of back end that registered themselves and opens the one it finds with the
 // two
 // --gl flags, which the CPU refuses.
 
@@ -85,15 +85,15 @@ void only_with_gl(const char* flag, bool given) {
 
 }  // namespace
 
-std::shared_ptr<Instrument> instrument(const RunFlags& flags) {
-    if (flags.instrument == "cpu") {
+std::shared_ptr<Backend> backend(const RunFlags& flags) {
+    if (flags.backend == "cpu") {
         only_with_gl("--gl-context", !flags.gl_context.empty());
         only_with_gl("--gl-device", flags.gl_device >= 0);
         return nullptr;
     }
-    const std::shared_ptr<const BackendKind> kind = find_instrument(flags.instrument);
+    const std::shared_ptr<const BackendKind> kind = find_backend(flags.backend);
     if (!kind)
-        throw OutputError("this build has no instrument '" + flags.instrument +
+        throw OutputError("this build has no instrument '" + flags.backend +
             "': it was made without it, or without the headers of EGL");
     return kind->open({flags.gl_context, flags.gl_device});
 }

@@ -47,7 +47,7 @@ extern "C" void time_is_up(int signal) {
     else ::setitimer(ITIMER_REAL, &moving_patience, nullptr);
 }
 
-extern "C" void ask_to_stop(int signal) {
+extern "C" void request_stop(int signal) {
     ProgressMonitor* monitor = watched.load();
     if (!monitor || monitor->stop.exchange(true)) end_now(signal);
     else ::setitimer(ITIMER_REAL, &patience, nullptr);
@@ -85,7 +85,7 @@ StopOnSignal::StopOnSignal(ProgressMonitor& monitor) {
     handle(SIGALRM, time_is_up);
     struct sigaction before{};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, ask_to_stop);
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, request_stop);
 }
 
 StopOnSignal::~StopOnSignal() {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::string chapters(const Timeline& timeline, const Part& part, const std::stri
     return text;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -5,7 +5,7 @@
 
 #include "timeline.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 /// Frames first .. last - 1 of the film; what is written counts from the first of them.
 struct Part {
@@ -19,4 +19,4 @@ std::string transcript(const Timeline& timeline, const Part& part);
 /// ffmpeg's metadata text: title and chapters.
 std::string chapters(const Timeline& timeline, const Part& part, const std::string& title);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

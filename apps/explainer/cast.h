@@ -6,7 +6,7 @@
 
 #include "crescent/crescent.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 /// The names under which the experiment has what the film tells of.
 struct Cast {
@@ -17,11 +17,11 @@ struct Cast {
     double s = 0;                     // the experiment's
     std::uint64_t n = 0;              // samples a pixel where none is named
     std::uint32_t seed = 0;
-    std::vector<std::uint64_t> rungs;  // that cosine and phong share, ascending
+    std::vector<std::uint64_t> sample_counts;  // that cosine and phong share, ascending
 };
 
 /// Adds the arms that go beyond the story to `experiment` and says who is who. InputError with everything that is
 /// missing.
 Cast cast_of(Experiment& experiment);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

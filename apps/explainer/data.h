@@ -9,7 +9,7 @@
 #include "cast.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 struct Measures;  // measures/measures.h
 
@@ -22,14 +22,14 @@ struct Data {
     Provenance provenance;
     ShapeMap shapes;
     std::vector<std::pair<RunKey, Film>> films;
-    std::vector<ReferenceFilm> references;  // the ones the meters use, one an exponent
+    std::vector<ReferenceFilm> references;  // the ones the metrics use, one an exponent
     std::vector<Film> opening;              // the cosine arm's doublings from one sample on
     std::shared_ptr<const Measures> measures;
 
     RunKey key(const std::string& arm, std::uint64_t n = 0, double s = 0) const;  // 0: the cast's
     const Film* film(const RunKey& key) const;                                    // nullptr: not run
     const ReferenceFilm& reference(double s = 0) const;
-    const RunMetrics* meter(const RunKey& key) const;
+    const RunMetrics* metric(const RunKey& key) const;
     const RegionMetrics* region(const RunKey& key, const std::string& region) const;
     const Box& box(const std::string& region) const;
 
@@ -46,8 +46,8 @@ plates::Block photograph_of(const Data& data, const plates::View& view, const Bo
 /// A box of w x h around the middle of `of`, moved so that it lies in the image.
 Box around(const Data& data, const Box& of, int w, int h);
 
-/// Runs the experiment in memory, with the arms and rungs that the film adds. InputError where it lacks what the film
-/// needs.
+/// Runs the experiment in memory, with the arms and sample counts that the film adds. InputError where it lacks what
+/// the film needs.
 Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

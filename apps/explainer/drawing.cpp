@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin) {
     const auto times_for = [&](double w, double h) {
@@ -184,4 +184,4 @@ void Axes::draw(Frame& f, const std::vector<Tick>& below, const std::vector<Tick
     f.text({box.x - 110, box.y - 58, box.w + 110, line}, up_name, small_text, alpha);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

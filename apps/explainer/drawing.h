@@ -7,15 +7,15 @@
 #include "data.h"
 #include "frame.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 // ---- Type and inks of the film, in units of the 1920 x 1080 sheet: no text under 27, which is 9 pixels on a phone at
 // 640 x 360.
 
 using plates::alert;
+using plates::backend_accent;
 using plates::bright;
 using plates::ground;
-using plates::instrument_accent;
 using plates::muted;
 using plates::panel;
 using plates::photograph_accent;
@@ -108,4 +108,4 @@ struct Axes {
         const Words& up_name, double alpha = 1) const;
 };
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

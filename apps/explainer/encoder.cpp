@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <filesystem>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -94,9 +94,9 @@ Encoder::Encoder(const Ingredients& in)
 
 void Encoder::fail(const std::string& what) {
     process_.end(1000);
-    const std::string said = contents_of(in_.log);
+    const std::string texts = contents_of(in_.log);
     throw OutputError(
-        "ffmpeg could not encode the film: " + what + (said.empty() ? "" : "; it printed: " + said.substr(0, 600)));
+        "ffmpeg could not encode the film: " + what + (texts.empty() ? "" : "; it printed: " + texts.substr(0, 600)));
 }
 
 void Encoder::take(const Raster& raster, const ProgressMonitor& monitor) {
@@ -125,4 +125,4 @@ void Encoder::finish(const ProgressMonitor& monitor) {
     }
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

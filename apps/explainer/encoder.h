@@ -8,7 +8,7 @@
 #include "crescent/crescent.h"
 #include "rasters.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 /// The files that go into the film, and those to be written; "" where there is none.
 struct Ingredients {
@@ -35,4 +35,4 @@ private:
     Process process_;
 };
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -7,7 +7,7 @@
 #include "drawing.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -65,4 +65,4 @@ void draw_estimator(Frame& frame, Point at, double px, const EstimatorTerms& ter
     set.put((left + x - set.width(p)) / 2, at.y + up, p, terms.density);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -3,7 +3,7 @@
 
 #include "frame.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 /// alpha: how far a term has appeared; lit: how much it is meant just now.
 struct Term {
@@ -21,4 +21,4 @@ Colour mixed(const Colour& a, const Colour& b, double t);
 /// A term's words in a box with a wash behind them as far as it is lit.
 void draw_term(Frame& frame, const Rect& box, const Words& words, Text how, const Term& term);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -11,7 +11,7 @@
 #include "shots.h"
 #include "voice.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -68,13 +68,13 @@ public:
     }
 
     std::string stills(const Part& part) {
-        std::string said;
+        std::string texts;
         for (std::size_t k = 0; k < timeline_.shots().size(); ++k) {
             const int frame = timeline_.still(k);
             if (frame >= part.first && frame < part.last)
-                said += still(frame, fmt::format("stills/{:02}-{}.png", k + 1, timeline_.shots()[k].name));
+                texts += still(frame, fmt::format("stills/{:02}-{}.png", k + 1, timeline_.shots()[k].name));
         }
-        return said;
+        return texts;
     }
 
     std::string film(const Part& part, Voice* voice) {
@@ -176,11 +176,11 @@ std::string make(const Experiment& experiment, const ExplainerOptions& options, 
     data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
     Making making(data, timeline, options, staging, monitor);
-    const std::string said = !options.still.empty() ? making.one_still()
-        : options.stills                            ? making.stills(part)
-                                                    : making.film(part, options.voice.empty() ? nullptr : &voice);
+    const std::string texts = !options.still.empty() ? making.one_still()
+        : options.stills                             ? making.stills(part)
+                                                     : making.film(part, options.voice.empty() ? nullptr : &voice);
     staging.commit(monitor);
-    return said;
+    return texts;
 }
 
 const bool registered = [] {
@@ -194,4 +194,4 @@ const bool registered = [] {
 
 }  // namespace
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

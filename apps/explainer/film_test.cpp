@@ -15,7 +15,7 @@
 #include "shots.h"
 #include "tests/support/explainer_data.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 namespace {
 
 constexpr int small_height = 360;
@@ -104,9 +104,9 @@ TEST(Film, NoDigitIsTyped) {
             painter.draw(frame);
             // What stands on the canvas went through Words, and every part of it that holds a digit says where it was
             // read.
-            std::multiset<std::string> said;
-            for (const Words& words : painter.frame().said()) {
-                said.insert(words.markup());
+            std::multiset<std::string> texts;
+            for (const Words& words : painter.frame().texts()) {
+                texts.insert(words.markup());
                 for (const Words::Part& part : words.parts()) {
                     const std::string plain = plain_of(part.markup);
                     if (std::ranges::any_of(plain, [](char c) { return c >= '0' && c <= '9'; }))
@@ -114,7 +114,7 @@ TEST(Film, NoDigitIsTyped) {
                 }
             }
             for (const plates::Setting& s : painter.canvas().settings())
-                EXPECT_TRUE(said.contains(s.text)) << what(k, frame, s) << " was set past Words";
+                EXPECT_TRUE(texts.contains(s.text)) << what(k, frame, s) << " was set past Words";
         }
     }
 }
@@ -218,11 +218,11 @@ TEST(Film, WhatAnExperimentLacksIsNamed) {
         cast_of(e);
         FAIL();
     } catch (const InputError& error) {
-        const std::string said = error.what();
-        EXPECT_NE(said.find("'phong'"), std::string::npos) << said;
-        EXPECT_NE(said.find("two regions"), std::string::npos) << said;
+        const std::string texts = error.what();
+        EXPECT_NE(texts.find("'phong'"), std::string::npos) << texts;
+        EXPECT_NE(texts.find("two regions"), std::string::npos) << texts;
     }
 }
 
 }  // namespace
-}  // namespace crescent::film
+}  // namespace crescent::explainer

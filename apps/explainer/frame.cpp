@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -37,7 +37,7 @@ bool Frame::same_at(double t) const {
 Rect Frame::text(const Rect& box, const Words& words, Text how, double alpha) {
     if (alpha <= 0) return {box.x, box.y, 0, 0};
     how.ink = faded(how.ink, alpha);
-    said_.push_back(words);
+    texts_.push_back(words);
     return canvas_.text(box, words.markup(), how);
 }
 
@@ -82,4 +82,4 @@ void Frame::arrow(Point from, Point to, Colour c, double line, double alpha) {
     if (alpha > 0) canvas_.arrow(from, to, faded(c, alpha), line);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -7,7 +7,7 @@
 #include "crescent/crescent.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 using plates::Align;
 using plates::Block;
@@ -65,7 +65,7 @@ public:
     /// Whether a frame of the same shot at `t` would be drawn alike.
     bool same_at(double t) const;
     /// What was set, in order: for tests.
-    const std::vector<Words>& said() const { return said_; }
+    const std::vector<Words>& texts() const { return texts_; }
 
 private:
     enum class Kind { ramp, ease, after, steps };
@@ -81,7 +81,7 @@ private:
     Canvas& canvas_;
     double t_;
     std::vector<Question> asked_;
-    std::vector<Words> said_;
+    std::vector<Words> texts_;
 };
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -6,7 +6,7 @@
 
 #include "drawing.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -100,4 +100,4 @@ void Hemisphere::arrow(Frame& f, Vec3d w, double reach, const Words& words, Colo
     f.text({tip.x - size.w / 2 - 2, tip.y - size.h - 4, size.w + 4, size.h}, words, how, alpha);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

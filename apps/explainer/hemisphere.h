@@ -8,7 +8,7 @@
 
 #include "frame.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 class Hemisphere {
 public:
@@ -45,4 +45,4 @@ private:
 /// Unit direction at angles from n, in degrees, and about it from the direction's own x axis.
 Vec3d direction(double theta_deg, double phi_deg);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

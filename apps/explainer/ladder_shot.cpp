@@ -9,11 +9,11 @@
 #include "drawing.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-constexpr double first = 5, each = 2;  // s: when the first rung shows, how long each has
+constexpr double first = 5, each = 2;  // s: when the first sample count shows, how long each has
 
 std::vector<Point> points_of(const Ladder& ladder, const LogPlot& plot) {
     std::vector<Point> out;
@@ -35,7 +35,7 @@ LogPlot plot_of(const Data& data) {
     return plot;
 }
 
-/// The four rungs that are shown: of more, evenly chosen.
+/// The four sample counts that are shown: of more, evenly chosen.
 std::vector<std::size_t> shown_of(const Ladder& ladder) {
     std::vector<std::size_t> out;
     const std::size_t count = std::min<std::size_t>(ladder.n.size(), 4);
@@ -43,7 +43,7 @@ std::vector<std::size_t> shown_of(const Ladder& ladder) {
     return out;
 }
 
-/// An arm's rungs in the chart.
+/// An arm's sample counts in the chart.
 struct Line {
     std::vector<Point> points;
     Words name;
@@ -130,4 +130,4 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

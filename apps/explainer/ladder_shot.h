@@ -4,7 +4,7 @@
 #include "data.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 struct LadderStory {
     std::string arm, before;   // `before`: the arm whose line stands there already, dim; "": none
@@ -20,4 +20,4 @@ const Ladder& ladder_of(const Data& data, const std::string& arm);
 /// "slope -0.50 (-0.53 to -0.47)"; where the interval means nothing, why.
 Words slope_words(const Ladder& ladder);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -5,7 +5,7 @@
 
 #include "timeline.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 class Painter {
 public:
@@ -27,4 +27,4 @@ private:
     std::size_t shot_ = 0;
 };
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

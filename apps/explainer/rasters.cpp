@@ -11,7 +11,7 @@
 
 #include <thread>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -107,4 +107,4 @@ void for_each_frame(const Timeline& timeline, int height, int first, int last, P
     monitor.check();
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

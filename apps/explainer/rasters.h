@@ -9,7 +9,7 @@
 
 #include "painter.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 struct Raster {
     std::vector<unsigned char> bytes;  // Y, Cb, Cr
@@ -24,4 +24,4 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas);
 void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& monitor,
     const std::function<void(const Raster&)>& take);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -8,7 +8,7 @@
 #include "data.h"
 #include "frame.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 // ---- A shot as a value: what it is called, how long it lasts, what is said when, and how it looks at a time.
 
@@ -20,9 +20,9 @@ struct Cue {
     bool question = false;
 };
 
-/// What a shot shows, said at its top: photographs have gone through the display chain, instruments read the float
+/// What a shot shows, said at its top: photographs have gone through the display chain, back ends read the float
 /// films.
-enum class Kind { words, photograph, instrument };
+enum class Kind { words, photograph, backend };
 
 struct Shot {
     std::string name;  // "columns": of its still, and of its chapter in messages
@@ -55,4 +55,4 @@ Shot closing(const Data& data);
 /// All of them, with what they show made ready; one that has nothing to show in this run lasts 0 s and is left out.
 std::vector<Shot> shots_of(const Data& data);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

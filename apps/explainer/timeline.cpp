@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -15,8 +15,8 @@ double whole_frames(double seconds) { return std::ceil(seconds * frames_a_second
 /// How long a caption must stand.
 double needed(const Cue& cue, const std::function<double(const Words&)>& spoken) {
     const double read = double(length(cue.words.plain())) / reading_speed;
-    const double said = spoken ? spoken(cue.words) + 0.3 : 0;
-    return std::max(read, said) + (cue.question ? question_silence : 0);
+    const double texts = spoken ? spoken(cue.words) + 0.3 : 0;
+    return std::max(read, texts) + (cue.question ? question_silence : 0);
 }
 
 std::vector<std::size_t> spaces_of(const std::string& plain) {
@@ -104,4 +104,4 @@ int Timeline::still(std::size_t shot) const {
     return begins_[shot + 1] - 1;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -7,7 +7,7 @@
 
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 inline constexpr int frames_a_second = 30;
 inline constexpr double reading_speed = 15;     // characters a second, at most
@@ -58,4 +58,4 @@ Words broken(const Words& words);
 /// Characters that are read: code points of the plain text.
 std::size_t length(const std::string& plain);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -7,7 +7,7 @@
 
 #include "timeline.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 class Voice {
 public:
@@ -20,15 +20,15 @@ public:
     std::string track(const Timeline& timeline, int first, int last);
 
 private:
-    const std::vector<float>& said(const std::string& text);
+    const std::vector<float>& texts(const std::string& text);
 
     std::string command_, folder_;
     ProgressMonitor& monitor_;
-    std::map<std::string, std::vector<float>> said_;  // at `rate`, one channel
+    std::map<std::string, std::vector<float>> texts_;  // at `rate`, one channel
 };
 
 /// Samples in [-1, 1] of a RIFF WAVE file with 16-bit PCM, its channels averaged; `rate` receives samples a second.
 /// Sizes that a program could not know when it began to write count as "to the end". Empty where it is none.
 std::vector<float> samples_of_wav(const std::string& bytes, int& rate);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Number figure(double value, int digits, const std::string& source) { return {plates::figure(value, digits), source}; }
 Number number(double value, int digits, const std::string& source) { return {plates::number(value, digits), source}; }
@@ -69,4 +69,4 @@ Words tinted(const Words& words, const plates::Colour& ink) {
 
 Words strong(const Words& words) { return Words("<span weight='600'>", words, "</span>"); }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -8,7 +8,7 @@
 
 #include "crescent/crescent.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 /// A number as it is shown, and what it is: "rmse.H of cosine n=64 s=32", "seed of the experiment".
 struct Number {
@@ -65,11 +65,11 @@ Words strong(const Words& words);
 /// Markup without its tags, entities resolved.
 std::string plain_of(const std::string& markup);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer
 
 // ---- The formulas of the film. Their digits are mathematics; no result stands here.
 
-namespace crescent::film::formulas {
+namespace crescent::explainer::formulas {
 
 inline constexpr Formula sum{"(1/N) Σ"};
 inline constexpr Formula f{"f(ω)"};
@@ -91,4 +91,4 @@ inline constexpr Formula first_random{"u<sub>1</sub>"};
 inline constexpr Formula second_random{"u<sub>2</sub>"};
 inline constexpr Formula root_n{"1/√N"};
 
-}  // namespace crescent::film::formulas
+}  // namespace crescent::explainer::formulas

@@ -2,7 +2,7 @@
 // Nothing is looked up, and nothing is computed here.
 import { Opening } from "./jobs";
 import { Answer, Lesson, Measured } from "./lessons";
-import { Box } from "./door";
+import { Box } from "./api";
 import { Model, Region } from "./model";
 import { quoted, Source } from "./state";
 
@@ -41,7 +41,7 @@ export class Asker {
   private all(of: readonly Measured[]): Promise<unknown[]> { return Promise.all(of.map((m) => this.measured(m))); }
 
   /** The verdicts of a sampler at one w_o. */
-  judged<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("judged", { sampler, theta, evaluations }, this.opened([], [])); }
+  checked<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("checked", { sampler, theta, evaluations }, this.opened([], [])); }
 
   /** The furnaces at an exponent and a number of samples. */
   furnaces(lesson: Lesson, s: number, n: number): Promise<Found> { return this.model.ask<Found>("furnaces_of", { ...lesson.answer, n }, this.opened([`sphere.s=${s}`], [])); }
@@ -99,7 +99,7 @@ export class Asker {
       case "chi-square":
       case "t-test":
       case "which":
-        return this.concluded(answer, lesson, await Promise.all(answer.samplers.map((name) => this.judged(name, answer.theta))));
+        return this.concluded(answer, lesson, await Promise.all(answer.samplers.map((name) => this.checked(name, answer.theta))));
       default:
         return this.concluded(answer, lesson, await this.all(answer.of), answer.beside && (await this.all(answer.beside)));
     }

@@ -41,14 +41,14 @@ export async function copied(from: HTMLElement): Promise<string> {
 
 /** Says a line to those who listen, at most once a second, the last one always. */
 export class Speaker {
-  private said = 0;
+  private reported = 0;
   private timer = 0;
   constructor(private readonly at: HTMLElement) {}
   say(line: string): void {
     window.clearTimeout(this.timer);
-    const wait = Math.max(0, this.said + 1000 - performance.now());
+    const wait = Math.max(0, this.reported + 1000 - performance.now());
     this.timer = window.setTimeout(() => {
-      this.said = performance.now();
+      this.reported = performance.now();
       if (this.at.textContent !== line) this.at.textContent = line;
     }, wait);
   }

@@ -42,7 +42,7 @@ void reference_room() {
         ReferenceFilm& film = bench().reference;
         film.width = bench().experiment.image.width, film.height = bench().experiment.image.height;
         film.s = bench().scene.s();
-        say(ordered_json::object());
+        respond(ordered_json::object());
     });
     begin(std::move(parts));
 }
@@ -91,14 +91,14 @@ CRESCENT_EXPORT(reference_tile)(int x0, int y0, int x1, int y1)->const void* {
 }
 
 /// Room for `size` bytes of a tile, to be put.
-CRESCENT_EXPORT(tile_room)(std::size_t size)->void* {
+CRESCENT_EXPORT(tile_buffer)(std::size_t size)->void* {
     scratch<std::byte>().resize(size);
     return scratch<std::byte>().data();
 }
 
 /// Room for film `index`, plane by plane: what begin() would take at once; for the reference where it is -1. {} when it
 /// is there.
-CRESCENT_EXPORT(film_room)(int index)->void {
+CRESCENT_EXPORT(film_buffer)(int index)->void {
     if (index < 0) return reference_room();
     Bench& b = bench();
     const auto at = static_cast<std::size_t>(index);
@@ -117,7 +117,7 @@ CRESCENT_EXPORT(film_room)(int index)->void {
     parts.emplace_back([=] {
         slot(index).film.width = bench().experiment.image.width,
         slot(index).film.height = bench().experiment.image.height;
-        say(ordered_json::object());
+        respond(ordered_json::object());
     });
     begin(std::move(parts));
 }
@@ -136,7 +136,7 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }
 
-/// The tile in tile_room() -> its place in film `index`.
+/// The tile in tile_buffer() -> its place in film `index`.
 CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     Bench& b = bench();
     Film& film = slot(index).film;
@@ -158,13 +158,13 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
 }
 
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
-    ensure(bench().reference.size() == bench().pixels(), "film_room(-1) came before");
+    ensure(bench().reference.size() == bench().pixels(), "film_buffer(-1) came before");
     const TileBox box = box_of(x0, y0, x1, y1);
     count_work(pixels_of(box) * put_cost);
     put_planes(bench().reference, box, scratch<std::byte>().data());
 }
 
 /// The hash of film `index`, of the reference for -1.
-CRESCENT_EXPORT(hash_of)(int index)->void { say(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
+CRESCENT_EXPORT(hash_of)(int index)->void { respond(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
 
 }  // namespace crescent::web

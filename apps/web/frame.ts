@@ -3,7 +3,7 @@
 import { el } from "./dom";
 
 export type Drawn = [number, number, number, number];
-/** A box with its name. move: its corners can be moved, what they come to is told; reached: also by the tabulator. */
+/** A box with its name. move: its corners can be moved, the new box is passed on; reached: also by the tabulator. */
 export interface Outlined { name: string; box: readonly number[]; move?: ((box: Drawn) => void) | undefined; reached?: boolean | undefined }
 export interface Picking {
   pixel?(i: number, j: number): void;

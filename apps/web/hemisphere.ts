@@ -1,7 +1,7 @@
 // The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
 // running mean, the largest sample taken apart.
 import { choice } from "./controls";
-import { DoorError } from "./door";
+import { DoorError } from "./api";
 import { el, made } from "./dom";
 import { Model } from "./model";
 import { State } from "./state";
@@ -41,7 +41,7 @@ function marks(pen: CanvasRenderingContext2D, pixel: Opened): void {
   }
 }
 
-/** The draws: area by weight, those that met a light square, so that it is told without colour. */
+/** The draws: area by weight, those that met a light square, so that it is visible without colour. */
 function points(pen: CanvasRenderingContext2D, pixel: Opened): void {
   for (const [x, y, side, met] of pixel.draws) {
     if (met === -2) continue;

@@ -59,7 +59,7 @@ function question(lesson: Lesson, asker: Asker, given: string | undefined, take:
 const unsaid = "The lines above say what was found; it is not what this lesson has words for.";
 
 /** Words with formulas, as the core sets them. */
-const set = (model: Model, words: string): DocumentFragment => made(model.door.say("html", words));
+const set = (model: Model, words: string): DocumentFragment => made(model.api.say("html", words));
 
 /** An answer as the question words it. */
 function worded({ ask }: Lesson, value: string): string {

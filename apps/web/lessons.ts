@@ -11,7 +11,7 @@ export type Ask =
 
 /** How the core answers: from measurements, from one sample, from a furnace, or from the verdicts of samplers. */
 export type Answer =
-  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // beside: told, not asked
+  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // beside: reported, not asked
   | { by: "firefly"; arm: string; n: number; region: "H" | "S" }
   | { by: "furnace"; name: string; n: number }
   | { by: "support" | "chi-square" | "t-test" | "which"; samplers: readonly string[]; theta: number; surface?: string };
@@ -139,7 +139,7 @@ export const lessons: readonly Lesson[] = [
     id: "t-test", title: "A t-test rejects. Is the sampler wrong?", minutes: 8, arms: ["phong"], n: 64, play: [],
     aim: "A t-test needs a variance. Where the tail has none, its rejection says nothing.",
     question: "Phong at the normal, on a surface that is partly diffuse: its mean is compared with the integral, and a t-test rejects. Is the sampler proved wrong?",
-    ask: { kind: "choice", options: [{ value: "wrong", words: "yes, rejected is rejected" }, { value: "inconclusive", words: "no, it cannot be told that way" }, { value: "right", words: "no, it is right" }] },
+    ask: { kind: "choice", options: [{ value: "wrong", words: "yes, rejected is rejected" }, { value: "inconclusive", words: "no, it cannot be decided that way" }, { value: "right", words: "no, it is right" }] },
     answer: { by: "t-test", samplers: ["phong"], theta: 0, surface: "Lambert + Phong" },
     check: { samplers: names(["phong", "cosine", "mixture", "uniform"]), theta: [0, 15, 30, 45, 60, 75, 85] },
     says: {
@@ -176,7 +176,7 @@ export const lessons: readonly Lesson[] = [
   },
   {
     id: "fault", title: "Find the fault", minutes: 10, arms: ["cosine", "phong"], n: 64, play: [],
-    aim: "A sampler is judged by its draws, its density and its weight, each against the others.",
+    aim: "A sampler is checked by its draws, its density and its weight, each against the others.",
     question: "Six samplers, one of them right, five with one fault each. Which one is right? The pictures show 512 draws of each over the density that it claims.",
     ask: { kind: "choice", options: [..."abcdef"].map((letter) => ({ value: letter, words: `sampler ${letter}` })) },
     answer: { by: "which", samplers: six, theta: 45 },

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "door.h"
+#include "api.h"
 
 namespace crescent::web {
 
@@ -115,13 +115,13 @@ const ArmPlan& arm_of(const std::string& name) {
 
 /// {file, text, set: ["path=value"], published: text or ""} -> what the page shows of it.
 CRESCENT_EXPORT(open)()->void {
-    const ordered_json asked = request();
-    Experiment e = parse(asked.at("text").get<std::string>(), asked.at("file").get<std::string>(),
-        asked.at("set").get<std::vector<std::string>>());
+    const ordered_json query = request();
+    Experiment e = parse(query.at("text").get<std::string>(), query.at("file").get<std::string>(),
+        query.at("set").get<std::vector<std::string>>());
     for (const ArmPlan& arm : e.arms)
         if (!find_arm_info(arm.sampler))
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
-    const std::string published = asked.at("published").get<std::string>();
+    const std::string published = query.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);
     std::vector<Slot> films;  // room that was taken serves again; two images of the largest size would not fit
     if (opened && e.image.width == opened->experiment.image.width && e.image.height == opened->experiment.image.height)
@@ -129,7 +129,7 @@ CRESCENT_EXPORT(open)()->void {
     opened.reset();
     opened = std::make_unique<Bench>(std::move(e));
     opened->slots = std::move(films);
-    say(described(opened->experiment));
+    respond(described(opened->experiment));
 }
 
 /// The samplers that an arm may have, with a line on each.
@@ -138,7 +138,7 @@ CRESCENT_EXPORT(samplers)()->void {
     for (const SamplerInfo& info : sampler_infos())
         all.push_back({{"name", info.name}, {"label", info.label}, {"summary", formula::html(info.summary)},
             {"needs_s", info.needs_s}});
-    say(all);
+    respond(all);
 }
 
 }  // namespace crescent::web

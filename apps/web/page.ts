@@ -2,7 +2,7 @@
 import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, Door, DoorError } from "./door";
+import { Box, Api, DoorError } from "./api";
 import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
@@ -33,7 +33,7 @@ export class Page implements Viewer {
   private awaited = 0; // and what is not yet painted
   private good: Opened | undefined; // what was opened last
   private refused = false; // what was set since cannot be
-  private said: string[] = []; // of the address, until something is opened
+  private response: string[] = []; // of the address, until something is opened
   private idle = true; // nothing is computed for a bench that is not seen
   private asRead = false; // an answered lesson that the address shows with settings of its own
   private known: Asker | undefined;
@@ -43,11 +43,11 @@ export class Page implements Viewer {
 
   start(module: WebAssembly.Module, worker: string): void {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
-    const door = new Door(module), turns = new Turns(door.number("most_of_part"));
+    const api = new Api(module), turns = new Turns(api.number("most_of_part"));
     const pool = new Pool(module, worker, count, turns);
     void pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); });
-    this.model = new Model(module, door, pool, turns, this);
-    this.samplers = this.model.door.ask<Sampler[]>("samplers");
+    this.model = new Model(module, api, pool, turns, this);
+    this.samplers = this.model.api.ask<Sampler[]>("samplers");
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
@@ -74,24 +74,24 @@ export class Page implements Viewer {
 
   private fromAddress(): void {
     if (this.state && write(this.state) === location.hash) return;
-    this.said = [];
-    this.state = read(location.hash, this.data.sources, this.samplers.map((s) => s.name), this.said);
+    this.response = [];
+    this.state = read(location.hash, this.data.sources, this.samplers.map((s) => s.name), this.response);
     const { answers, lesson } = this.state, answered = answers[lesson] !== undefined;
     this.asRead = answered && new URLSearchParams(location.hash.slice(1)).has("arms");
     this.show();
-    if (this.said.length > 0) byId("wrong").replaceChildren(...this.said.map((line) => el("p", {}, line)));
+    if (this.response.length > 0) byId("wrong").replaceChildren(...this.response.map((line) => el("p", {}, line)));
     if (byId("bench").hidden) history.replaceState(null, "", write(this.state));
     else if (!answered) this.open(); // an answered lesson opens what it shows
   }
 
-  /** Opens what the state says; settings that the core refuses are told and left out. */
-  private open(said: string[] = this.said): void {
+  /** Opens what the state says; settings that the core refuses are reported and left out. */
+  private open(response: string[] = this.response): void {
     const { state, source } = this;
-    this.said = [];
+    this.response = [];
     this.idle = false;
     this.openedAt = performance.now();
     const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
-    byId("wrong").replaceChildren(...said.map((line) => el("p", {}, line)));
+    byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
       const plain = fresh(state.experiment, source), { good } = this;
@@ -100,7 +100,7 @@ export class Page implements Viewer {
       const back = good?.experiment === state.experiment && differs(good) ? good : undefined, { set, arms } = back ?? plain;
       Object.assign(state, { set: { ...set }, arms: [...arms], arm: 0 });
       this.refused = true;
-      this.open([...said, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
+      this.open([...response, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
     });
   }
 
@@ -139,7 +139,7 @@ export class Page implements Viewer {
       picture.outlines(this.state.pixel);
       picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
       if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
-      else picture.about(d.arms[shown[picture.index]!.arm]!), this.meters(picture.index);
+      else picture.about(d.arms[shown[picture.index]!.arm]!), this.metrics(picture.index);
     }
     const held = (document.activeElement as HTMLElement | null)?.dataset["corner"];
     byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
@@ -167,22 +167,22 @@ export class Page implements Viewer {
 
   painted(index: number, box: Box): void {
     const picture = index < 0 ? this.pictures.at(-1) : this.pictures[index];
-    const told = document.documentElement.dataset;
-    told["first"] ??= String(Math.round(performance.now()));
-    if (this.awaited && index >= 0) (told["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
+    const info = document.documentElement.dataset;
+    info["first"] ??= String(Math.round(performance.now()));
+    if (this.awaited && index >= 0) (info["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
     if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
   }
 
-  private meters(index: number): void { this.pictures[index]?.meters(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
-  tailed(): void { this.model.shown.forEach((_, index) => this.meters(index)); }
+  private metrics(index: number): void { this.pictures[index]?.metrics(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
+  tailed(): void { this.model.shown.forEach((_, index) => this.metrics(index)); }
 
   measured(): void {
     const { shown } = this.model, painted = this.model.referenceDone && this.state.view !== "photograph" ? this.repaint() : undefined;
     this.tailed();
     const region = this.model.described.regions[0]?.name;
-    const lines = shown.filter((s) => s.rungs.length > 0).map((s) => {
-      const last = s.rungs.at(-1)!;
-      return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.meters.meters[`rmse.${region}`]!.text}` : ""}`;
+    const lines = shown.filter((s) => s.sampleCounts.length > 0).map((s) => {
+      const last = s.sampleCounts.at(-1)!;
+      return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.metrics.metrics[`rmse.${region}`]!.text}` : ""}`;
     });
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
@@ -191,13 +191,13 @@ export class Page implements Viewer {
 
   /** Tells the tests, once all of it is shown. */
   private async finished(shown: Promise<unknown>): Promise<void> {
-    const { described, took } = this.model, told = document.documentElement.dataset;
-    told["films"] = String(Math.round(this.model.filmsTook));
+    const { described, took } = this.model, info = document.documentElement.dataset;
+    info["films"] = String(Math.round(this.model.filmsTook));
     await shown;
     if (described !== this.model.described || this.idle) return;
-    told["memory"] = `${this.model.door.size} ${this.model.pool.size}`; // of the page's instance, of the workers
-    told["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
-    told["took"] = String(Math.round(took));
+    info["memory"] = `${this.model.api.size} ${this.model.pool.size}`; // of the page's instance, of the workers
+    info["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
+    info["took"] = String(Math.round(took));
   }
 
   /** All pictures, unless others are wanted meanwhile. */

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "door.h"
+#include "api.h"
 
 namespace crescent::web {
 
@@ -15,7 +15,7 @@ inline constexpr std::uint64_t most_of_part = 100'000;
 /// What a pixel of a reference counts: one in a penumbra takes twice what the others do, by the rates in docs/speed.md.
 inline constexpr std::uint64_t reference_cost = 2000;
 /// What a pixel counts in films beside its samples, put into its place, measured, for the scale of maps, as a colour.
-inline constexpr std::uint64_t film_cost = 30, put_cost = 2, meter_cost = 1, scale_cost = 3, colour_cost = 10;
+inline constexpr std::uint64_t film_cost = 30, put_cost = 2, metric_cost = 1, scale_cost = 3, colour_cost = 10;
 /// Pixels of a plane that count one where it is hashed, or takes its memory.
 inline constexpr std::uint64_t hashed = 10;
 /// And a sample that is looked at by itself, for a tail.
@@ -26,7 +26,7 @@ inline constexpr std::uint64_t step_cost = 10;
 inline constexpr std::uint64_t furnace_cost = 1;
 
 /// What "box": [x0, y0, x1, y1] of a request means, both ends inside.
-Box asked_box(const ordered_json& asked);
+Box requested_box(const ordered_json& query);
 TileBox tile_of(const Box& box);
 std::uint64_t pixels_of(const TileBox& box);
 

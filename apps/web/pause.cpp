@@ -1,4 +1,4 @@
-// A sampler is asked in blocks of a quarter of a part; where the next one does not fit, the import door.pause leaves
+// A sampler is asked in blocks of a quarter of a part; where the next one does not fit, the import api.pause leaves
 // the module. The locals go into 128 KiB of memory, whose first two words say from where to where.
 #include "pause.h"
 
@@ -11,7 +11,7 @@ namespace crescent::web {
 namespace {
 
 /// The page's: leaves the module, unless it comes back to it.
-extern "C" __attribute__((import_module("door"), import_name("pause"))) void door_pause();
+extern "C" __attribute__((import_module("api"), import_name("pause"))) void door_pause();
 
 /// What an answer of a sampler counts, in samples of a pixel: it is asked in double and one by one.
 constexpr std::uint64_t answer_cost = 40;
@@ -49,8 +49,8 @@ public:
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
         ask(at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner().true_f(a, o); });
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner().reference_f(a, o); });
     }
     void yield_to_host(std::size_t steps) const override { make_room(steps * step_cost); }
 
@@ -77,7 +77,7 @@ std::shared_ptr<const SamplerAdapter> paused(std::shared_ptr<const SamplerAdapte
 }
 
 /// That room, empty.
-CRESCENT_EXPORT(pause_room)()->const void* {
+CRESCENT_EXPORT(pause_buffer)()->const void* {
     kept[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(kept.data() + 4));
     kept[1] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(kept.data() + kept.size()));
     return kept.data();

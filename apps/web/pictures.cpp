@@ -1,4 +1,4 @@
-// Films -> pixels for a canvas: photographs through the display chain, instruments through turbo or through two hues.
+// Films -> pixels for a canvas: photographs through the display chain, back ends through turbo or through two hues.
 // Rows run from the top, four bytes a pixel: R, G, B, 255.
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,7 @@ namespace {
 
 enum class Picture { photograph, heat, signed_map };
 
-const Srgb8 background{20, 21, 23};  // where an instrument has nothing to say
+const Srgb8 background{20, 21, 23};  // where an back end has nothing to say
 
 /// Two hues that stand for two arms, each fading to the ground: t in [-1, 1].
 Srgb8 two_hues(double t) {
@@ -84,7 +84,7 @@ struct Shade {
             const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
             put(&disk_pixels[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
         }
-        if (to == side) say(ordered_json::object());
+        if (to == side) respond(ordered_json::object());
     }
 };
 
@@ -188,7 +188,7 @@ CRESCENT_EXPORT(scale)(int count)->void {
         for (int film = 0; film < count; ++film)
             for (std::size_t from = 0; from < pixels; from += most)
                 parts.emplace_back([=] { ((*of).*step)(film, from, std::min(pixels, from + most)); });
-    parts.emplace_back([=] { say(ordered_json{{"top", of->value()}}); });
+    parts.emplace_back([=] { respond(ordered_json{{"top", of->value()}}); });
     begin(std::move(parts));
 }
 

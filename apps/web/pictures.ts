@@ -1,7 +1,7 @@
-// The pictures side by side, each with its meters, the hash of its film and the program's.
-import { Box } from "./door";
+// The pictures side by side, each with its metrics, the hash of its film and the program's.
+import { Box } from "./api";
 import { el, made, minus } from "./dom";
-import { Arm, Described, Meter, Model, Shown } from "./model";
+import { Arm, Described, Metric, Model, Shown } from "./model";
 import { byKey, Frame, Outlined, Picking } from "./frame";
 import { State } from "./state";
 
@@ -15,7 +15,7 @@ export class Picture {
   private readonly words = el("figcaption");
   private readonly aim = el("p", { class: "aim" });
   private readonly versus = el("p", { class: "aim" });
-  private readonly table = el("div", { class: "meters" });
+  private readonly table = el("div", { class: "metrics" });
 
   constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
     this.frame = new Frame(d, picking);
@@ -38,9 +38,9 @@ export class Picture {
   /** The scale of the maps beside, under the reference. */
   legend(model: Model, state: State, top: number): void {
     if (state.view === "photograph" || !model.referenceDone) return this.table.replaceChildren();
-    const heat = state.view === "heat", width = 256, end = model.door.say("figures", undefined, top);
+    const heat = state.view === "heat", width = 256, end = model.api.say("figures", undefined, top);
     const bar = el("canvas", { width, height: 1, class: "bar", role: "img", "aria-label": heat ? `the colours of |Y − Y_ref| from 0 to ${end}` : "the two colours of the signed maps" });
-    bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.door.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
+    bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.api.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
     const ends = heat ? ["|Y − Y_ref| = 0", end] : [`the other arm is nearer by ${end}`, `this one by ${end}`];
     this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
@@ -75,26 +75,26 @@ export class Picture {
   }
 
   /** Every row is there from the start, so that nothing moves when its number comes. `native`: the hash of the program's film, where this one has it. */
-  meters(s: Shown, native: (key: string) => string | undefined): void {
-    const last = s.rungs.at(-1);
+  metrics(s: Shown, native: (key: string) => string | undefined): void {
+    const last = s.sampleCounts.at(-1);
     this.name(s.name, last ? `N = ${last.n}` : "being sampled");
-    const m = last?.meters, rows: HTMLTableRowElement[] = [], waiting: Meter = { value: 0, text: "…" };
-    const row = (name: string, meter: Meter | undefined = last ? undefined : waiting, note = ""): void => {
-      if (!meter) return;
+    const m = last?.metrics, rows: HTMLTableRowElement[] = [], waiting: Metric = { value: 0, text: "…" };
+    const row = (name: string, metric: Metric | undefined = last ? undefined : waiting, note = ""): void => {
+      if (!metric) return;
       const room = this.d.source !== "" && !note; // for what was published, where anything was
-      const published = meter.published || room ? el("small", {}, meter.published ? `published ${minus(meter.published)}` : "\u00a0") : undefined;
+      const published = metric.published || room ? el("small", {}, metric.published ? `published ${minus(metric.published)}` : "\u00a0") : undefined;
       rows.push(el("tr", {}, el("th", { scope: "row" }, name),
-        el("td", { class: "n" }, minus(meter.text), published)));
+        el("td", { class: "n" }, minus(metric.text), published)));
       if (note) rows.push(el("tr", { class: "note" }, el("td", { colspan: 2 }, note)));
     };
     for (const { name } of this.d.regions) {
-      row(`RMSE of ${name}`, m?.meters[`rmse.${name}`], m?.unsure?.includes(name) ? "the reference is not good enough" : "");
+      row(`RMSE of ${name}`, m?.metrics[`rmse.${name}`], m?.unsure?.includes(name) ? "the reference is not good enough" : "");
       const tail = s.tails[name];
       row(`tail k̂ of ${name}`, tail ? { value: 0, text: tail.text ?? "–" } : waiting, tail?.words ?? "being measured");
     }
-    row("fireflies", m?.meters["fireflies"]);
-    row("under the horizon", m?.meters["horizon_frac"]);
-    row("mean Y", m?.meters["y_mean"]);
+    row("fireflies", m?.metrics["fireflies"]);
+    row("under the horizon", m?.metrics["horizon_frac"]);
+    row("mean Y", m?.metrics["y_mean"]);
     if (m && m.bad > 0) row("not a number", { value: m.bad, text: String(m.bad) });
     this.table.replaceChildren(el("table", {}, el("tbody", {}, ...rows)),
       el("p", { class: "hash" }, ...(m && last ? ["film ", el("code", { "data-hash": `${s.name} ${last.n}` }, m.hash), ...this.beside(m.hash, native(m.key))] : ["film …"])));

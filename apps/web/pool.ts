@@ -1,6 +1,6 @@
 // Jobs -> answers, in workers or, where a browser has none, in slices on the page's own thread. A new opening cancels
 // all that was asked before it: what is under way is dropped when it comes.
-import { Box, DoorError } from "./door";
+import { Box, DoorError } from "./api";
 import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
 import { Turns } from "./turns";
 
@@ -179,11 +179,11 @@ export class Pool {
   private async slices(): Promise<void> {
     if (this.slicing) return;
     this.slicing = true;
-    const { lasting, passing } = this.alone!, told = document.documentElement.dataset;
+    const { lasting, passing } = this.alone!, info = document.documentElement.dataset;
     while (lasting.busy || passing.busy) {
       await this.turns.pass();
       if (lasting.busy || passing.busy) this.turns.count((lasting.busy ? lasting : passing).part());
-      told["part"] = String(this.most);
+      info["part"] = String(this.most);
     }
     this.slicing = false;
   }

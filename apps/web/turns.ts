@@ -6,7 +6,7 @@ const mostParts = 4; // of apps/web/parts.h
 const bins = 64; // ms
 
 export class Turns {
-  private largest = 0; // work of a turn so far, told to the tests
+  private largest = 0; // work of a turn so far, read by the tests
   /** How many turns took so many ms; the last bin has what took longer. */
   private readonly took = new Array<number>(bins).fill(0);
   private work = 0;

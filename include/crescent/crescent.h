@@ -2,19 +2,19 @@
 //
 //   load, parse       an experiment file or text -> Experiment; InputError names every mistake with its place
 //   Scene             an Experiment -> what a pixel sees: surface point, normal, BRDF, lights, what blocks them
-//   Arms              the samplers on trial as a list of types; for_each_sampler walks it
-//   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
+//   Arms              the samplers on case as a list of types; for_each_sampler walks it
+//   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a sample count
 //   OpenPixel         one pixel of a scene -> each of its samples taken apart: direction, density, f, L, cosine, X
 //   judge             a sampler by itself -> ordered verdicts with their evidence; check/gtest.h has the matchers
-//   find_instrument   what else can compute films, where a door has brought it
+//   find_backend   what else can compute films, where a door has brought it
 //   film_maker        what makes an explainer of a run, where a door has brought it
 //   plan, prepare, execute, collect, write
-//                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and meters -> every
+//                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and metrics -> every
 //                     number -> a folder; a stop is an answer, see run/execute.h
 //   join              runs of parts of an experiment's seeds -> the metrics of all of them
-//   measure_in_memory an Experiment -> films, meters and evidence, nothing written
-//   compare           renders of other programs -> meters, bias tests, plates and report under one folder
-//   run               an Experiment -> films, meters, plates and report under one folder
+//   measure_in_memory an Experiment -> films, metrics and evidence, nothing written
+//   compare           renders of other programs -> metrics, bias tests, plates and report under one folder
+//   run               an Experiment -> films, metrics, plates and report under one folder
 //
 // Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
 // reader's mistake, OutputError something missing or not writable, Interrupted a stop that was asked for, Bug ours.

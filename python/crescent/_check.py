@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._files import names_a_file, sampler_at
-from ._judgement import CheckResult
+from ._result import CheckResult
 from ._libraries import library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
 
@@ -109,7 +109,7 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
     return max(counts, default=1), weight is not None, delta is not None
 
 
-def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
+def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     grid = _grid(wo_deg, s.wo)
     try:
         s = _of_library(s)
@@ -120,7 +120,7 @@ def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases
     count = s.channels or channels
     takes_wo = s.wo != "none"
     eta = None if s.eta is None else [float(v) for v in np.atleast_1d(s.eta)]
-    return _crescent.trials_of_callables(
+    return _crescent.cases_of_callables(
         sample=_arrays.asks_sample(s.sample, s.title(), takes_wo),
         pdf=None if s.pdf is None else _arrays.asks_pdf(s.pdf, s.title(), takes_wo),
         f=None if s.f is None else _arrays.asks_f(s.f, s.title(), count),
@@ -141,8 +141,8 @@ def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases
     )
 
 
-def _judge(
-    trials: _crescent.CheckCases,
+def _run_checks(
+    cases: _crescent.CheckCases,
     command: str,
     *,
     alpha: float = 1e-3,
@@ -158,8 +158,8 @@ def _judge(
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total)")
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
-    judged = _crescent.judge(
-        trials,
+    checked = _crescent.run_checks(
+        cases,
         other,
         alpha=alpha,
         seed=seed,
@@ -170,7 +170,7 @@ def _judge(
         command=command,
         progress=progress,
     )
-    return CheckResult(judged)
+    return CheckResult(checked)
 
 
 def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
@@ -181,7 +181,7 @@ def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
     return replace(sample, **known)
 
 
-def _trials_and_title(
+def _cases_and_title(
     sample: Any,
     pdf: Any,
     f: Any,
@@ -197,11 +197,11 @@ def _trials_and_title(
     if isinstance(sample, str):
         if pdf is not None or f is not None or known:
             raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")
-        return _crescent.trials_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
+        return _crescent.cases_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
     if settings:
         raise TypeError("settings are of a built-in arm; a sampler of one's own has its parameters in itself")
     sampler = _sampler_of(sample, pdf, f, known)
-    return _trials(sampler, full, wo_deg), sampler.title()
+    return _cases(sampler, full, wo_deg), sampler.title()
 
 
 def describe(
@@ -219,13 +219,13 @@ def describe(
 ) -> Description:
     """What distribution the draws of a sampler have at each w_o; its arguments are those of :func:`check`.
 
-    Nothing is judged, and neither pdf nor f is evaluated but to learn their shapes. `full` makes sixteen times as many
+    Nothing is checked, and neither pdf nor f is evaluated but to learn their shapes. `full` makes sixteen times as many
     draws.
     """
-    trials, _ = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    cases, _ = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
-    text, numbers = _crescent.describe(trials, seed=seed, full=full, threads=threads, progress=progress)
+    text, numbers = _crescent.describe(cases, seed=seed, full=full, threads=threads, progress=progress)
     return Description(text, json.loads(numbers))
 
 
@@ -257,18 +257,18 @@ def check(
     sampler may be called wrong, over everything in the call. `against`: a second sampler, compared with the first.
     `progress(what, done, total)` is called some times a second.
     """
-    trials, title = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
     if isinstance(against, str):
-        other = _crescent.arm_beside(against, trials)
+        other = _crescent.baseline_of(against, cases)
     elif isinstance(against, Sampler):
-        other = _trials(against, full, wo_deg)
+        other = _cases(against, full, wo_deg)
     elif against is not None:
         raise TypeError(
             f"against is {type(against).__name__}: expected a crescent.Sampler(sample, pdf, f), or the name of an arm"
         )
-    return _judge(
-        trials,
+    return _run_checks(
+        cases,
         f"crescent.check({title!r})",
         alpha=alpha,
         seed=seed,

@@ -1,7 +1,7 @@
 """Arrays of other libraries: what a callable is handed are arrays of its own library, on its device and of its dtype.
 
 What lies there stays there between calls: directions that `sample` gave and `pdf` and `f` are asked for are handed as
-they lie, and so are rows that were asked before. What is judged is brought to the host by DLPack, or by NumPy's
+they lie, and so are rows that were asked before. What is checked is brought to the host by DLPack, or by NumPy's
 protocol where the host cannot read it in place.
 """
 

@@ -298,7 +298,7 @@ class Measured:
         return f"<Measured: {len(self.films)} films; assertions {'hold' if self.holds else 'fail'}>"
 
 
-_COUNTS = frozenset(_crescent.counting_meters())
+_COUNTS = frozenset(_crescent.counting_metrics())
 
 
 def _field(column: str, text: str, meter: str) -> Any:

@@ -16,7 +16,7 @@ import numpy as np
 from . import _arrays
 from ._check import _of_library, check
 from ._files import names_a_file, sampler_at
-from ._judgement import CheckResult
+from ._result import CheckResult
 from ._sampler import Sampler
 
 ALPHA = 1e-3  #: of a whole session
@@ -28,7 +28,7 @@ class Session:
 
     alpha: float = ALPHA
     tests: int = 1
-    judged: int = 0
+    checked: int = 0
     spent: float = 0.0  #: of alpha, so far
     calls: dict[str, int] = field(default_factory=dict)
     test: str = ""  #: that is running
@@ -39,7 +39,7 @@ class Session:
         k = self.calls[self.test] = self.calls.get(self.test, 0) + 1
         of_test = -np.expm1(np.log1p(-self.alpha) / max(self.tests, 1))
         share = float(of_test * 6 / (np.pi * k) ** 2)
-        self.judged += 1
+        self.checked += 1
         self.spent += share
         return share
 
@@ -70,14 +70,14 @@ def assert_sampler(
     share = alpha if alpha is not None else _session.share() if _session else ALPHA
     if isinstance(sample, str) and names_a_file(sample):
         sample = sampler_at(sample, _session.root if _session else None)
-    judgement = check(sample, pdf, f, alpha=share, **known)
+    result = check(sample, pdf, f, alpha=share, **known)
     allowed = set(allow)
     bad = [
-        v for v in judgement if v.state in ("wrong", "error") or (v.state == "inconclusive" and v.name not in allowed)
+        v for v in result if v.state in ("wrong", "error") or (v.state == "inconclusive" and v.name not in allowed)
     ]
     if bad:
-        raise AssertionError(f"the sampler is not right\n{judgement}")
-    return judgement
+        raise AssertionError(f"the sampler is not right\n{result}")
+    return result
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ void must_be(std::size_t n, std::size_t wanted) {
 
 }  // namespace
 
-/// The callables are asked with the lock held; what they raise stops the judgement and is raised again at its end.
+/// The callables are asked with the lock held; what they raise stops the result and is raised again at its end.
 template <class Ask> void CallableSampler::ask(Ask&& ask) const {
     if (raised_) raised_->check();
     const Locked held;

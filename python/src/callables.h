@@ -1,4 +1,4 @@
-// Vectorised Python callables as a sampler on trial. They are asked in batches, by any thread, with the interpreter's
+// Vectorised Python callables as a sampler on case. They are asked in batches, by any thread, with the interpreter's
 // lock held for the call alone:
 //
 //   sample(wo[n,3], u[n,k]) -> (wi[n,3], pdf[n], weight[n,c] or None, delta[n] or None)
@@ -35,8 +35,8 @@ public:
     void f(std::span<const Pair> at, std::span<double> out) const override;
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override;
 
-    /// Who hears of what the callables raise; only while a judgement is under way.
-    void tell(Raised* raised) const { raised_ = raised; }
+    /// Who hears of what the callables raise; only while a result is under way.
+    void set_raised(Raised* raised) const { raised_ = raised; }
     /// Draws that the callables made since this object was.
     std::uint64_t draws() const { return draws_; }
 

@@ -65,7 +65,7 @@ RunResult result_of(Measured&& m) {
     const Provenance& p = m.provenance;
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
-            {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.instrument}},
+            {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
         {}, {}};
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
     for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
@@ -84,7 +84,7 @@ FilmList films_of(nb::handle self) {
     return out;
 }
 
-/// The references that the meters use, (s, planes).
+/// The references that the metrics use, (s, planes).
 ReferenceList references_of(nb::handle self) {
     nb::list out;
     for (const ReferenceFilm& film : nb::cast<const RunResult&>(self).references)
@@ -129,7 +129,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     RunResult out;
     watched(monitor, raised, progress, false, [&] {
         const RunPlan what = plan(experiment, {first, last});
-        const Engine engine = settled({.threads = threads, .isa = isa, .instrument = nullptr});
+        const Engine engine = settled({.threads = threads, .isa = isa, .backend = nullptr});
         Prepared prepared = prepare(what, engine, monitor);
         std::vector<JobResult> results;
         for (const Job& job : what.jobs) {
@@ -160,8 +160,8 @@ void write_folder(const RunResult& r, const std::string& folder) {
     staging.commit(monitor);
 }
 
-/// The meters whose values are whole numbers.
-std::vector<std::string> counting_meters() {
+/// The metrics whose values are whole numbers.
+std::vector<std::string> counting_metrics() {
     std::vector<std::string> out{"pixels", "tail_exceedances"};
     const auto add = [&](std::string_view name, const MetricInfo&, auto value) {
         if constexpr (std::is_same_v<decltype(value), std::uint64_t>) out.emplace_back(name);
@@ -218,7 +218,7 @@ void add_experiments(nb::module_& m) {
         .def("write", &write_folder, "folder"_a)
         .def("__getstate__", [](nb::handle self) { return state_of(self); })
         .def("__setstate__", &restore);
-    m.def("counting_meters", &counting_meters, "The meters whose values are whole numbers.");
+    m.def("counting_metrics", &counting_metrics, "The metrics whose values are whole numbers.");
     m.def(
         "join",
         [](const std::vector<std::string>& parts) {

@@ -1,4 +1,4 @@
-"""Samplers in NumPy that the tests judge."""
+"""Samplers in NumPy that the tests check."""
 
 import numpy as np
 

@@ -275,5 +275,5 @@ def test_what_is_no_plugin_of_that_kind_is_told(mi):
     with pytest.raises(ValueError, match="no emitter in it"):
         adapters.mitsuba_emitter({"type": "sphere"})
     for light in ({"type": "point", "position": [0, 0, 1]}, {"type": "directional", "direction": [0, 0, 1]}):
-        with pytest.raises(ValueError, match="no density to judge"):
+        with pytest.raises(ValueError, match="no density to check"):
             adapters.mitsuba_emitter(light)

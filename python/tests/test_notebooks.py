@@ -12,7 +12,7 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
 def test_there_are_two():
-    assert {n.stem for n in NOTEBOOKS} == {"judge_a_numpy_sampler", "arms_at_equal_n"}
+    assert {n.stem for n in NOTEBOOKS} == {"check_a_numpy_sampler", "arms_at_equal_n"}
 
 
 def run_cell(source, names):

@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 using Texts = std::vector<std::string>;
 
 struct Listener : ProgressMonitor {
-    int said = 0;
-    void log(std::string_view) override { ++said; }
+    int message = 0;
+    void log(std::string_view) override { ++message; }
 };
 
 class Journals : public testing::Test {
@@ -115,14 +115,14 @@ TEST_F(Journals, AreNotLedElsewhereByALink) {
     write({{"one"}});
     std::ifstream victim(folder_ / "victim");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(victim), {}), "victim");
-    EXPECT_EQ(monitor_.said, 1);
+    EXPECT_EQ(monitor_.message, 1);
 }
 
 TEST_F(Journals, ThatCannotBeWrittenSaySo) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "deep") << "a file where the folder should be";
     write({{"one"}, {"two"}});
-    EXPECT_EQ(monitor_.said, 1) << "once, and the work goes on";
+    EXPECT_EQ(monitor_.message, 1) << "once, and the work goes on";
 }
 
 }  // namespace

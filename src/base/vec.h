@@ -58,7 +58,7 @@ template <class F> constexpr Vec3<F> as(Vec3d v) {
 
 // ---- A colour: three numbers of linear Rec.709, and what it is worth to the eye.
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 using Rgb = std::array<double, 3>;  // linear Rec.709
 
@@ -69,4 +69,4 @@ template <class C> double luminance(const C& rgb) {
     return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
 }
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

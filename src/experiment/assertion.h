@@ -12,7 +12,7 @@ namespace crescent::inline experiment {
 
 /// One side of a check. n = 0: not said; s = 0: the experiment's own.
 struct ParsedQuantity {
-    std::string word, region, subject;
+    std::string word, region, adapter;
     std::uint64_t n = 0;
     double s = 0;
     std::optional<double> number = {};  // a plain number; the rest is empty then
@@ -34,7 +34,7 @@ bool holds(double left, std::string_view op, double right);
 
 // ---- The language of checks: quantities of a run by name, compared with each other or with a number.
 //   check    = side op side            op = < <= > >= ==
-//   side     = number | word[.region][(subject[, n=N][, s=S])]
+//   side     = number | word[.region][(sampler[, n=N][, s=S])]
 // e.g. "rmse.H(phong, n=64, s=32) < rmse.H(cosine, n=64, s=32)", "bad(phong) == 0".
 
 struct Experiment;
@@ -46,9 +46,9 @@ enum class QuantityOf { none, run, furnace, shape, region, plate, compared };  /
 struct QuantityWord {
     std::string_view word;
     bool of_region;  // word.REGION
-    QuantityOf subject;
+    QuantityOf adapter;
     std::string_view means;
-    bool of_single_samples = false;  // n is the arm's highest rung unless it is said
+    bool of_single_samples = false;  // n is the arm's highest sample count unless it is said
 };
 /// Every quantity that a check can name.
 const std::vector<QuantityWord>& quantity_words();
@@ -61,8 +61,8 @@ std::optional<ParsedQuantity> parse_quantity(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
 std::optional<Comparison> parse_comparison(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
-/// Fills in n where a run is meant and none is named: the experiment's, or for bad and largest the arm's highest rung,
-/// which holds all others. Returns what is wrong with the names, "" where all of them will be measured.
+/// Fills in n where a run is meant and none is named: the experiment's, or for bad and largest the arm's highest sample
+/// count, which holds all others. Returns what is wrong with the names, "" where all of them will be measured.
 std::string resolve_quantity(ParsedQuantity& quantity, const Experiment& experiment);
 
 }  // namespace crescent::inline experiment

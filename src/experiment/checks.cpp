@@ -98,7 +98,7 @@ void check_light(ParseContext& context) {
         context.report("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
 }
 
-void check_outside_arms(ParseContext& context) {
+void check_external_arms(ParseContext& context) {
     for (const ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
         if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
@@ -149,7 +149,7 @@ void check_names(ParseContext& context) {
                 valid.empty() ? "(none)" : listed(valid, ", "), hint(r.name, valid)));
     }
     check_film_files(context);
-    check_outside_arms(context);
+    check_external_arms(context);
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
         if (const Shape* shape = context.e.find_shape(name))
             context.report(path + name,

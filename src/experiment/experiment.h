@@ -23,7 +23,7 @@ namespace crescent::inline experiment {
 // ---- Figures that someone published for an experiment, to stand beside the measured ones. JSON:
 //   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces":
 //   {"NAME": 0.29}}
-// Meters are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
+// Metrics are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
 
 /// Figures that were published for an experiment, by arm, sample count, exponent and metric.
 class Published {
@@ -32,11 +32,11 @@ public:
     std::optional<std::uint32_t> seed;  // of the published run, where it is known
 
     /// Empty where none was published.
-    std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& meter) const;
+    std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& metric) const;
     /// Of the furnace of this name; empty where none was published.
     std::optional<double> furnace(const std::string& name) const;
 
-    std::map<std::tuple<std::string, std::uint64_t, double, std::string>, double> runs;  // arm, n, s, meter
+    std::map<std::tuple<std::string, std::uint64_t, double, std::string>, double> runs;  // arm, n, s, metric
     std::map<std::string, double> furnaces;
 };
 
@@ -64,9 +64,9 @@ std::string read_text(const std::string& path, std::string_view what);
     plate(ladder, strip, 1, 64, photograph, "the rungs of arms side by side, each with a part enlarged") \
     plate(exponent, strip, 1, 4, photograph, "the runs of the exponent control, each with a part enlarged") \
     plate(surround, strip, 1, 4, photograph, "a part of runs enlarged, side by side") \
-    plate(reference, reference, 0, 1, instrument, "the reference with the regions, and their means") \
-    plate(heat, heat, 1, 4, instrument, "where runs differ from the reference, on one scale") \
-    plate(rose, rose, 1, 4, instrument, "densities in the plane of the normal and R, and over the hemisphere") \
+    plate(reference, reference, 0, 1, backend, "the reference with the regions, and their means") \
+    plate(heat, heat, 1, 4, backend, "where runs differ from the reference, on one scale") \
+    plate(rose, rose, 1, 4, backend, "densities in the plane of the normal and R, and over the hemisphere") \
     plate(meters, meters, 0, 64, drawing, "the table of what was measured, and RMSE against N")
 // clang-format on
 
@@ -77,9 +77,9 @@ namespace crescent::inline experiment {
 enum class PlateKind { CRESCENT_PLATES(CRESCENT_NAME) };
 #undef CRESCENT_NAME
 
-/// A photograph goes through the display chain and no number stands on it; an instrument reads the float films; a
-/// drawing is an instrument of lines and text alone, which is written as SVG too.
-enum class PlateLook { photograph, instrument, drawing };
+/// A photograph goes through the display chain and no number stands on it; an back end reads the float films; a
+/// drawing is an back end of lines and text alone, which is written as SVG too.
+enum class PlateLook { photograph, backend, drawing };
 
 /// What the lists of plates state of one.
 struct PlateInfo {
@@ -95,7 +95,7 @@ inline constexpr std::array plate_infos = {CRESCENT_PLATES(CRESCENT_INFO)};
 #undef CRESCENT_INFO
 constexpr const PlateInfo& plate_info(PlateKind kind) { return plate_infos[static_cast<std::size_t>(kind)]; }
 
-/// One sampler with its ladder: rungs are prefixes of one stream.
+/// One sampler with its ladder: sample counts are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
     std::string sampler;           // a word of arms/all.h; "": what exec or plugin names
@@ -123,11 +123,11 @@ struct Region {
 /// The deterministic quadrature, or the published note's Monte Carlo estimate.
 enum class ReferenceKind { quadrature, note };
 
-/// What the meters compare with. The quadrature is always computed.
+/// What the metrics compare with. The quadrature is always computed.
 struct ReferencePlan {
-    ReferenceKind kind = ReferenceKind::quadrature;  // the one that the meters use
-    bool monte_carlo = false;     // whether the note's is computed too where the meters do not use it
-    std::uint32_t seed = 0;       // of the note's Monte Carlo reference
+    ReferenceKind kind = ReferenceKind::quadrature;  // the one that the metrics use
+    bool monte_carlo = false;     // whether the article's is computed too where the metrics do not use it
+    std::uint32_t seed = 0;       // of the article's Monte Carlo reference
     std::uint64_t lobe_spp = 32;  // Phong-sampled lobe x fill
     std::uint64_t disk_spp = 96;  // samples on each light
 };
@@ -160,7 +160,7 @@ struct PlatePlan {
     SourceLocation at;
 };
 
-/// A comparison that must hold. Quantities are looked up by name (see meters/quantity.h).
+/// A comparison that must hold. Quantities are looked up by name (see metrics/quantity.h).
 struct AssertionPlan {
     std::string name;
     std::string text;     // as the file has it, e.g. "rmse.H(phong) < rmse.H(cosine)"
@@ -180,7 +180,7 @@ struct Experiment : SceneData {
     double exposure = 1;
     std::optional<Theme> theme;  // of plates; none: dark
     double firefly_k = 4;
-    bool note_evidence = false;  // whether the note's explanations are put to measurements of their own
+    bool note_evidence = false;  // whether the article's explanations are put to measurements of their own
     std::vector<ArmPlan> arms;
     std::optional<ExponentControl> exponent;
     std::vector<Region> regions;
@@ -194,7 +194,7 @@ struct Experiment : SceneData {
 
     /// This experiment with another s: on the shape that s() is read from and on all that inherit it.
     Experiment with_s(double s) const;
-    /// The n meant where none is named: the experiment's own where `arm` has that rung, else the arm's highest.
+    /// The n meant where none is named: the experiment's own where `arm` has that sample count, else the arm's highest.
     std::uint64_t n_of(const ArmPlan& arm) const;
     const ArmPlan* find_arm(std::string_view name) const;
     const Region* find_region(std::string_view name) const;

@@ -153,9 +153,9 @@ std::size_t take_every_key(const Section& section, const std::string& path) {
     const std::string prefix = path.empty() ? "" : path + ".";
     for (const Key& key : section.keys) {
         const std::string at = prefix + std::string(key.name),
-                          say = complaint({fmt::format("{}={}", at, example(key))});
-        EXPECT_THAT(say, testing::Not(HasSubstr("unknown key"))) << at;
-        EXPECT_THAT(say, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
+                          message = complaint({fmt::format("{}={}", at, example(key))});
+        EXPECT_THAT(message, testing::Not(HasSubstr("unknown key"))) << at;
+        EXPECT_THAT(message, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
         EXPECT_FALSE(key.means.empty()) << at;
         EXPECT_EQ(key.need == Requirement::required, key.default_value.empty()) << at;
         EXPECT_THAT(schema_text(), HasSubstr(fmt::format("  {}: ", key.name)));
@@ -176,13 +176,13 @@ TEST(TheSchema, NamesTheKeysThatTheParserTakes) { EXPECT_GT(take_every_key(schem
 
 TEST(TheSchema, TellsEditorsOfEveryKey) {
     const std::string json = schema_json();
-    std::size_t told = 0;
-    for (std::size_t at = 0; (at = json.find(" Expects ", at)) != std::string::npos; ++at) ++told;
+    std::size_t describe = 0;
+    for (std::size_t at = 0; (at = json.find(" Expects ", at)) != std::string::npos; ++at) ++describe;
     // A titled family is described twice: as tables under names and as a list.
     std::size_t titled = 0;
     for (const Section& section : schema().sections)
         titled += section.many == Multiplicity::titled ? section.keys.size() : 0;
-    EXPECT_EQ(told, take_every_key(schema(), "") + titled);
+    EXPECT_EQ(describe, take_every_key(schema(), "") + titled);
 }
 
 TEST(TheSchema, JoinsTheKindsThatTakeAKeyInWords) {
@@ -211,21 +211,21 @@ TEST(PublishedFigures, AreLookedUpByArmNSAndMeter) {
 }
 
 TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
-    const auto say = [](const char* text) -> std::string {
+    const auto message = [](const char* text) -> std::string {
         try {
             (void)parse_published(text, "p.json");
         } catch (const InputError& error) { return error.what(); }
         return "";
     };
-    EXPECT_THAT(say("{\n  \"runs\": [}"), HasSubstr("p.json:2:12: not JSON"));
-    EXPECT_THAT(say("[]"), HasSubstr("expected an object"));
-    EXPECT_THAT(say("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
-    EXPECT_THAT(say("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
-    EXPECT_THAT(say("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"),
+    EXPECT_THAT(message("{\n  \"runs\": [}"), HasSubstr("p.json:2:12: not JSON"));
+    EXPECT_THAT(message("[]"), HasSubstr("expected an object"));
+    EXPECT_THAT(message("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
+    EXPECT_THAT(message("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
+    EXPECT_THAT(message("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"),
         HasSubstr("/runs/0/rmse.H: expected a number"));
-    EXPECT_THAT(say("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
-    EXPECT_THAT(say("{\"rums\": []}"), HasSubstr("/rums"));
-    EXPECT_EQ(say("{}"), "");
+    EXPECT_THAT(message("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
+    EXPECT_THAT(message("{\"rums\": []}"), HasSubstr("/rums"));
+    EXPECT_EQ(message("{}"), "");
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ std::string text_of(const Published& published) {
     std::string out =
         fmt::format("{} {}\n", toml_text(published.source), published.seed ? std::to_string(*published.seed) : "");
     for (const auto& [key, value] : published.runs) {
-        const auto& [arm, n, s, meter] = key;
-        out += fmt::format("{} {} {} {} {}\n", toml_text(arm), n, s, toml_text(meter), value);
+        const auto& [arm, n, s, metric] = key;
+        out += fmt::format("{} {} {} {} {}\n", toml_text(arm), n, s, toml_text(metric), value);
     }
     for (const auto& [name, value] : published.furnaces) out += fmt::format("{} {}\n", toml_text(name), value);
     return out;

@@ -88,7 +88,7 @@ public:
     }
 
 private:
-    void fail(const std::string& say) { draft_.report(written_, place_, say); }
+    void fail(const std::string& message) { draft_.report(written_, place_, message); }
 
     /// TOML where it is TOML, else the bare words as text.
     bool parse_value(const std::string& text, Node& value) {

@@ -287,8 +287,9 @@ void resolve_ladders(ParseContext& context) {
     }
 }
 
-/// The n of a run, its arm's where it names none; complains where the arm has no such rung.
-std::uint64_t rung(ParseContext& context, const std::string& path, const std::string& arm_name, std::uint64_t n) {
+/// The n of a run, its arm's where it names none; complains where the arm has no such sample count.
+std::uint64_t sample_count(
+    ParseContext& context, const std::string& path, const std::string& arm_name, std::uint64_t n) {
     const ArmPlan* arm = context.e.find_arm(arm_name);
     if (!arm || arm->n.empty()) return n;
     if (n == 0) return context.e.n_of(*arm);
@@ -331,7 +332,8 @@ void resolve_plate(ParseContext& context, PlatePlan& plate) {
             for (const double s : control->s) runs.push_back({run.arm, control->n, s});
             continue;
         }
-        run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(context, own + ".n", run.arm, run.n);
+        run.n =
+            open && plate.kind == PlateKind::hero ? arm->n.back() : sample_count(context, own + ".n", run.arm, run.n);
         if (context.is_valid(own + ".n") && context.is_valid(own + ".s")) check_s(context, own + ".s", run);
         runs.push_back(run);
     }
@@ -357,7 +359,7 @@ void resolve_runs(ParseContext& context) {
     resolve_ladders(context);
     if (context.e.exponent) {
         ExponentControl& control = *context.e.exponent;
-        if (context.is_valid("exponent.n")) control.n = rung(context, "exponent.n", control.arm, control.n);
+        if (context.is_valid("exponent.n")) control.n = sample_count(context, "exponent.n", control.arm, control.n);
     }
     for (PlatePlan& plate : context.e.plates) resolve_plate(context, plate);
 }

@@ -50,10 +50,12 @@ void apply_overrides(ParseContext& context, Node& root, const std::vector<std::s
 void check_geometry(ParseContext& context);
 void check_names(ParseContext& context);
 
-/// Fills in what depends on other keys (s, n, the rungs of ladder plates) and checks runs against arms and exponents.
+/// Fills in what depends on other keys (s, n, the sample counts of ladder plates) and checks runs against arms and
+/// exponents.
 void resolve_runs(ParseContext& context);
 
-/// Why the experiment makes no run of this arm at this s (0: its own); "" where it does. The rung is checked apart.
+/// Why the experiment makes no run of this arm at this s (0: its own); "" where it does. The sample count is checked
+/// apart.
 std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s);
 
 /// Parses every check and makes sure that all it names will be measured.

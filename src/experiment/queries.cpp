@@ -29,7 +29,7 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
     return out;
 }
 
-// ---- The note explains the Phong arm on a Phong lobe: both must be there, the lobe on the exponent control's shape
+// ---- The article explains the Phong arm on a Phong lobe: both must be there, the lobe on the exponent control's shape
 // where there is a control.
 
 const Shape* evidence_shape(const Experiment& experiment) {

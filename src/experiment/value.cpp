@@ -60,8 +60,8 @@ private:
             path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
         return false;
     }
-    bool fail(const std::string& say) {
-        draft_.report(path_, fmt::format("{}: {}", path_, say));
+    bool fail(const std::string& message) {
+        draft_.report(path_, fmt::format("{}: {}", path_, message));
         return false;
     }
 

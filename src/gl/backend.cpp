@@ -29,14 +29,14 @@ double unlike_integers_here(const Context& context, std::uint32_t seed) {
 class GlKind : public BackendKind {
 public:
     std::string name() const override { return "gl"; }
-    std::shared_ptr<Instrument> open(const BackendChoice& choice) const override {
+    std::shared_ptr<Backend> open(const BackendChoice& choice) const override {
         return std::make_shared<GlBackend>(open_context(choice));
     }
     std::vector<BackendDevice> devices() const override { return egl_devices(); }
 };
 
 const bool registered = [] {
-    instrument_kinds().push_back(std::make_shared<GlKind>());
+    backend_kinds().push_back(std::make_shared<GlKind>());
     return true;
 }();
 

@@ -1,4 +1,4 @@
-// The GL instrument: the same films as the CPU's, from GLSL.
+// The GL back end: the same films as the CPU's, from GLSL.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace crescent::gl {
 
-class GlBackend : public Instrument {
+class GlBackend : public Backend {
 public:
     /// The context comes current and stays so on this thread.
     explicit GlBackend(std::unique_ptr<Context> context);

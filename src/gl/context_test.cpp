@@ -90,14 +90,14 @@ TEST(Contexts, ALibraryThatIsNotThereIsNamedWithWhatNeedsIt) {
 }
 
 TEST(GlBackend, IsRegisteredByItsWordAndSaysWhatItRunsOn) {
-    const auto kind = find_instrument("gl");
+    const auto kind = find_backend("gl");
     ASSERT_TRUE(kind);
     EXPECT_FALSE(kind->devices().empty());
-    const std::shared_ptr<Instrument> one = kind->open({});
+    const std::shared_ptr<Backend> one = kind->open({});
     EXPECT_THAT(one->name(), AllOf(HasSubstr("GL "), HasSubstr("EGL surfaceless")));
     ASSERT_EQ(one->details().size(), 3u);
-    for (const auto& [what, said] : one->details()) EXPECT_FALSE(said.empty()) << what;
-    EXPECT_EQ(find_instrument("telescope"), nullptr);
+    for (const auto& [what, message] : one->details()) EXPECT_FALSE(message.empty()) << what;
+    EXPECT_EQ(find_backend("telescope"), nullptr);
 }
 
 TEST(Pacer, NeverAsksForMoreThanTheLastDrawsSpeedAllowsAndGrowsSlowly) {

@@ -29,9 +29,9 @@ void expect_within(const Difference& d, const GlTolerance& tolerance, std::uint6
     EXPECT_EQ(d.bad_gl, d.bad_cpu);
 }
 
-class FilmLaw : public testing::TestWithParam<std::string> {};
+class FilmAgreement : public testing::TestWithParam<std::string> {};
 
-TEST_P(FilmLaw, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
+TEST_P(FilmAgreement, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
     const Scene scene(test::small_scene());
     Estimator gl(test::context());
     const bool software = test::context().software();
@@ -43,8 +43,8 @@ TEST_P(FilmLaw, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
     expect_within(differences(scene, gl, arm, 48, 1), tolerance, 48, software);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    EveryArm, FilmLaw, testing::ValuesIn(test::all_arms()), [](const auto& each) { return glsl_word(each.param); });
+INSTANTIATE_TEST_SUITE_P(EveryArm, FilmAgreement, testing::ValuesIn(test::all_arms()),
+    [](const auto& each) { return glsl_word(each.param); });
 
 /// The test scene with a ball and a rectangle of light beside its disks, or alone. One lobe: a program takes seconds to
 /// compile, and what lights do is the same on each.
@@ -70,7 +70,7 @@ two_sided = true
     return Scene(parse(text, "lights.toml", {}));
 }
 
-TEST_P(FilmLaw, LightsThatAreNoDisksAreTheCpus) {
+TEST_P(FilmAgreement, LightsThatAreNoDisksAreTheCpus) {
     Estimator gl(test::context());
     const bool software = test::context().software();
     const GlTolerance& tolerance = find_arm_info(GetParam())->gl;
@@ -79,13 +79,13 @@ TEST_P(FilmLaw, LightsThatAreNoDisksAreTheCpus) {
         expect_within(differences(with_other_lights(false), gl, GetParam(), 16, 12), tolerance, 16, software);
 }
 
-TEST(FilmLaw, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
+TEST(FilmAgreement, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
     for (const SamplerInfo& arm : sampler_infos())
         EXPECT_EQ(arm.gl.relative > 0, shader_text("arms/" + glsl_word(std::string(arm.name)) + ".glsl") != nullptr)
             << arm.name;
 }
 
-TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
+TEST(FilmAgreement, NoticesALobeThatIsOneInATenThousandSharper) {
     const Scene scene(test::small_scene()), other(test::small_scene({"shapes.phong.s=24.0024"}));
     const ShapeMap shapes = shape_map(scene);
     ProgressMonitor monitor;
@@ -96,7 +96,7 @@ TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
     EXPECT_GT(d.largest, 7e-6);
 }
 
-TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
+TEST(FilmAgreement, NoticesALampThatIsFivePercentLarger) {
     const Scene scene(test::small_scene()), other(test::small_scene({"disks.left.radius=0.42"}));
     const ShapeMap shapes = shape_map(scene);
     ProgressMonitor monitor;

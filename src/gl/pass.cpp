@@ -17,18 +17,19 @@ constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may 
 
 }  // namespace
 
-Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer,
+Pass::Pass(const Context& context, const PointTexture& shading_points, const Framebuffer& framebuffer,
     std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& monitor)
     : context_(context),
-      sites_(sites),
+      shading_points_(shading_points),
       framebuffer_(framebuffer),
       parts_(std::move(parts)),
       lights_(lights),
       monitor_(monitor),
-      moments_(sites.groups().size()),
+      moments_(shading_points.groups().size()),
       met_(framebuffer.attachments() - 2) {
     for (std::size_t g = 0; g < moments_.size(); ++g)
-        moments_[g].resize(sites.groups()[g].count, lights), means_.emplace_back(sites.groups()[g].count);
+        moments_[g].resize(shading_points.groups()[g].count, lights),
+            means_.emplace_back(shading_points.groups()[g].count);
 }
 
 void Pass::advance_to(std::uint64_t n) {
@@ -89,7 +90,7 @@ void Pass::draw_part(LobePart& part, int samples) {
 void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
     const Functions& gl = context_.gl();
     const int y0 = static_cast<int>(from) * strip_rows,
-              y1 = std::min(static_cast<int>(to) * strip_rows, sites_.height());
+              y1 = std::min(static_cast<int>(to) * strip_rows, shading_points_.height());
     gl.Enable(GL_SCISSOR_TEST);
     gl.Scissor(part.pixels.x0, y0, part.pixels.x1 - part.pixels.x0, y1 - y0);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
@@ -107,10 +108,10 @@ void Pass::gather(std::size_t first_light, int samples) {
     for (std::size_t k = 0; k < met_.size(); ++k) framebuffer_.read(2 + k, met_[k]);
     const std::size_t lights = std::min(lights_ - std::min(first_light, lights_), most_recorded);
     tbb::parallel_for(std::size_t{0}, moments_.size(), [&](std::size_t g) {
-        const ShadingPoints& group = sites_.groups()[g];
+        const ShadingPoints& group = shading_points_.groups()[g];
         Moments& m = moments_[g];
         for (std::size_t i = 0; i < group.count; ++i) {
-            const std::size_t at = 4 * sites_.texel(group, i);
+            const std::size_t at = 4 * shading_points_.texel(group, i);
             if (first_light == 0) {
                 m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
                 const double by = static_cast<double>(counts_[at + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983

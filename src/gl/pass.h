@@ -1,5 +1,5 @@
-// One rectangle of a film: draws of bounded length, the moments they bring back, a rung whenever its samples are
-// complete.
+// One rectangle of a film: draws of bounded length, the moments they bring back, a sample count whenever its samples
+// are complete.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 #include "framebuffer.h"
 #include "pacer.h"
 #include "program.h"
-#include "site_texture.h"
+#include "point_texture.h"
 
 namespace crescent::gl {
 
@@ -27,8 +27,8 @@ struct LobePart {
 
 class Pass {
 public:
-    Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts,
-        std::size_t lights, ProgressMonitor& monitor);
+    Pass(const Context& context, const PointTexture& shading_points, const Framebuffer& framebuffer,
+        std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& monitor);
 
     /// Takes samples [done, n); then moments() are those of n samples.
     void advance_to(std::uint64_t n);
@@ -45,13 +45,13 @@ private:
     void gather(std::size_t first_light, int samples);
 
     const Context& context_;
-    const SiteTexture& sites_;
+    const PointTexture& shading_points_;
     const Framebuffer& framebuffer_;
     std::vector<LobePart> parts_;
     std::size_t lights_;
     ProgressMonitor& monitor_;
     std::uint64_t done_ = 0;
-    std::vector<Moments> moments_;            // one a group of the sites
+    std::vector<Moments> moments_;            // one a group of the shading points
     std::vector<std::vector<double>> means_;  // of X so far, as moments_
     std::vector<float> sums_, counts_;
     std::vector<std::vector<float>> met_;

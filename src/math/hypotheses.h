@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 /// P(|T| > |t|) of Student's t with df > 0 degrees of freedom.
 double two_sided_p(double t, double df);
@@ -50,4 +50,4 @@ std::size_t discovered(std::span<const double> rising, double of, double alpha, 
 /// The same with the chance of any false one at most alpha (Holm 1979).
 std::vector<bool> holm(std::span<const double> p, double alpha);
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

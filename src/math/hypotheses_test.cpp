@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 namespace {
 
 TEST(Hypotheses, KnowStudentsT) {
@@ -87,4 +87,4 @@ TEST(Hypotheses, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
 }
 
 }  // namespace
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

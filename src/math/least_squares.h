@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 /// Gauss's elimination, the largest pivot first; none where a pivot is below `least` of what stood there.
 inline std::optional<std::vector<double>> solved(
@@ -65,4 +65,4 @@ inline std::optional<std::vector<double>> solved_for_one(
     return x;
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

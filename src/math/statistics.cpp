@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 Spread spread(std::span<const double> x) {
     Spread s;
@@ -255,4 +255,4 @@ double binomial_exact(std::uint64_t k, std::uint64_t n, double p) {
     return std::min(1.0, 2 * std::min(above, below));
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 // ---- Mean, standard deviation and skewness of numbers, and Student's t of their mean where they are skewed.
 
@@ -105,4 +105,4 @@ double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::u
 /// k of n came out where each does with probability p: twice the smaller tail, at most 1.
 double binomial_exact(std::uint64_t k, std::uint64_t n, double p);
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -10,7 +10,7 @@
 
 #include "math/statistics.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 namespace {
 
 constexpr double bound = 1e-12;
@@ -102,4 +102,4 @@ TEST(Quantiles, AnOrderStatisticCountsFromTheSmallest) {
 }
 
 }  // namespace
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

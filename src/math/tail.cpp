@@ -8,7 +8,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
     return std::fabs(wide->k - deep->k) > 2 * math::hypot(wide->se, deep->se) ? deep : wide;
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

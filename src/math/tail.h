@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 /// Pareto tail of a set of samples. Zhang & Stephens 2009; k >= 0.5: the variance is infinite, k >= 1: the mean.
 struct Tail {
@@ -31,4 +31,4 @@ std::optional<Tail> fit_tail(std::span<const double> largest);
 /// exceedances looks past it; where the two disagree by more than two standard errors, the deeper one counts.
 std::optional<Tail> fit_pooled_tail(std::span<const float> largest);
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

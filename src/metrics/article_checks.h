@@ -1,4 +1,4 @@
-// Measurements behind "Where the note is wrong": the heavy tail of the Phong arm on a Lambert surface,
+// Measurements behind "Where the article is wrong": the heavy tail of the Phong arm on a Lambert surface,
 // its lost support off the normal, and what a plain t-test makes of it. All in Y of the control shape's material.
 #pragma once
 
@@ -9,7 +9,7 @@
 #include "base/progress.h"
 #include "experiment/experiment.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
 /// Quantiles over replicates of the combined white furnace of the Phong arm, R = n, at N samples.
 struct FurnaceQuantiles {
@@ -53,4 +53,4 @@ struct Evidence {
 /// Phong lobe.
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

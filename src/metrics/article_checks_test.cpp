@@ -5,7 +5,7 @@
 #include "metrics/article_checks.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 namespace {
 
 /// A furnace's median lacks of the expected value about the part of the diffuse tail that n samples do not reach, rho_d
@@ -43,4 +43,4 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
 }
 
 }  // namespace
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

@@ -11,7 +11,7 @@
 #include "metrics/compute.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -19,23 +19,23 @@ constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
 
 double of_run(const ParsedQuantity& q, const RunMetrics* run) {
     if (!run) return unmeasured;
-    if (q.region.empty()) return meter_value(*run, q.word);
+    if (q.region.empty()) return metric_value(*run, q.word);
     const RegionMetrics* region = run->region(q.region);
     if (!region) return unmeasured;
     if (q.word == "tail") return region->tail ? region->tail->k : unmeasured;
-    return meter_value(*run, q.word + "." + q.region);
+    return metric_value(*run, q.word + "." + q.region);
 }
 
 double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
     for (const FurnaceResult& furnace : metrics.furnaces)
-        if (furnace.name == q.subject)
+        if (furnace.name == q.adapter)
             return q.word == "furnace" ? furnace.measured : std::abs(furnace.measured - furnace.expected);
     return unmeasured;
 }
 
-QuantityOf subject_of(const std::string& word) {
+QuantityOf make_adapter(const std::string& word) {
     for (const QuantityWord& known : quantity_words())
-        if (known.word == word) return known.subject;
+        if (known.word == word) return known.adapter;
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
 }
 
@@ -43,21 +43,21 @@ QuantityOf subject_of(const std::string& word) {
 template <class Find> double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment,
     std::uint32_t seed, const PlateBytes& plate_bytes, const Find& find) {
     if (q.number) return *q.number;
-    switch (subject_of(q.word)) {
+    switch (make_adapter(q.word)) {
         case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
-        case QuantityOf::run: return of_run(q, find(RunKey{q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
+        case QuantityOf::run: return of_run(q, find(RunKey{q.adapter, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
         case QuantityOf::furnace: return of_furnace(q, metrics);
         case QuantityOf::compared: break;
         case QuantityOf::shape: {
-            const auto it = metrics.shape_pixels.find(q.subject);
+            const auto it = metrics.shape_pixels.find(q.adapter);
             return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
         }
         case QuantityOf::region: {
-            const Region* region = experiment.find_region(q.subject);
+            const Region* region = experiment.find_region(q.adapter);
             return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
         }
         case QuantityOf::plate: {
-            const auto it = plate_bytes.find(q.subject);
+            const auto it = plate_bytes.find(q.adapter);
             return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
         }
     }
@@ -92,7 +92,7 @@ struct Measurements {
     }
 };
 
-bool is_of_a_run(const ParsedQuantity& q) { return !q.number && subject_of(q.word) == QuantityOf::run; }
+bool is_of_a_run(const ParsedQuantity& q) { return !q.number && make_adapter(q.word) == QuantityOf::run; }
 
 /// Which seeds of the series a check needs and this run does not have; "" where none is missing.
 std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
@@ -115,7 +115,7 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& of, Assertion
     const double value = quantile(values, 0.5);
     if (!out.skipped.empty()) return value;
     out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
-    if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
+    if (!of.drawn && !q.number && make_adapter(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
     return value;
 }
 
@@ -133,7 +133,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
         [&](const RunKey& key) { return metrics.find(key.arm, key.n, key.s, key.seed); });
 }
 
-std::vector<AssertionResult> judge(
+std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
     const Measurements measurements{experiment, metrics, RunIndex(metrics.runs), plate_bytes, drawn};
     std::vector<AssertionResult> results;
@@ -154,4 +154,4 @@ std::vector<AssertionResult> judge(
     return results;
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -10,12 +10,12 @@
 #include "experiment/experiment.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 /// Bytes of every plate that was drawn, by its name.
 using PlateBytes = std::map<std::string, std::size_t>;
 
-/// The value of a quantity at `seed`, in the unit of its meter; NaN where it was not measured. A plate that is not in
+/// The value of a quantity at `seed`, in the unit of its metric; NaN where it was not measured. A plate that is not in
 /// `plate_bytes` has 0 bytes.
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
     const PlateBytes& plate_bytes);
@@ -24,7 +24,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 /// seeds of the series (an even count: the mean of the middle two). A NaN on either side, at any of these seeds, fails.
 /// An assertion is skipped where it needs what this run does not have: a seed that it is read at (all of the series for
 /// a median, the experiment's own else; none where neither side is read off a film), or, with `drawn` = false, a plate.
-std::vector<AssertionResult> judge(
+std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

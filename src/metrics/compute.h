@@ -8,9 +8,9 @@
 #include "metrics/metrics.h"
 #include "render/film.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
-/// All meters of one film against the reference, tails apart.
+/// All metrics of one film against the reference, tails apart.
 RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
     const ShapeMap& shapes);
 
@@ -19,25 +19,25 @@ double rms_difference(const std::vector<float>& a, const std::vector<float>& b, 
 double rms(const std::vector<float>& a, int width, const Box& box);
 
 /// How far two references of one exponent are apart in a region, and what that does to the RMSE of any of the films;
-/// the quadrature's part alone where there is no note's. `used` is the one that the meters use.
+/// the quadrature's part alone where there is no note's. `used` is the one that the metrics use.
 ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
 
-/// A meter of the list as it stands in a band: rmse.<region>, ..., fireflies, ...
-struct MeterName {
+/// A metric of the list as it stands in a band: rmse.<region>, ..., fireflies, ...
+struct MetricName {
     std::string name;
     const MetricInfo* info;
 };
 /// Those that have a spread over seeds, those of the regions first.
-std::vector<MeterName> meter_names(const Experiment& experiment);
-/// The value of any meter of the list by its name. Throws Bug where there is none.
-double meter_value(const RunMetrics& run, const std::string& meter);
+std::vector<MetricName> metric_names(const Experiment& experiment);
+/// The value of any metric of the list by its name. Throws Bug where there is none.
+double metric_value(const RunMetrics& run, const std::string& metric);
 
-/// Spread over seeds of every meter of every run at the published seed.
+/// Spread over seeds of every metric of every run at the published seed.
 std::vector<SeedSpread> bands(
     const Experiment& experiment, const std::vector<RunMetrics>& runs, const Published* published);
 
-/// Ladders of RMSE for every arm with at least two rungs, in every region.
+/// Ladders of RMSE for every arm with at least two sample counts, in every region.
 std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMetrics>& runs);
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

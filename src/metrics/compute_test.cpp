@@ -1,4 +1,4 @@
-// On films of a few pixels whose meters are worked out by hand, and on tails whose index is known.
+// On films of a few pixels whose metrics are worked out by hand, and on tails whose index is known.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,7 +11,7 @@
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 namespace {
 
 /// The tail of n Pareto samples u^-k.
@@ -83,7 +83,7 @@ struct Known {
     }
 };
 
-TEST(Meters, ReadEveryNumberOffTheFloatFilm) {
+TEST(Metrics, ReadEveryNumberOffTheFloatFilm) {
     const Known k;
     const RunMetrics run = measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes);
     EXPECT_DOUBLE_EQ(run.region("left")->rmse, 1);  // sqrt(4 / 4)
@@ -95,7 +95,7 @@ TEST(Meters, ReadEveryNumberOffTheFloatFilm) {
     EXPECT_DOUBLE_EQ(run.rmse_frame, std::sqrt((4 + 4.5 * 4.5) / 8));
 }
 
-TEST(Meters, ShareTheHorizonAmongTheDirectionsThatWereDrawn) {
+TEST(Metrics, ShareTheHorizonAmongTheDirectionsThatWereDrawn) {
     Known k;
     k.film.directions = 2;
     EXPECT_DOUBLE_EQ(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).horizon_frac, 7.0 / 140);
@@ -109,7 +109,7 @@ RunMetrics measured(const Experiment& e, const std::string& arm) {
         e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", monitor)[0], reference, shape_map(scene));
 }
 
-TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {
+TEST(Metrics, DoNotDependOnTheOrderOfShapesAndLights) {
     Experiment e = test::small_scene(), other = e;
     std::rotate(other.shapes.begin(), other.shapes.begin() + 1, other.shapes.end());
     std::swap(other.disks[0], other.disks[1]);
@@ -127,31 +127,31 @@ TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {
     }
 }
 
-TEST(Meters, OfOneSampleHaveNoVariance) {
+TEST(Metrics, OfOneSampleHaveNoVariance) {
     Known k;
     k.film.n = 1;
     const RunMetrics run = measure(k.experiment, {"a", 1, 32, 0}, k.film, k.reference, k.shapes);
     EXPECT_TRUE(std::isnan(run.region("left")->var));
-    for (const SeedSpread& band : bands(k.experiment, {run}, nullptr)) EXPECT_NE(band.meter, "var.left");
+    for (const SeedSpread& band : bands(k.experiment, {run}, nullptr)) EXPECT_NE(band.metric, "var.left");
 }
 
-TEST(Meters, ANaNInTheFilmShowsInTheNumber) {
+TEST(Metrics, ANaNInTheFilmShowsInTheNumber) {
     Known k;
     k.film.y[1] = std::nanf("");
     EXPECT_TRUE(
         std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
 }
 
-/// One arm with three rungs; seed k's RMSE falls as N^slopes[k].
+/// One arm with three sample counts; seed k's RMSE falls as N^slopes[k].
 std::vector<Ladder> ladders_falling_as(
-    const std::vector<double>& slopes, const std::vector<std::uint64_t>& rungs = {4, 16, 64}) {
+    const std::vector<double>& slopes, const std::vector<std::uint64_t>& sample_counts = {4, 16, 64}) {
     Experiment e;
     e.seed = 1;
-    e.arms = {{"a", "cosine", rungs, {}}};
+    e.arms = {{"a", "cosine", sample_counts, {}}};
     e.regions = {{"r", {0, 0, 1, 1}, {}}};
     std::vector<RunMetrics> runs;
     for (std::size_t k = 0; k < slopes.size(); ++k)
-        for (const std::uint64_t n : rungs) {
+        for (const std::uint64_t n : sample_counts) {
             RunMetrics run;
             run.key = {"a", n, e.s(), static_cast<std::uint32_t>(k + 1)};
             run.regions = {{"r", 8 * std::pow(static_cast<double>(n), slopes[k]), 0, 4, {}}};
@@ -180,4 +180,4 @@ TEST(Ladders, OfTwoRungsAndOneSeedHaveNoInterval) {
 }
 
 }  // namespace
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -15,21 +15,21 @@
 #include "scene/scene.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
-/// What a furnace drew: its meter but for the tail, and every X.
+/// What a furnace drew: its metric but for the tail, and every X.
 struct FurnaceDraws {
-    FurnaceResult meter;
+    FurnaceResult metric;
     std::vector<float> samples;
 };
 /// One furnace of the experiment in two steps, between which a page may answer its reader; `plan` may have another n.
 FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
-    ProgressMonitor& monitor, const OutsideSamplers& outside = {});
+    ProgressMonitor& monitor, const ExternalSamplers& outside = {});
 FurnaceResult read_furnace(FurnaceDraws draws);
 
 /// Every furnace of the experiment, measured. Throws Interrupted when the monitor says stop.
 std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& monitor, const OutsideSamplers& outside = {});
+    ProgressMonitor& monitor, const ExternalSamplers& outside = {});
 
 // ---- Surface points in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless
 // told otherwise.
@@ -37,8 +37,8 @@ std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Publishe
 /// The material of a shape, with the scene's own s where it has none; lobe_only drops rho_d.
 Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only);
 
-/// `count` alike sites, each with random numbers of its own. X = (cos/p) f.
-ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double cos_o = 1);
+/// `count` alike shading points, each with random numbers of its own. X = (cos/p) f.
+ShadingPoints furnace_points(const Surface& surface, std::size_t count, double cos_o = 1);
 
 // ---- The tail of one arm's samples in a box of the image.
 
@@ -55,4 +55,4 @@ TailPlan tail_plan(const Box& box);
 std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const Box& box,
     const std::string& isa, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

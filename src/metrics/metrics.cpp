@@ -5,7 +5,7 @@
 #include <functional>
 #include <unordered_set>
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 const RegionMetrics* RunMetrics::region(const std::string& name) const {
     const auto at =
@@ -45,4 +45,4 @@ const RunMetrics* RunIndex::find(const RunKey& key) const {
     return at == runs_.end() ? nullptr : at->second;
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

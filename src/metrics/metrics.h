@@ -12,10 +12,10 @@
 #include "render/film.h"
 #include "render/film_metrics/all.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
-#define CRESCENT_FIELD(name, Type) MeterOf<Type> name{};
-/// What is measured of one film in one region: a field for each meter of the list.
+#define CRESCENT_FIELD(name, Type) MetricOf<Type> name{};
+/// What is measured of one film in one region: a field for each metric of the list.
 struct RegionMetrics {
     std::string region;
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
@@ -23,7 +23,7 @@ struct RegionMetrics {
     std::optional<Tail> tail;  // of the samples X of the region; published seed only
 };
 
-/// All that is measured of one film; of the whole frame a field for each meter of the list.
+/// All that is measured of one film; of the whole frame a field for each metric of the list.
 struct RunMetrics {
     RunKey key;
     std::vector<RegionMetrics> regions;
@@ -34,7 +34,7 @@ struct RunMetrics {
 };
 #undef CRESCENT_FIELD
 
-/// Calls f(name, info, value) for each meter of a region, or of the frame, in the order of the list.
+/// Calls f(name, info, value) for each metric of a region, or of the frame, in the order of the list.
 template <class F> void for_each_metric(const RegionMetrics& of, F&& f) {
 #define CRESCENT_CALL(name, Type) f(std::string_view(#name), Type::info, of.name);
     CRESCENT_REGION_METRICS(CRESCENT_CALL)
@@ -54,7 +54,7 @@ struct Band {
 /// One number of one run over all seeds: "rmse.H" of "cosine n=64 s=32".
 struct SeedSpread {
     RunKey key;           // seed: the published one
-    std::string meter;    // rmse.<region>, ..., fireflies, ...: see meter_names()
+    std::string metric;   // rmse.<region>, ..., fireflies, ...: see metric_names()
     double measured = 0;  // at the published seed
     Band band;
     std::optional<double> published;
@@ -62,7 +62,8 @@ struct SeedSpread {
 };
 
 /// Least squares of log RMSE against log N at the published seed: RMSE ~ N^slope. Interval: 5-95 % of the same fit over
-/// seeds, or the fit's own 90 % with one seed. NaN: nothing to say, as where an RMSE is 0 or two rungs have one seed.
+/// seeds, or the fit's own 90 % with one seed. NaN: nothing to say, as where an RMSE is 0 or two sample counts have one
+/// seed.
 struct Ladder {
     std::string arm, region;
     double s = 0;
@@ -96,16 +97,16 @@ struct AssertionResult {
     bool failed() const { return !pass && skipped.empty(); }
 };
 
-/// How good the references are in a region at an exponent, and how far the note's is from the quadrature.
+/// How good the references are in a region at an exponent, and how far the article's is from the quadrature.
 struct ReferenceQuality {
     double s = 0;
     std::string region;
-    std::optional<double> rms_difference;      // of Y; here and below: none where the note's was not computed
-    std::optional<double> rms_standard_error;  // what the note's reference says of itself
+    std::optional<double> rms_difference;      // of Y; here and below: none where the article's was not computed
+    std::optional<double> rms_standard_error;  // what the article's reference says of itself
     double quadrature_error = 0;               // rms of the quadrature's own stated error
     std::optional<double>
-        max_relative_rmse_change;  // largest relative change of any arm's RMSE here if the note's reference is used
-    double error_share = 0;        // of the reference that the meters use: its own error over the smallest RMSE here
+        max_relative_rmse_change;  // largest relative change of any arm's RMSE here if the article's reference is used
+    double error_share = 0;        // of the reference that the metrics use: its own error over the smallest RMSE here
 };
 
 /// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares
@@ -152,4 +153,4 @@ private:
     std::vector<std::uint32_t> seeds_;
 };
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

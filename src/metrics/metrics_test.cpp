@@ -3,7 +3,7 @@
 
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -33,4 +33,4 @@ TEST(RunIndex, TellsSeedsInTheOrderOfTheRuns) {
     EXPECT_TRUE(RunIndex({}).seeds().empty());
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -12,10 +12,10 @@
 #include "render/film.h"
 #include "render/tiles.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
-/// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from, however
-/// many seeds are run.
+/// Seed k of the article's reference: hashed from its own, and none of those that the experiment's arms draw from,
+/// however many seeds are run.
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
 /// One film a view, which are the same but for their exponents, see views_at. `experiment`: whose reference it is; says
@@ -23,4 +23,4 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
     const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

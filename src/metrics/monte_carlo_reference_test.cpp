@@ -10,7 +10,7 @@
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 namespace {
 
 /// Standard errors between the two references, over the whole image.
@@ -77,4 +77,4 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
 }
 
 }  // namespace
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

@@ -11,7 +11,7 @@
 #include "math/functions.h"
 #include "output/format.h"
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 // ---- Linear axes tick at 1, 2 or 5 times a power of ten, four to eight steps long. Log axes tick at those numbers of
 // a table that its row for their length in decades has.
@@ -246,4 +246,4 @@ std::string strip_svg(const Strip& s) {
         w, h, w, h, words, marks);
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 // ---- Axes of charts, whatever draws them (SVG in pages, Cairo on plates and in the film): what they span, where their
 // ticks are, where a value lies, and how names beside a chart are kept apart. No lengths in pixels but those of the
@@ -100,4 +100,4 @@ struct Strip {
 /// A band as a strip with its median: <svg>.
 std::string strip_svg(const Strip& strip);
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -1,10 +1,10 @@
-// Turbo, a rainbow map with even steps of lightness on either side of its middle, for instruments.
+// Turbo, a rainbow map with even steps of lightness on either side of its middle, for back ends.
 // Source: A. Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", Google AI Blog, 20 August 2019.
 #pragma once
 
 #include "output/tone_map.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 /// t in [0, 1] (clamped) -> sRGB, linear between the 256 published entries. NaN: `not_a_number_colour`.
 Srgb8 turbo(double t);
@@ -14,4 +14,4 @@ Srgb8 turbo(double t);
 /// Ground and inks of plates: light ink on a dark ground, or dark on paper.
 enum class Theme { dark, light };
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

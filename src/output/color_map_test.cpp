@@ -4,7 +4,7 @@
 
 #include "output/color_map.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 namespace {
 
 TEST(Turbo, HasThePublishedEntries) {
@@ -36,4 +36,4 @@ TEST(Turbo, GoesInSmallStepsAndClamps) {
 }
 
 }  // namespace
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

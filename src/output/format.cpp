@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 namespace {
 
 bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
@@ -43,8 +43,8 @@ std::string figures(double x, int digits) {
 
 std::string compact(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : shortest(x); }
 
-std::string figures_of(std::string_view meter, double x) {
-    if (meter == "fireflies" && std::isfinite(x))
+std::string figures_of(std::string_view metric, double x) {
+    if (metric == "fireflies" && std::isfinite(x))
         return fmt::format("{}", 2 * x == std::floor(2 * x) ? x : std::round(x));
     return figures(x);
 }
@@ -108,4 +108,4 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return out;
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

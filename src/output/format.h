@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 /// The shortest decimal that reads back as the same double; "nan", "inf", "-inf" for what has no decimal.
 std::string shortest(double x);
@@ -19,8 +19,8 @@ std::string figures(double x, int digits = 4);
 /// At most six significant figures and no trailing zeros: "3", "1.99966".
 std::string compact(double x);
 
-/// As figures(), but a meter that counts (fireflies) stays a whole number, or a half between two where it is a median.
-std::string figures_of(std::string_view meter, double x);
+/// As figures(), but a metric that counts (fireflies) stays a whole number, or a half between two where it is a median.
+std::string figures_of(std::string_view metric, double x);
 
 /// A ratio or share in percent, "6.7 %"; at most `digits` significant figures.
 std::string percent(double fraction, int digits = 3);
@@ -68,4 +68,4 @@ inline std::string csv_field(std::string_view field) {
     return out + "\"";
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -80,7 +80,7 @@ std::string Table::str() const {
 
 // ---- One template, filled by name; contents and sections are written in one walk over the sections that have html.
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 namespace {
 
@@ -248,4 +248,4 @@ svg .median { stroke: var(--c1); stroke-width: 2; } svg .meas { color: var(--c1)
 }
 )css";
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -72,7 +72,7 @@ private:
 // ---- The frame of every page of crescent's: head, title, contents, sections, footer; one style sheet, light and dark,
 // on paper and on a telephone.
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 struct PageSection {
     std::string id, title, html;  // a section whose html is empty has nothing to say and is left out
@@ -96,4 +96,4 @@ std::string page_html(const PageFrame& frame, const std::vector<PageSection>& se
 /// Holds no '<' and no '&', so that it may stand in XHTML as it is.
 extern const char* const style_sheet;
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::string junit_text(const JunitSuite& suite) {
     return out + "  </testsuite>\n</testsuites>\n";
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -1,4 +1,4 @@
-// junit.xml for build servers: one suite, of a run, a judgement or a comparison.
+// junit.xml for build servers: one suite, of a run, a result or a comparison.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 struct JunitCase {
     enum class State { passed, failed, error, skipped };
@@ -26,4 +26,4 @@ struct JunitSuite {
 /// The file. Any text may stand in it: it is escaped here. Equal suites give equal bytes.
 std::string junit_text(const JunitSuite& suite);
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -7,7 +7,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 namespace {
 
@@ -82,4 +82,4 @@ Srgb8 photograph(const Rgb& radiance, double exposure) {
     return {srgb_byte(mapped[0]), srgb_byte(mapped[1]), srgb_byte(mapped[2])};
 }
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

@@ -1,12 +1,12 @@
 // The display chain, linear Rec.709 radiance -> 8-bit sRGB: exposure, Khronos PBR Neutral, IEC 61966-2-1.
-// Photographs go through it; no meter does.
+// Photographs go through it; no metric does.
 #pragma once
 
 #include <array>
 
 #include "base/vec.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 /// 8-bit sRGB, as it stands in a PNG.
 using Srgb8 = std::array<unsigned char, 3>;
@@ -29,4 +29,4 @@ inline constexpr Srgb8 not_a_number_colour{255, 0, 255};
 /// `not_a_number_colour`.
 Srgb8 photograph(const Rgb& radiance, double exposure);
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

@@ -6,7 +6,7 @@
 
 #include "output/tone_map.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 namespace {
 
 TEST(Srgb, EncodesTheValuesOfTheStandard) {
@@ -90,4 +90,4 @@ TEST(Photograph, ShowsWhatIsNotANumberAndTakesNegativeLightForNone) {
 }
 
 }  // namespace
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

@@ -12,7 +12,7 @@
 
 #include "render/disk_hit.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 using Long = long double;
@@ -191,4 +191,4 @@ TEST(BodiesInKernels, ThatAreSmallAndFarHideWhatTheyHide) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -5,7 +5,7 @@
 #include "render/shading_points.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 /// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where no emitting side does,
 /// r2 < 0 and nothing meets it.
@@ -101,4 +101,4 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
     return out;
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,5 +1,5 @@
-// A kernel gives sums over a tile's sites for each rung; they become pixels here. Tiles go to threads in any order, and
-// what they write does not meet: the same bits however many threads there are.
+// A kernel gives sums over a tile's shading points for each sample count; they become pixels here. Tiles go to threads
+// in any order, and what they write does not meet: the same bits however many threads there are.
 #include "render/estimator.h"
 
 #include <algorithm>
@@ -14,27 +14,28 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
-    std::vector<std::byte> memory(memory_of_light * call.sites->light_count());
+    std::vector<std::byte> memory(memory_of_light * call.shading_points->light_count());
     call.memory = memory.data();
-    if (arm.outside) return estimate_outside(*arm.outside, call);
+    if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
-    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.sites->lobe + 1)](call);
+    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.shading_points->lobe + 1)](
+        call);
 }
 
-/// Sums of one site over its film's n samples -> the film's pixel.
+/// Sums of one shading point over its film's n samples -> the film's pixel.
 class FilmResolve {
 public:
-    FilmResolve(const Scene& scene, const ShadingPoints& sites, const Moments& m, Film& film)
-        : scene_(scene), sites_(sites), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
+    FilmResolve(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film)
+        : scene_(scene), shading_points_(shading_points), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
 
     void pixel(std::size_t i) const {
-        const std::size_t at = sites_.pixel[i];
+        const std::size_t at = shading_points_.pixel[i];
         const Rgb mean = radiance(i);
         const double y = luminance(mean);
         film_.r[at] = static_cast<float>(mean[0]);
@@ -67,14 +68,14 @@ private:
         for (std::size_t c = 0; c < 3; ++c) {
             diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
             lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
-            const double lobes = sites_.rho_s_exact[i] * (sites_.tint[i][c] * lobe[c]);
-            out[c] = over_n(sites_.lambert[i][c] * diffuse[c] + lobes);
+            const double lobes = shading_points_.rho_s_exact[i] * (shading_points_.tint[i][c] * lobe[c]);
+            out[c] = over_n(shading_points_.lambert[i][c] * diffuse[c] + lobes);
         }
         return out;
     }
 
     const Scene& scene_;
-    const ShadingPoints& sites_;
+    const ShadingPoints& shading_points_;
     const Moments& m_;
     Film& film_;
     double n_, inverse_n_ = 1 / n_;
@@ -83,9 +84,9 @@ private:
 
 }  // namespace
 
-void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film) {
-    const FilmResolve finish(scene, sites, moments, film);
-    for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
+void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film) {
+    const FilmResolve finish(scene, shading_points, moments, film);
+    for (std::size_t i = 0; i < shading_points.count; ++i) finish.pixel(i);
 }
 
 void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
@@ -117,15 +118,15 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
         const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
-        for (const ShadingPoints& sites : *groups) {
-            for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
-            run_kernel(isa, arm, {&sites, n, seed, moments, &monitor.stop, nullptr});
+        for (const ShadingPoints& shading_points : *groups) {
+            for (Moments& m : moments) m.resize(shading_points.pixel.size(), shading_points.light_count());
+            run_kernel(isa, arm, {&shading_points, n, seed, moments, &monitor.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
-                resolve_film(view.scene(), sites, moments[r], films[r]);
+                resolve_film(view.scene(), shading_points, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
-                    moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
+                    moments[r].bad.begin() + static_cast<std::ptrdiff_t>(shading_points.count), std::uint64_t{0});
             }
-            samples += static_cast<double>(sites.count) * static_cast<double>(n.back());
+            samples += static_cast<double>(shading_points.count) * static_cast<double>(n.back());
         }
         return samples;
     });
@@ -147,12 +148,12 @@ ShapeMap shape_map(const Scene& scene) {
     return map;
 }
 
-Moments estimate_sites(const ShadingPoints& sites, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
+Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
-    moments[0].resize(sites.pixel.size(), sites.light_count());
-    const std::array<std::uint64_t, 1> rungs = {n};
-    run_kernel(isa, arm, {&sites, rungs, seed, moments, stop, samples});
+    moments[0].resize(shading_points.pixel.size(), shading_points.light_count());
+    const std::array<std::uint64_t, 1> sample_counts = {n};
+    run_kernel(isa, arm, {&shading_points, sample_counts, seed, moments, stop, samples});
     return std::move(moments[0]);
 }
 
@@ -201,10 +202,10 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
         tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
     Largest largest(count);
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
+        for (const ShadingPoints& shading_points : shading_points_of(scene, tiles[k], nullptr)) {
             if (monitor.stop.load(std::memory_order_relaxed)) return;
-            std::vector<float> samples(sites.count * n);
-            estimate_sites(sites, arm, n, seed, isa, &monitor.stop, samples.data());
+            std::vector<float> samples(shading_points.count * n);
+            estimate_points(shading_points, arm, n, seed, isa, &monitor.stop, samples.data());
             largest.add(samples);
         }
     });
@@ -213,20 +214,20 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
     return std::move(largest).in_order();
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render
 
-// ---- The draws of many sites are fetched in one batch, and then handed one after another to the scalar kernel as if
-// an arm had drawn them. A draw that cannot be used becomes a NaN pdf, which kernels count as bad.
+// ---- The draws of many shading points are fetched in one batch, and then handed one after another to the scalar
+// kernel as if an arm had drawn them. A draw that cannot be used becomes a NaN pdf, which kernels count as bad.
 
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
-/// Rows that are fetched at once, which stay in a core's cache; a site of more samples is fetched in parts. The same
-/// for any number of threads.
+/// Rows that are fetched at once, which stay in a core's cache; a shading point of more samples is fetched in parts.
+/// The same for any number of threads.
 constexpr std::uint64_t longest_batch = 8192;
 
 /// The arm of the kernels: hands out what was drawn, sample after sample.
@@ -269,44 +270,46 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
     }
 }
 
-using SiteKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
+using PointKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
 
-template <class L> void estimate_site(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
-    scalar::LightRoom<float> room(*call.sites, call.memory);
+template <class L> void estimate_point(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
+    scalar::LightRoom<float> room(*call.shading_points, call.memory);
     scalar::estimate_pack<Prefetched<float>, L, scalar::Lights<float>, float>(
         call, at, room, [&](const ShadingPoint<float>&) { return Prefetched<float>(drawn); });
 }
 
 /// [lobe + 1]
-template <template <class> class... L> constexpr std::array<SiteKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
-    return {estimate_site<NoLobe<float>>, estimate_site<L<float>>...};
+template <template <class> class... L> constexpr std::array<PointKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
+    return {estimate_point<NoLobe<float>>, estimate_point<L<float>>...};
 }
 
 }  // namespace
 
-void estimate_outside(const ExternalSampler& sampler, const KernelCall& call) {
-    const ShadingPoints& sites = *call.sites;
-    const std::uint64_t n = call.rungs.back();
+void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
+    const ShadingPoints& shading_points = *call.shading_points;
+    const std::uint64_t n = call.sample_counts.back();
     const auto numbers = static_cast<std::size_t>(sampler.numbers());
-    const SiteKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(sites.lobe + 1)];
-    const std::uint64_t sites_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
-    std::vector<OutsideRun> runs;
+    const PointKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(shading_points.lobe + 1)];
+    const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
+    std::vector<ExternalRun> runs;
     std::vector<double> u, pdf;
     std::vector<Vec3<double>> wi;
     std::vector<Drawn<float>> drawn;
-    for (std::size_t i = 0; i < sites.count; i += sites_a_batch) {
-        const std::size_t end = std::min<std::size_t>(sites.count, i + sites_a_batch);
+    for (std::size_t i = 0; i < shading_points.count; i += points_a_batch) {
+        const std::size_t end = std::min<std::size_t>(shading_points.count, i + points_a_batch);
         drawn.clear();
         for (std::uint64_t first = 0; first < n; first += longest_batch) {
             if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
             const std::uint64_t count = std::min(longest_batch, n - first);
             runs.clear(), u.clear();
             for (std::size_t at = i; at < end; ++at) {
-                const Vec3<double> wo{double(sites.wox[at]), double(sites.woy[at]), double(sites.woz[at])};
+                const Vec3<double> wo{
+                    double(shading_points.wox[at]), double(shading_points.woy[at]), double(shading_points.woz[at])};
                 runs.push_back({wo,
-                    {double(sites.s[at]), double(sites.alpha[at]), double(sites.diffuse[at]), sites.rho_s_exact[at]},
+                    {double(shading_points.s[at]), double(shading_points.alpha[at]), double(shading_points.diffuse[at]),
+                        shading_points.rho_s_exact[at]},
                     static_cast<std::size_t>(count)});
-                add_numbers(sites.pixel[at], call.seed, first, count, numbers, u);
+                add_numbers(shading_points.pixel[at], call.seed, first, count, numbers, u);
             }
             wi.resize(runs.size() * count), pdf.resize(wi.size());
             sampler.draw({runs, u}, {wi, pdf});
@@ -316,4 +319,4 @@ void estimate_outside(const ExternalSampler& sampler, const KernelCall& call) {
     }
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -7,7 +7,7 @@
 
 #include "render/disk_hit.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 class Drawn {
@@ -124,4 +124,4 @@ TEST(EveryBody, HasItsPointsWithinItsExtentAndItsAzimuths) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

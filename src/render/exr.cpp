@@ -14,7 +14,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 
 namespace {
 
@@ -105,4 +105,4 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
     write_parts(path, parts, attributes);
 }
 
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

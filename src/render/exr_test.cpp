@@ -15,7 +15,7 @@
 #include <limits>
 #include <set>
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 namespace {
 
 constexpr int width = 5, height = 3;
@@ -109,4 +109,4 @@ TEST_F(Exr, AReferenceReadBackIsTheReference) {
 }
 
 }  // namespace
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

@@ -9,7 +9,7 @@
 
 #include "render/film.h"
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(
 
 std::string hash(const ReferenceFilm& film) { return hash_of(reference_bytes<const std::byte>(film)); }
 
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 
 /// What was run: an arm at n samples per pixel, exponent s, seed.
 struct RunKey {
@@ -43,7 +43,7 @@ struct Film {
     std::size_t size() const { return y.size(); }
 };
 
-/// What the meters compare with: radiance, its luminance and its own standard error (of Y) per pixel.
+/// What the metrics compare with: radiance, its luminance and its own standard error (of Y) per pixel.
 struct ReferenceFilm {
     int width = 0, height = 0;
     double s = 0;
@@ -79,4 +79,4 @@ private:
     std::shared_ptr<void> state_;
 };
 
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

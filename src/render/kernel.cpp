@@ -7,21 +7,21 @@
 #include "render/isas.h"
 #include "samplers/all.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 KernelTable scalar_kernels();
 #define CRESCENT_DECLARE(name, needs) KernelTable name##_kernels();
 CRESCENT_ISAS(CRESCENT_DECLARE)
 #undef CRESCENT_DECLARE
 
-void Moments::resize(std::size_t sites, std::size_t lights) {
-    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(sites);
+void Moments::resize(std::size_t shading_points, std::size_t lights) {
+    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(shading_points);
     for (auto* sums : {&light_g, &light_g_lobe}) {
         sums->resize(lights);
-        for (std::vector<double>& of_light : *sums) of_light.resize(sites);
+        for (std::vector<double>& of_light : *sums) of_light.resize(shading_points);
     }
-    largest.resize(sites);
-    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(sites);
+    largest.resize(shading_points);
+    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(shading_points);
 }
 
 namespace {
@@ -91,4 +91,4 @@ int arm_index(std::string_view sampler) {
     return found;
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,4 +1,4 @@
-// The SIMD core's contract: one arm, one BRDF, one tile's sites in; raw moments at every rung out.
+// The SIMD core's contract: one arm, one BRDF, one tile's shading points in; raw moments at every sample count out.
 //
 //   X = f L_i cos / p     with   f = rho_d/pi + rho_s lobe   and   L_i one of few constants (the fill, each light),
 //
@@ -18,9 +18,9 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
-/// Moments of n samples, one entry a site; sums are kept in double.
+/// Moments of n samples, one entry a shading point; sums are kept in double.
 struct Moments {
     std::vector<double> g, g_lobe;                           // sum of g and of g * lobe over all samples
     std::vector<std::vector<double>> light_g, light_g_lobe;  // over the samples that met light k, disks first
@@ -28,22 +28,22 @@ struct Moments {
     std::vector<float> largest;                              // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
     /// Entries that are new are 0; kernels write all of them.
-    void resize(std::size_t sites, std::size_t lights);
+    void resize(std::size_t shading_points, std::size_t lights);
 };
 
 /// What a kernel needs for each light of a scene, in bytes.
 inline constexpr std::size_t memory_of_light = 4096;
 
-/// One call of a kernel: an arm's samples 0 to the last rung at all sites, one after another. Sites and memory belong
-/// to the caller, who may make calls on several threads, each with its own `out` and `memory`.
+/// One call of a kernel: an arm's samples 0 to the last sample count at all shading points, one after another. Sites
+/// and memory belong to the caller, who may make calls on several threads, each with its own `out` and `memory`.
 struct KernelCall {
-    const ShadingPoints* sites = nullptr;
-    std::span<const std::uint64_t> rungs;  // ascending
+    const ShadingPoints* shading_points = nullptr;
+    std::span<const std::uint64_t> sample_counts;  // ascending
     std::uint32_t seed = 0;
-    std::span<Moments> out;  // one a rung, sized to the padded count
+    std::span<Moments> out;  // one a sample count, sized to the padded count
     const std::atomic<bool>* stop = nullptr;
-    float* samples = nullptr;     // where not null: every X, sample k of site i at i * n + k
-    std::byte* memory = nullptr;  // memory_of_light bytes for each of the sites' lights
+    float* samples = nullptr;     // where not null: every X, sample k of shading point i at i * n + k
+    std::byte* memory = nullptr;  // memory_of_light bytes for each of the shading points' lights
 };
 
 using Kernel = void (*)(const KernelCall&);
@@ -63,4 +63,4 @@ const KernelTable& kernels_for(const std::string& isa);
 /// Index in the list of arms, or -1.
 int arm_index(std::string_view sampler);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

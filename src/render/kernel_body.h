@@ -1,8 +1,9 @@
-// The estimator, once, for any number type: lanes are pixels, samples follow one another, one pass gives every rung.
-// Included once an instruction set by kernel_<isa>.cpp, in that set's own namespace.
+// The estimator, once, for any number type: lanes are pixels, samples follow one another, one pass gives every sample
+// count. Included once an instruction set by kernel_<isa>.cpp, in that set's own namespace.
 //
 // Sums run in float over at most 16 samples (relative error < 1e-6) and in double from there on. Blocks begin at
-// multiples of 16 whatever the rungs, so a rung is the same prefix whichever other rungs are asked for.
+// multiples of 16 whatever the sample counts, so a sample count is the same prefix whichever other sample counts are
+// asked for.
 #pragma once
 
 #include <concepts>
@@ -12,7 +13,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
@@ -22,9 +23,9 @@ inline constexpr std::uint64_t block_length = 16;
 template <class E, class F>
 concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t, typename E::Room&> &&
     std::constructible_from<typename E::Totals, typename E::Room&> &&
-    requires(E emitters, const E& seen, ShadingPoint<F>& site, typename E::Totals totals, Moments& out) {
+    requires(E emitters, const E& seen, ShadingPoint<F>& shading_point, typename E::Totals totals, Moments& out) {
         { seen.first() } -> std::same_as<typename E::First>;
-        seen.show(site);
+        seen.show(shading_point);
         totals.take(emitters);
         totals.write(seen, out);
     };
@@ -53,18 +54,19 @@ template <class E, class F> struct Constants {
 template <class A, class L, class E, class F> struct Lane : E {
     static_assert(Emitters<E, F>);
     using U = UintOf<F>;
-    using E::sites, E::at;
-    ShadingPoint<F> site;
+    using E::shading_points, E::at;
+    ShadingPoint<F> shading_point;
 
     Lane(const ShadingPoints& all, std::size_t first, typename E::Room& room) : E(all, first, room) {
-        site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
-            load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at)};
-        this->show(site);
+        shading_point = {load_lanes<F>(shading_points.wox, shading_points.woy, shading_points.woz, at),
+            load_lanes<F>(shading_points.s, at), load_lanes<F>(shading_points.alpha, at),
+            load_lanes<F>(shading_points.diffuse, at), load_lanes<F>(shading_points.rho_s, at)};
+        this->show(shading_point);
     }
 
     Constants<E, F> constants() const {
-        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at),
-            load_lanes<F>(sites.pixel, at), this->first()};
+        return {shading_point.wo, load_lanes<F>(shading_points.fill_d, at), load_lanes<F>(shading_points.fill_s, at),
+            load_lanes<F>(shading_points.pixel, at), this->first()};
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
@@ -107,15 +109,16 @@ template <class A, class L, class E, class F> struct Lane : E {
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
         // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
-        // arises from nothing that a site holds (shading_points.cpp).
+        // arises from nothing that a shading point holds (shading_points.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
-        if (call.samples) record_sample(x, call.samples, j, call.rungs.back());
+        if (call.samples) record_sample(x, call.samples, j, call.sample_counts.back());
     }
 
     void record_sample(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
         float lanes[Lanes<F>::count];
         store(x, lanes);
-        for (std::size_t l = 0; l < Lanes<F>::count && at + l < sites.count; ++l) samples[(at + l) * n + j] = lanes[l];
+        for (std::size_t l = 0; l < Lanes<F>::count && at + l < shading_points.count; ++l)
+            samples[(at + l) * n + j] = lanes[l];
     }
 };
 
@@ -158,8 +161,9 @@ template <class F> struct Totals {
     }
 };
 
-template <class E, class F> [[gnu::noinline]] void write_rung(const E& emitters, const typename E::Totals& emitted,
-    const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
+template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& emitters,
+    const typename E::Totals& emitted, const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n,
+    Moments& out) {
     const std::size_t at = emitters.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
@@ -170,22 +174,23 @@ template <class E, class F> [[gnu::noinline]] void write_rung(const E& emitters,
     store(p.bad, out.bad.data() + at);
 }
 
-/// One pack of pixels through all its samples; make(site) gives the arm.
+/// One pack of pixels through all its samples; make(shading point) gives the arm.
 template <class A, class L, class E, class F, class Make>
 void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
     using U = UintOf<F>;
-    Lane<A, L, E, F> lane(*call.sites, at, room);
+    Lane<A, L, E, F> lane(*call.shading_points, at, room);
     RunningSums<F> gathered;
     Totals<F> totals;
     typename E::Totals emitted(room);
-    const A arm = make(lane.site);
-    const L brdf(lane.site.s, lane.site.alpha);
+    const A arm = make(lane.shading_point);
+    const L brdf(lane.shading_point.s, lane.shading_point.alpha);
     const Constants<E, F> c = lane.constants();
-    const std::uint64_t n = call.rungs.back();
-    std::size_t rung = 0;
+    const std::uint64_t n = call.sample_counts.back();
+    std::size_t sample_count = 0;
     for (std::uint64_t j = 0; j < n;) {
         const std::uint64_t block_end = (j / block_length + 1) * block_length;
-        const std::uint64_t end = block_end < call.rungs[rung] ? block_end : call.rungs[rung];
+        const std::uint64_t end =
+            block_end < call.sample_counts[sample_count] ? block_end : call.sample_counts[sample_count];
         while (j < end) {
             const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
             if (!(j & 1)) {
@@ -211,14 +216,16 @@ void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& roo
                 gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
         }
-        if (j == call.rungs[rung]) write_rung<E>(lane, emitted, gathered, totals, j, call.out[rung++]);
+        if (j == call.sample_counts[sample_count])
+            write_sample_count<E>(lane, emitted, gathered, totals, j, call.out[sample_count++]);
     }
 }
 
 template <class A, class L, class E, class F> void estimate(const KernelCall& call) {
-    typename E::Room room(*call.sites, call.memory);
-    for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
-        estimate_pack<A, L, E, F>(call, at, room, [](const ShadingPoint<F>& site) { return A(site); });
+    typename E::Room room(*call.shading_points, call.memory);
+    for (std::size_t at = 0; at < call.shading_points->count; at += Lanes<F>::count)
+        estimate_pack<A, L, E, F>(
+            call, at, room, [](const ShadingPoint<F>& shading_point) { return A(shading_point); });
 }
 
 /// One arm's kernels, [lobe + 1].
@@ -231,4 +238,4 @@ template <class F, template <class> class... A> constexpr KernelTable kernels_of
 }
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -8,7 +8,7 @@
 #include "render/disk_hit.h"
 #include "render/kernel.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace CRESCENT_ISA {
 
 template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
@@ -38,11 +38,11 @@ template <class F> struct LightRoom {
     F *met_g, *met_g_lobe;
     double *total_g, *total_g_lobe;  // lane l of light k at k * lanes + l
 
-    LightRoom(const ShadingPoints& sites, std::byte* at)
-        : count(sites.light_count()),
-          disks(take<LocalDisk<F>>(at, sites.disks.size())),
-          facing(take<FacingDisk<F>>(at, sites.disks.size())),
-          others(take<LocalLight<F>>(at, sites.others.size())),
+    LightRoom(const ShadingPoints& shading_points, std::byte* at)
+        : count(shading_points.light_count()),
+          disks(take<LocalDisk<F>>(at, shading_points.disks.size())),
+          facing(take<FacingDisk<F>>(at, shading_points.disks.size())),
+          others(take<LocalLight<F>>(at, shading_points.others.size())),
           cones(take<DiskCone<F>>(at, count)),
           met_g(take<F>(at, count)),
           met_g_lobe(take<F>(at, count)),
@@ -115,7 +115,7 @@ template <class F> struct Lights {
     using Room = LightRoom<F>;
     using Totals = LightTotals<F>;
     using First = DiskCone<F>;  // round the first light; most scenes have but one
-    const ShadingPoints& sites;
+    const ShadingPoints& shading_points;
     std::size_t at;
     std::size_t disk_count, light_count;
     LocalDisk<F>* disks;
@@ -125,7 +125,7 @@ template <class F> struct Lights {
     LightHitSums<F> met;
 
     [[gnu::noinline]] Lights(const ShadingPoints& all, std::size_t first, LightRoom<F>& room)
-        : sites(all),
+        : shading_points(all),
           at(first),
           disk_count(all.disks.size()),
           light_count(all.light_count()),
@@ -135,7 +135,7 @@ template <class F> struct Lights {
           cones(room.cones),
           met{room.met_g, room.met_g_lobe} {
         for (std::size_t k = 0; k < disk_count; ++k) {
-            const DiskArrays& d = sites.disks[k];
+            const DiskArrays& d = shading_points.disks[k];
             disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at),
                 F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
             facing[k] = FacingDisk<F>(disks[k]);
@@ -143,7 +143,7 @@ template <class F> struct Lights {
         }
         for (std::size_t k = disk_count; k < light_count; ++k) {
             LocalLight<F>& light = others[k - disk_count];
-            light = light_at(sites.others[k - disk_count]);
+            light = light_at(shading_points.others[k - disk_count]);
             with_light_kind(light.kind,
                 [&]<class Kind>() { cones[k] = DiskCone<F>(light.a, Kind::radius2(light), Kind::shines(light)); });
         }
@@ -152,9 +152,9 @@ template <class F> struct Lights {
 
     First first() const { return light_count > 0 ? cones[0] : DiskCone<F>{}; }
     /// What arms that aim at lights see of them.
-    void show(ShadingPoint<F>& site) const {
-        site.disks = disks, site.disk_count = static_cast<int>(disk_count);
-        site.others = others, site.other_count = static_cast<int>(light_count - disk_count);
+    void show(ShadingPoint<F>& shading_point) const {
+        shading_point.disks = disks, shading_point.disk_count = static_cast<int>(disk_count);
+        shading_point.others = others, shading_point.other_count = static_cast<int>(light_count - disk_count);
     }
 
     /// X of a sample whose g and lobe are known, x being what the fill gives.
@@ -203,13 +203,14 @@ template <class F> struct Lights {
             index = select(nearer, F(static_cast<float>(k)), index);
             nearest = select(nearer, t, nearest);
         }
-        const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
-        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at),
-            load_lanes<F>(sites.bx, sites.by, sites.bz, at), load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
+        const Vec3<F> o = load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at);
+        const Frame<F> frame = {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, at),
+            load_lanes<F>(shading_points.bx, shading_points.by, shading_points.bz, at),
+            load_lanes<F>(shading_points.nx, shading_points.ny, shading_points.nz, at)};
         const Vec3<F> d = frame.to_world(wi);
-        const U own = load_lanes<F>(sites.shape, at);
+        const U own = load_lanes<F>(shading_points.shape, at);
         F seen = select(up & (nearest < far), number<F>(1), number<F>(0));
-        for (const OccluderF& body : sites.occluders) {
+        for (const OccluderF& body : shading_points.occluders) {
             const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
             seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
         }
@@ -219,8 +220,8 @@ template <class F> struct Lights {
             met.light_g[k] = met.light_g[k] + gk;
             met.light_g_lobe[k] = met.light_g_lobe[k] + gk * lobe;
             const bool disk = k < disk_count;
-            const std::vector<float>& d_of = disk ? sites.disks[k].d : sites.others[k - disk_count].d;
-            const std::vector<float>& s_of = disk ? sites.disks[k].s : sites.others[k - disk_count].s;
+            const std::vector<float>& d_of = disk ? shading_points.disks[k].d : shading_points.others[k - disk_count].d;
+            const std::vector<float>& s_of = disk ? shading_points.disks[k].s : shading_points.others[k - disk_count].s;
             const F xk = g * (load_lanes<F>(d_of, at) + lobe * load_lanes<F>(s_of, at));
             x = select(this_one, xk, x);
         }
@@ -231,4 +232,4 @@ template <class F> struct Lights {
 };
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -2,8 +2,8 @@
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 KernelTable scalar_kernels() { return scalar::kernels_of<float>("scalar", Samplers{}); }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -15,7 +15,7 @@
 #include "render/shading_points.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 /// One draw. X = 0 where the direction lies under the horizon or nothing was drawn.
 struct PixelSample {
@@ -49,7 +49,7 @@ public:
     /// with the material there; the unit direction to the camera.
     int i() const { return i_; }
     int j() const { return j_; }
-    int shape() const { return static_cast<int>(sites_.shape[0]); }
+    int shape() const { return static_cast<int>(shading_points_.shape[0]); }
     const Hit& hit() const { return hit_; }
     const Surface& surface() const { return surface_; }
     Vec3d wo() const { return wo_; }
@@ -73,7 +73,7 @@ public:
 private:
     ShadingPoint<float> aimed_from() const;  // points into local_
     int i_, j_;
-    ShadingPoints sites_;
+    ShadingPoints shading_points_;
     Hit hit_;
     Surface surface_;
     Vec3d wo_{};
@@ -86,4 +86,4 @@ private:
 /// Mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.
 std::vector<double> running_mean(const std::vector<PixelSample>& samples);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -9,7 +9,7 @@
 #include "render/estimator.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 constexpr std::uint64_t n = 48;
@@ -31,11 +31,11 @@ template <class Visit> void for_each_opened(Visit&& visit) {
 TEST(OpenPixel, DrawsWhatTheKernelsDrawBitForBit) {
     std::set<int> lights;
     for_each_opened([&](const Scene& scene, const OpenPixel& pixel) {
-        const std::vector<ShadingPoints> sites =
-            sites_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
+        const std::vector<ShadingPoints> shading_points =
+            shading_points_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
         for_each_sampler(Samplers{}, [&]<template <class> class A>() {
             std::vector<float> x(n);
-            estimate_sites(sites[0], A<float>::name, n, 11, "", nullptr, x.data());
+            estimate_points(shading_points[0], A<float>::name, n, 11, "", nullptr, x.data());
             std::vector<float> opened(n);
             for (std::size_t at = 0; const PixelSample& sample : pixel.samples(A<float>::name, n, 11)) {
                 lights.insert(sample.disk);
@@ -98,4 +98,4 @@ TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

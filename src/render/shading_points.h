@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 
@@ -71,18 +71,18 @@ struct ShadingPoints {
     std::vector<DiskArrays> disks;
     std::vector<LightArrays> others;  // lights that are no disks
     std::size_t light_count() const { return disks.size() + others.size(); }
-    std::vector<OccluderF> occluders;  // those that may hide a disk from one of the sites
+    std::vector<OccluderF> occluders;  // those that may hide a disk from one of the shading points
     std::vector<Rgb> lambert;          // rho_d / pi, for the colours of the film
     std::vector<double> rho_s_exact;
     std::vector<Rgb> tint;  // of the lobe, as in Surface
 
-    /// Adds a site where room was made for it.
+    /// Adds a shading point where room was made for it.
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading);
     void grow(std::size_t more);
-    void reserve(std::size_t sites);
-    /// Repeats the last site until every pack is full.
+    void reserve(std::size_t shading_points);
+    /// Repeats the last shading point until every pack is full.
     void pad();
-    /// Drops the occluders that stand between no site and no disk.
+    /// Drops the occluders that stand between no shading point and no disk.
     void cull_occluders(const Scene& scene);
     /// The lobe's parameters as a scene of the same view has them, see Scene::with_s.
     void take_s(const Scene& scene);
@@ -93,10 +93,10 @@ private:
     template <class Work> void each_array(Work&& work);
 };
 
-/// A scene's lights and occluders without any site yet.
-ShadingPoints empty_sites(const Scene& scene, int lobe);
+/// A scene's lights and occluders without any shading point yet.
+ShadingPoints empty_points(const Scene& scene, int lobe);
 
 /// All geometry pixels of a tile, grouped by lobe; also which shape each pixel sees.
-std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
+std::vector<ShadingPoints> shading_points_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
@@ -115,7 +115,7 @@ std::shared_ptr<const TiledScene::Points> TiledScene::points(std::size_t k) cons
 }
 
 std::shared_ptr<const TiledScene::Points> TiledScene::make(std::size_t k) const {
-    if (!other_s_) return std::make_shared<const Points>(sites_of(scene_, (*tiles_)[k], nullptr));
+    if (!other_s_) return std::make_shared<const Points>(shading_points_of(scene_, (*tiles_)[k], nullptr));
     Points points = *other_s_->points(k);
     for (ShadingPoints& group : points) group.take_s(scene_);
     return std::make_shared<const Points>(std::move(points));
@@ -130,7 +130,7 @@ std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<doubl
 std::uint64_t bytes_of_points(const Scene& scene) {
     const auto pixels =
         static_cast<std::uint64_t>(scene.image().width) * static_cast<std::uint64_t>(scene.image().height);
-    return pixels * empty_sites(scene, 0).bytes_of_one();
+    return pixels * empty_points(scene, 0).bytes_of_one();
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

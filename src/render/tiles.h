@@ -14,7 +14,7 @@
 #include "render/shading_points.h"
 #include "scene/scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 // ---- Keeps what a long pass over an image has finished, tile by tile, in a journal beside the outputs.
 
@@ -106,4 +106,4 @@ std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<doubl
 /// Bytes that the points of the whole image take where every pixel has one.
 std::uint64_t bytes_of_points(const Scene& scene);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

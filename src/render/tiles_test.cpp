@@ -40,7 +40,7 @@ TEST(TiledScene, SharesThePointsThatEachJobWouldMake) {
     for (const double s : {scene.s(), 3.0, 700.0}) {
         const TiledScene at_s = views_at(kept, {s}).front();
         for (std::size_t k = 0; k < kept.tiles().size(); ++k) {
-            expect_same(*at_s.points(k), sites_of(scene.with_s(s), kept.tiles()[k], nullptr));
+            expect_same(*at_s.points(k), shading_points_of(scene.with_s(s), kept.tiles()[k], nullptr));
         }
     }
     EXPECT_EQ(kept.points(0), kept.points(0)) << "made once";

@@ -1,4 +1,4 @@
-// Charts and sentences of the evidence against three explanations of the note; the numbers come from
+// Charts and sentences of the evidence against three explanations of the article; the numbers come from
 // studies/evidence.h.
 #pragma once
 

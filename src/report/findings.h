@@ -22,7 +22,7 @@ struct RatioOfErrors {
 /// Which of two errors is larger, and how many times.
 RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b);
 
-/// How many seeds had meter(a) > meter(b), of how many.
+/// How many seeds had metric(a) > metric(b), of how many.
 struct SeedCount {
     int held = 0, of = 0;
 };
@@ -46,10 +46,10 @@ public:
     /// Null where there is no such run.
     const RunMetrics* run(const RunKey& key) const { return runs_.find(key); }
     const SeedSpread* band(
-        const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s = {}) const;
+        const std::string& arm, std::uint64_t n, const std::string& metric, std::optional<double> s = {}) const;
     /// RMSE in a region at the published seed.
     std::optional<double> rmse(const std::string& arm, std::uint64_t n, const std::string& region) const;
-    /// Tail of the region that a meter such as "rmse.H" names; empty for whole-frame meters.
+    /// Tail of the region that a metric such as "rmse.H" names; empty for whole-frame metrics.
     std::optional<Tail> tail(const SeedSpread& band) const;
     SeedCount seeds_above(
         const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const;
@@ -66,7 +66,7 @@ private:
     RunIndex runs_;
 };
 
-/// Meters that stand in tables, in their order: rmse.*, var.*, fireflies, ...
-std::vector<std::string> headline_meters(const Experiment& experiment);
+/// Metrics that stand in tables, in their order: rmse.*, var.*, fireflies, ...
+std::vector<std::string> headline_metrics(const Experiment& experiment);
 
 }  // namespace crescent::inline report

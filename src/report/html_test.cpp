@@ -34,7 +34,7 @@ TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     for (RunMetrics& run : s.metrics.runs)
         run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
     for (SeedSpread& b : s.metrics.bands)
-        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
+        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.metric = b.metric == "rmse.H" ? "rmse." + bad : b.metric;
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
     EXPECT_EQ(xml_error(s.html()), "");
     EXPECT_THAT(s.html(), Not(HasSubstr("<script")));

@@ -102,7 +102,7 @@ TEST(MetricsJson, HasNoRunsWithNothingMeasured) {
 TEST(MetricsJson, AnInstrumentsOwnWordsStandInTheProvenanceAndTheCpuHasNone) {
     Sample s;
     EXPECT_FALSE(parsed(s)["provenance"].contains("instrument_details"));
-    s.provenance.instrument_details = {{"GL_VERSION", "4.5 (Core Profile)"}, {"context", "OSMesa"}};
+    s.provenance.backend_details = {{"GL_VERSION", "4.5 (Core Profile)"}, {"context", "OSMesa"}};
     EXPECT_EQ(parsed(s)["provenance"]["instrument_details"]["GL_VERSION"], "4.5 (Core Profile)");
     keep("instrument", parsed(s), true);
     EXPECT_NE(s.html().find("OSMesa"), std::string::npos);

@@ -1,5 +1,5 @@
 // Plates go into the page as base64; where all of them would take more than 14 MB the largest are linked instead, one
-// by one. Figures are numbered as sections ask for them. Meters have the labels of the table of meters.
+// by one. Figures are numbered as sections ask for them. Metrics have the labels of the table of metrics.
 #include "report/page.h"
 
 #include <algorithm>
@@ -91,10 +91,10 @@ std::string Page::colour(const std::string& arm) const {
     return fmt::format("c{}", (found - arms.begin()) % 6);
 }
 
-std::string meter_html(const std::string& meter) {
-    const auto dot = meter.find('.');
-    const std::string kind = meter.substr(0, dot);
-    const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(meter.substr(dot + 1)) + "</sub>";
+std::string metric_html(const std::string& metric) {
+    const auto dot = metric.find('.');
+    const std::string kind = metric.substr(0, dot);
+    const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(metric.substr(dot + 1)) + "</sub>";
     std::string label = escape(kind);
     const auto look = [&](std::string_view name, const MetricInfo& info, auto) {
         if (name == kind && !info.label.empty()) label = info.label;
@@ -105,10 +105,10 @@ std::string meter_html(const std::string& meter) {
     return label + region;
 }
 
-std::string meter_text(const std::string& meter) {
-    const auto dot = meter.find('.');
-    if (dot == std::string::npos) return meter;
-    return (meter.substr(0, dot) == "rmse" ? "RMSE" : meter.substr(0, dot)) + ", region " + meter.substr(dot + 1);
+std::string metric_text(const std::string& metric) {
+    const auto dot = metric.find('.');
+    if (dot == std::string::npos) return metric;
+    return (metric.substr(0, dot) == "rmse" ? "RMSE" : metric.substr(0, dot)) + ", region " + metric.substr(dot + 1);
 }
 
 std::string tail_html(const std::optional<Tail>& tail) {
@@ -116,10 +116,10 @@ std::string tail_html(const std::optional<Tail>& tail) {
     return fmt::format("{:.2f} ± {:.2f}", tail->k, tail->se);
 }
 
-std::string interval_html(const std::string& meter, const Band& band) {
+std::string interval_html(const std::string& metric, const Band& band) {
     if (band.heavy) return html::heavy_tail();
     if (band.seeds < 2) return "–";
-    return html::value(figures_of(meter, band.q05) + " … " + figures_of(meter, band.q95));
+    return html::value(figures_of(metric, band.q05) + " … " + figures_of(metric, band.q95));
 }
 
 std::string times(double ratio) {

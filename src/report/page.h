@@ -77,22 +77,22 @@ PageSection provenance(Page& page);
 
 // Parts that several sections share.
 
-/// "RMSE_H" with a real subscript, for "rmse.H"; and so on for every meter.
-std::string meter_html(const std::string& meter);
+/// "RMSE_H" with a real subscript, for "rmse.H"; and so on for every metric.
+std::string metric_html(const std::string& metric);
 /// The same without markup, for the labels of charts: "RMSE, region H".
-std::string meter_text(const std::string& meter);
+std::string metric_text(const std::string& metric);
 /// "k = 0.71 ± 0.02", or an en dash.
 std::string tail_html(const std::optional<Tail>& tail);
 /// "7.218 … 8.277", or the words heavy tail; nothing from a single seed.
-std::string interval_html(const std::string& meter, const Band& band);
-/// Meters down, runs across: large what the first seed measured, small the median, its band and the tail index.
+std::string interval_html(const std::string& metric, const Band& band);
+/// Metrics down, runs across: large what the first seed measured, small the median, its band and the tail index.
 struct Column {
     std::string title_html, arm;
     std::uint64_t n = 0;
     double s = 0;
 };
-/// Rows are arms and rungs; each column a meter with its band.
-std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
+/// Rows are arms and sample counts; each column a metric with its band.
+std::string metrics_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
 /// Which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
 std::string ordering_sentence(
     const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region);

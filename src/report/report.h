@@ -14,12 +14,11 @@ namespace crescent::inline report {
 
 /// Where an output came from; equal for equal runs.
 struct Provenance {
-    std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
+    std::string version, commit, compiler, experiment_file, experiment_hash, backend, command;
     std::vector<std::uint32_t> seeds;
     std::vector<int> places;  // of these seeds in the experiment's series, from 1
     int series = 0;           // how many seeds the series has
-    std::vector<std::pair<std::string, std::string>>
-        instrument_details{};       // what a driver says of itself; none: the CPU
+    std::vector<std::pair<std::string, std::string>> backend_details{};  // what a driver says of itself; none: the CPU
     std::string experiment_text{};  // canonical_text() of the experiment with all of its seeds
 
     /// The places of the series that are not among `places`.
@@ -60,7 +59,7 @@ using Plates = std::map<std::string, std::vector<unsigned char>>;  // name -> PN
 struct ReportInputs {
     const Experiment& experiment;
     const Metrics& metrics;
-    const Evidence& evidence;  // "Where the note is wrong"
+    const Evidence& evidence;  // "Where the article is wrong"
     const Provenance& provenance;
     const Plates& plates;
 };

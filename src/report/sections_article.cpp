@@ -1,4 +1,4 @@
-// Every meter over seeds: the published value, the measured one, the band, and where in it the published value falls.
+// Every metric over seeds: the published value, the measured one, the band, and where in it the published value falls.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -38,10 +38,10 @@ std::vector<html::Cell> band_row(const Page& page, const SeedSpread& b, bool pub
     Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
         b.published.has_value(), b.published.value_or(0)};
     std::vector<html::Cell> row{html::heading(run_html(b.key, page.in.experiment))};
-    if (published) row.push_back(html::figure(b.published ? figures_of(b.meter, *b.published) : ""));
-    row.push_back(html::figure(figures_of(b.meter, b.measured)));
-    row.push_back(html::figure(figures_of(b.meter, b.band.median)));
-    row.push_back({interval_html(b.meter, b.band), true});
+    if (published) row.push_back(html::figure(b.published ? figures_of(b.metric, *b.published) : ""));
+    row.push_back(html::figure(figures_of(b.metric, b.measured)));
+    row.push_back(html::figure(figures_of(b.metric, b.band.median)));
+    row.push_back({interval_html(b.metric, b.band), true});
     row.push_back(words(strip_svg(strip)));
     if (published) row.push_back({fallen(b), true});
     row.push_back(html::figure(tail_html(page.find.tail(b))));
@@ -57,12 +57,12 @@ std::vector<html::Cell> header(bool published) {
     return head;
 }
 
-/// Meters in the order they are told; whatever else was measured follows, without the whole frame.
-std::vector<std::string> meters_in_order(const Page& page) {
-    std::vector<std::string> order = headline_meters(page.in.experiment);
+/// Metrics in the order they are told; whatever else was measured follows, without the whole frame.
+std::vector<std::string> metrics_in_order(const Page& page) {
+    std::vector<std::string> order = headline_metrics(page.in.experiment);
     std::set<std::string> seen(order.begin(), order.end());
     for (const SeedSpread& b : page.in.metrics.bands)
-        if (b.meter != "rmse_frame" && seen.insert(b.meter).second) order.push_back(b.meter);
+        if (b.metric != "rmse_frame" && seen.insert(b.metric).second) order.push_back(b.metric);
     return order;
 }
 
@@ -83,11 +83,11 @@ PageSection published(Page& page) {
     const bool published = page.find.anything_published();
     const Experiment& e = page.in.experiment;
     html::Table table(published ? "Published beside measured" : "Every meter of every run", header(published));
-    for (const std::string& meter : meters_in_order(page)) {
+    for (const std::string& metric : metrics_in_order(page)) {
         bool first = true;
         for (const SeedSpread& b : page.in.metrics.bands) {
-            if (b.meter != meter) continue;
-            if (first) table.group(meter_html(meter));
+            if (b.metric != metric) continue;
+            if (first) table.group(metric_html(metric));
             first = false;
             table.row(band_row(page, b, published));
         }
@@ -102,7 +102,7 @@ PageSection published(Page& page) {
             page.figures.plates(PlateKind::meters)};
 }
 
-// ---- Three explanations of the note that do not hold, each with the measurement that says so. A point without its
+// ---- Three explanations of the article that do not hold, each with the measurement that says so. A point without its
 // measurement is left out.
 
 namespace {
@@ -245,7 +245,7 @@ std::string highlight_remark(const Page& page, const std::string& region) {
         const std::string range = spread(all);
         if (range.empty()) continue;
         below = below && all.front() < 0;
-        parts += (parts.empty() ? "" : ", ") + meter_html(kind + region) + " " + range;
+        parts += (parts.empty() ? "" : ", ") + metric_html(kind + region) + " " + range;
     }
     if (parts.empty()) return {};
     std::string out = "For the arms that do not follow the lobe, medians against the published values: " + parts + ".";
@@ -257,20 +257,20 @@ std::string highlight_remark(const Page& page, const std::string& region) {
         out += fmt::format(
             " Matching them would need a highlight of more pixels, i.e. a larger {}, which would raise {} at <i>s</i> "
             "= {} further; it is {} already. No single geometry matches both.",
-            escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
+            escape(control->shape), metric_html("y_mean"), shortest(s), signed_percent(*mean));
     return out;
 }
 
-/// Deviations of one meter over the exponent control.
-std::string exponent_remark(const Page& page, const std::string& meter) {
+/// Deviations of one metric over the exponent control.
+std::string exponent_remark(const Page& page, const std::string& metric) {
     const auto& control = page.in.experiment.exponent;
     if (!control) return {};
     std::string values;
     for (const double s : control->s)
-        if (const auto r = relative(page.find.band(control->arm, control->n, meter, s)))
+        if (const auto r = relative(page.find.band(control->arm, control->n, metric, s)))
             values += fmt::format("{}{} at <i>s</i> = {}", values.empty() ? "" : ", ", signed_percent(*r), shortest(s));
     if (values.empty()) return {};
-    return fmt::format("For {}, {}: {}.", escape(control->arm), meter_html(meter), values);
+    return fmt::format("For {}, {}: {}.", escape(control->arm), metric_html(metric), values);
 }
 
 /// Largest departure of log RMSE from the -1/2 law, as a fraction.
@@ -287,9 +287,9 @@ std::vector<double> ladder_of(const Page& page, const ArmPlan& arm, const std::s
     std::vector<double> out;
     for (const std::uint64_t n : arm.n) {
         const RunMetrics* run = page.find.run({arm.name, n, page.find.s(), seed});
-        const RegionMetrics* meter = run ? run->region(region) : nullptr;
-        if (!meter || !(meter->rmse > 0)) return {};
-        out.push_back(meter->rmse);
+        const RegionMetrics* metric = run ? run->region(region) : nullptr;
+        if (!metric || !(metric->rmse > 0)) return {};
+        out.push_back(metric->rmse);
     }
     return out;
 }
@@ -335,7 +335,8 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
         return fmt::format(
             "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it "
             "rises, in {} by that much. With an infinite variance behind it, it need not fall.",
-            narrow.n[i - 1], narrow.n[i], meter_html("rmse." + region), escape(narrow.name), factor, rose, of, so_much);
+            narrow.n[i - 1], narrow.n[i], metric_html("rmse." + region), escape(narrow.name), factor, rose, of,
+            so_much);
     }
     return {};
 }
@@ -351,8 +352,8 @@ std::string remarks(const Page& page) {
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
                 all.push_back(fmt::format(
-                    "For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
-        for (const char* meter : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, meter));
+                    "For {}, {}: {}.", escape(broad->name), metric_html("rmse." + cold), signed_percent(*r)));
+        for (const char* metric : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, metric));
         if (!hot.empty()) all.push_back(smooth_ladder_remark(page, *narrow, hot));
         if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));
     }
@@ -372,20 +373,20 @@ PageSection disagreements(Page& page) {
     html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
         {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
             {"Median against published", true}});
-    std::size_t judged = 0, outside = 0;
+    std::size_t checked = 0, outside = 0;
     for (const SeedSpread& b : page.in.metrics.bands) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
-        ++judged;
+        ++checked;
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
         ++outside;
         const auto off = relative(&b);
-        table.row({html::heading(meter_html(b.meter)), words(run_html(b.key, page.in.experiment)),
-            html::figure(figures_of(b.meter, *b.published)), html::figure(figures_of(b.meter, b.band.median)),
-            {interval_html(b.meter, b.band), true}, {off ? signed_percent(*off) : "–", true}});
+        table.row({html::heading(metric_html(b.metric)), words(run_html(b.key, page.in.experiment)),
+            html::figure(figures_of(b.metric, *b.published)), html::figure(figures_of(b.metric, b.band.median)),
+            {interval_html(b.metric, b.band), true}, {off ? signed_percent(*off) : "–", true}});
     }
-    if (judged == 0) return {};
+    if (checked == 0) return {};
     std::string out = html::p(fmt::format("{} can be held against a band; {} of them fall{} outside it.",
-        plural(judged, "published value"), outside, outside == 1 ? "s" : ""));
+        plural(checked, "published value"), outside, outside == 1 ? "s" : ""));
     if (outside > 0) out += table.str() + remarks(page);
     return {"disagreements", "Where note and scene disagree", out};
 }

@@ -216,8 +216,9 @@ PageSection provenance(Page& page) {
     add("Command", html::code(p.command));
     add("crescent", escape(p.version) + ", commit " + html::code(p.commit));
     add("Compiler", escape(p.compiler));
-    add("Instrument", escape(p.instrument));
-    for (const auto& [what, said] : p.instrument_details) table.row({html::heading(escape(what)), words(escape(said))});
+    add("Instrument", escape(p.backend));
+    for (const auto& [what, message] : p.backend_details)
+        table.row({html::heading(escape(what)), words(escape(message))});
     add("Seeds", seeds_text(p.seeds));
     if (const std::vector<int> missing = p.missing(); !missing.empty())
         add("A part of the series", fmt::format("seeds {} of {}", ranges_text(p.places), p.series));

@@ -24,7 +24,7 @@ std::string headline_table(const Page& page, std::uint64_t n) {
     std::vector<Column> columns;
     for (const ArmPlan& arm : e.arms)
         if (page.find.run(arm.name, n)) columns.push_back({column_title(arm, e), arm.name, n, page.find.s()});
-    return meters_table(page,
+    return metrics_table(page,
         fmt::format(
             "All arms at <i>N</i> = {}{}. Large: at the {} seed, {}. Small: median over {}, its 5–95 % band, and the "
             "tail index of the region’s samples",
@@ -227,7 +227,7 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     std::sort(x.ticks.begin(), x.ticks.end());
     x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
     x.high *= 2.2;  // room for names at the ends of lines
-    Chart chart(420, 330, x, log_axis(meter_text("rmse." + region), values), "RMSE against N in region " + region);
+    Chart chart(420, 330, x, log_axis(metric_text("rmse." + region), values), "RMSE against N in region " + region);
     for (const Ladder* l : all) {
         const auto points = points_of(*l);
         const std::string colour = page.colour(l->arm);
@@ -285,7 +285,7 @@ PageSection exponent(Page& page) {
     if (!control) return {};
     std::vector<Column> columns;
     for (const double s : control->s) columns.push_back({"<i>s</i> = " + shortest(s), control->arm, control->n, s});
-    const std::string table = meters_table(page,
+    const std::string table = metrics_table(page,
         fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
             escape(control->arm), control->n, page.seed_name()),
         columns);

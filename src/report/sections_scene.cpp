@@ -114,7 +114,7 @@ of a light of area <i>A</i> and <i>θ</i><sub>y</sub> the angle there between it
 that the directions to a light are drawn from.</p>
 )";
 
-std::string rungs(const ArmPlan& arm) {
+std::string sample_counts(const ArmPlan& arm) {
     std::vector<std::string> all;
     for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
     return html::join(all);
@@ -151,13 +151,13 @@ PageSection densities(Page& page) {
     for (const ArmPlan& arm : arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
-            table.row(
-                {html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""), words(rungs(arm))});
+            table.row({html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""),
+                words(sample_counts(arm))});
             continue;
         }
         table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
             words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
-            words(formula::html(info->axis)), words(rungs(arm))});
+            words(formula::html(info->axis)), words(sample_counts(arm))});
     }
     if (table.empty()) return {};
     const char* prose = std::all_of(arms.begin(), arms.end(), plain) ? plain_prose : other_prose;
@@ -165,7 +165,7 @@ PageSection densities(Page& page) {
         prose + table.str() + page.figures.plates(PlateKind::rose)};
 }
 
-// ---- The question, and the estimator with its meters.
+// ---- The question, and the estimator with its metrics.
 
 namespace {
 
@@ -205,7 +205,7 @@ constexpr const char* constants_prose = R"(
 to one. Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
 )";
 
-constexpr const char* meters_prose = R"(
+constexpr const char* metrics_prose = R"(
 <h3>What is measured</h3>
 <p>All on luminance <i>Y</i> (Rec. 709 weights, linear). Against the reference, over a region <i>A</i>:</p>
 {rmse}
@@ -277,14 +277,14 @@ PageSection estimator_equation(Page& page) {
         fmt::arg("p", in_line(mi("p"))), fmt::arg("cosine", in_line(row({mi("n"), mo("⋅"), omega()}))));
     out += brdf_words(page);
     out +=
-        fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
+        fmt::format(metrics_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
             fmt::arg("variance", display(variance(), "sample variance over N")),
             fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
     return {"estimator", "The estimator", out};
 }
 
-// ---- What everything is measured against, and how much it would matter to use the Monte Carlo reference of the note
-// instead.
+// ---- What everything is measured against, and how much it would matter to use the Monte Carlo reference of the
+// article instead.
 
 namespace {
 

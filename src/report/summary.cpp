@@ -63,14 +63,14 @@ std::string verdict(const std::vector<AssertionResult>& given, const Paint& pain
 }
 
 std::string table_row(const SeedSpread& b, bool published) {
-    const std::string name = fmt::format("{} {}", b.meter, b.key.arm);
+    const std::string name = fmt::format("{} {}", b.metric, b.key.arm);
     std::string row = fmt::format("  {}", left(name, published ? 23 : 34));
-    if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.meter, *b.published) : "-", 10));
-    row += fmt::format(" {}", right(figures_of(b.meter, b.measured), 10));
+    if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.metric, *b.published) : "-", 10));
+    row += fmt::format(" {}", right(figures_of(b.metric, b.measured), 10));
     if (b.band.seeds < 2) return row;
-    row += fmt::format(" {}  ", right(figures_of(b.meter, b.band.median), 10));
+    row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 20);
+    return row + clip(figures_of(b.metric, b.band.q05) + " .. " + figures_of(b.metric, b.band.q95), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {
@@ -79,9 +79,9 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     const bool published = find.anything_published();
     std::string rows;
     int seeds = 1;
-    for (const std::string& meter : headline_meters(in.experiment))
+    for (const std::string& metric : headline_metrics(in.experiment))
         for (const ArmPlan& arm : in.experiment.arms)
-            if (const SeedSpread* band = find.band(arm.name, n, meter)) {
+            if (const SeedSpread* band = find.band(arm.name, n, metric)) {
                 rows += table_row(*band, published) + "\n";
                 seeds = std::max(seeds, band->band.seeds);
             }

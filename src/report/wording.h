@@ -9,7 +9,7 @@
 namespace crescent::inline report {
 
 /// An arm about the normal and one about the mirror direction that ran at one N; of several about the normal, the one
-/// that shares most rungs with the other, and then the one with the smallest errors.
+/// that shares most sample counts with the other, and then the one with the smallest errors.
 struct ArmPair {
     const ArmPlan *broad = nullptr, *narrow = nullptr;
     std::uint64_t n = 0;

@@ -8,7 +8,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-class Cpu : public Instrument {
+class Cpu : public Backend {
 public:
     explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
     std::string name() const override { return "CPU"; }
@@ -23,15 +23,15 @@ private:
 
 }  // namespace
 
-std::shared_ptr<Instrument> cpu_instrument(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
+std::shared_ptr<Backend> cpu_backend(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
 
-std::vector<std::shared_ptr<const BackendKind>>& instrument_kinds() {
+std::vector<std::shared_ptr<const BackendKind>>& backend_kinds() {
     static std::vector<std::shared_ptr<const BackendKind>> kinds;
     return kinds;
 }
 
-std::shared_ptr<const BackendKind> find_instrument(const std::string& name) {
-    for (const auto& kind : instrument_kinds())
+std::shared_ptr<const BackendKind> find_backend(const std::string& name) {
+    for (const auto& kind : backend_kinds())
         if (kind->name() == name) return kind;
     return nullptr;
 }

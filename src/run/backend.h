@@ -14,20 +14,20 @@
 #include "render/film.h"
 #include "run/plan.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 class TileCheckpoint;
 class TiledScene;
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render
 
 namespace crescent::inline runs {
 
 /// What computes films. One call at a time; what it throws ends the run.
-class Instrument {
+class Backend {
 public:
-    virtual ~Instrument() = default;
+    virtual ~Backend() = default;
     virtual std::string name() const = 0;  // for provenance and plates
-    /// One film per rung, in order. The view already has the job's s. `checkpoint`: where an instrument that works
-    /// tile by tile keeps finished ones; null: nowhere.
+    /// One film per sample count, in order. The view already has the job's s. `checkpoint`: where an back end that
+    /// works tile by tile keeps finished ones; null: nowhere.
     virtual std::vector<Film> films(
         const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr) = 0;
     /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
@@ -37,15 +37,15 @@ public:
 };
 
 /// The one that is built in; `isa` is a name of isas().
-std::shared_ptr<Instrument> cpu_instrument(std::string isa);
+std::shared_ptr<Backend> cpu_backend(std::string isa);
 
-/// What the command line may say of an instrument; "" and -1: the instrument's own choice.
+/// What the command line may say of an back end; "" and -1: the back end's own choice.
 struct BackendChoice {
     std::string context;
     int device = -1;
 };
 
-/// A device that an instrument can be opened on.
+/// A device that an back end can be opened on.
 struct BackendDevice {
     int number = 0;     // as BackendChoice::device has it
     std::string means;  // in the driver's words
@@ -57,15 +57,15 @@ public:
     virtual ~BackendKind() = default;
     virtual std::string name() const = 0;  // "gl"
     /// Throws OutputError where a part is missing, InputError where the choice is not to be had.
-    virtual std::shared_ptr<Instrument> open(const BackendChoice& choice) const = 0;
+    virtual std::shared_ptr<Backend> open(const BackendChoice& choice) const = 0;
     /// None where its library is missing.
     virtual std::vector<BackendDevice> devices() const = 0;
 };
 
 /// Those that were registered. Called before main by a door's own initialiser.
-std::vector<std::shared_ptr<const BackendKind>>& instrument_kinds();
+std::vector<std::shared_ptr<const BackendKind>>& backend_kinds();
 /// Null: this program was built without it.
-std::shared_ptr<const BackendKind> find_instrument(const std::string& name);
+std::shared_ptr<const BackendKind> find_backend(const std::string& name);
 
 }  // namespace crescent::inline runs
 

@@ -1,5 +1,5 @@
 // Results are put into the plan's order; tails run beside evidence and furnaces; then hashes, bands, ladders and the
-// comparison of references are made of the films and meters, and the assertions that need no plate are judged.
+// comparison of references are made of the films and metrics, and the assertions that need no plate are checked.
 #include "run/collect.h"
 
 #include <fmt/format.h>
@@ -43,9 +43,9 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
         out.timing.arms.push_back(
             {job.arm, job.n.back(), job.s, static_cast<std::uint64_t>(result.samples), result.seconds});
         for (std::size_t r = 0; r < result.films.size(); ++r)
-            out.films.emplace_back(result.meters[r].key, std::move(result.films[r]));
+            out.films.emplace_back(result.metrics[r].key, std::move(result.films[r]));
         auto& runs = out.metrics.runs;
-        runs.insert(runs.end(), result.meters.begin(), result.meters.end());
+        runs.insert(runs.end(), result.metrics.begin(), result.metrics.end());
     }
 }
 
@@ -120,17 +120,17 @@ void add_spreads(Measured& out) {
     metrics.bands = bands(experiment, metrics.runs, published);
     metrics.published_seed = published ? published->seed : std::nullopt;
     metrics.ladders = ladders(experiment, metrics.runs);
-    metrics.assertions = judge(experiment, metrics, {}, false);
+    metrics.assertions = evaluate_assertions(experiment, metrics, {}, false);
 }
 
-Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
+Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std::string& command) {
     Provenance p;
     p.version = version();
     p.commit = commit();
     p.compiler = compiler();
     p.experiment_file = plan.experiment.file;
     p.experiment_hash = fmt::format("{:016x}", plan.hash);
-    p.instrument = instrument.name(), p.instrument_details = instrument.details();
+    p.backend = backend.name(), p.backend_details = backend.details();
     p.command = command.empty() ? "crescent run " + plan.experiment.file : command;
     p.seeds = plan.seeds;
     for (int place = plan.range.first; place <= plan.range.last; ++place) p.places.push_back(place);
@@ -170,8 +170,8 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         add_references_compared(out);
         add_spreads(out);
     });
-    out.provenance = provenance_of(plan, *with.instrument, options.command);
-    for (AssertionResult& a : with.instrument->assertions()) out.metrics.assertions.push_back(std::move(a));
+    out.provenance = provenance_of(plan, *with.backend, options.command);
+    for (AssertionResult& a : with.backend->assertions()) out.metrics.assertions.push_back(std::move(a));
     return out;
 }
 

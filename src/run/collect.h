@@ -25,17 +25,17 @@ struct Measured {
     std::vector<std::pair<RunKey, Film>> films;          // of the jobs whose films were kept
     std::vector<ReferenceFilm> quadrature, monte_carlo;  // one an exponent; none where not asked for
     Plates plates;                                       // none before write()
-    OutsideSamplers outside;                             // plates ask them for their densities
+    ExternalSamplers outside;                            // plates ask them for their densities
     bool stopped = false;
 
     const Film* film(const RunKey& key) const;       // null: not kept
-    const ReferenceFilm* reference(double s) const;  // the one that the meters use; null: not made
+    const ReferenceFilm* reference(double s) const;  // the one that the metrics use; null: not made
 };
 
 /// What is measured beside the jobs.
 struct CollectOptions {
     std::string command;  // as typed, for the provenance; "": `crescent run` and the experiment's file
-    bool studies = true;  // tails, furnaces, evidence; without them the meters of the jobs alone
+    bool studies = true;  // tails, furnaces, evidence; without them the metrics of the jobs alone
 };
 
 /// Takes what was made; `results` need not be all of the plan's.
@@ -47,10 +47,10 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor);
 
-/// What follows from the meters of all seeds: bands, ladders, and the assertions that need no plate.
+/// What follows from the metrics of all seeds: bands, ladders, and the assertions that need no plate.
 void add_spreads(Measured& measured);
 
-/// What made the outputs of a plan: its experiment, seeds, version, instrument and command.
-Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
+/// What made the outputs of a plan: its experiment, seeds, version, back end and command.
+Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std::string& command);
 
 }  // namespace crescent::inline runs

@@ -1,4 +1,5 @@
-// Second step of a run: what all jobs look at and are measured against, then one job after another -> films and meters.
+// Second step of a run: what all jobs look at and are measured against, then one job after another -> films and
+// metrics.
 //
 // Of these and the later steps: a stop that the ProgressMonitor was asked for is no exception. What is returned says
 // `stopped` and holds nothing that can be relied on. InputError and OutputError are thrown as everywhere. No step
@@ -22,13 +23,13 @@ namespace crescent::inline runs {
 
 class Checkpoint;
 
-/// What a run is computed with. Films, references and meters are the same bits whatever it says, but for the
-/// instrument.
+/// What a run is computed with. Films, references and metrics are the same bits whatever it says, but for the
+/// back end.
 struct Engine {
-    int threads = 0;                           // 0: usable_threads()
-    std::string isa{};                         // a name of isas(); "": the best of this machine
-    std::shared_ptr<Instrument> instrument{};  // null: the CPU
-    double timeout_s = 0;                      // for one answer of a program or plugin; 0: 10 and 60 s
+    int threads = 0;                     // 0: usable_threads()
+    std::string isa{};                   // a name of isas(); "": the best of this machine
+    std::shared_ptr<Backend> backend{};  // null: the CPU
+    double timeout_s = 0;                // for one answer of a program or plugin; 0: 10 and 60 s
 };
 /// With nothing left open. Throws InputError where the instruction set is not known or not here.
 Engine settled(Engine engine);
@@ -39,7 +40,7 @@ struct Prepared {
 
     Scene scene;                    // at the experiment's own s
     std::vector<TiledScene> views;  // of it at each exponent, in the plan's order
-    OutsideSamplers outside;
+    ExternalSamplers outside;
     ShapeMap shapes;
     std::vector<std::uint64_t> shape_pixels;  // of each shape, in the experiment's order
     std::uint64_t geometry_pixels = 0;
@@ -58,9 +59,9 @@ Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& mon
 
 struct JobResult {
     Job job;
-    std::vector<RunMetrics> meters;  // one a rung; tails come with collect()
-    std::vector<Film> films;         // one a rung; none where they were not asked for
-    double samples = 0;              // that were drawn now
+    std::vector<RunMetrics> metrics;  // one a sample count; tails come with collect()
+    std::vector<Film> films;          // one a sample count; none where they were not asked for
+    double samples = 0;               // that were drawn now
     double seconds = 0;
     bool stopped = false;
 };
@@ -71,11 +72,11 @@ Job with_sampler(Job job, const Prepared& prepared);
 /// The prepared view at exponent s, which is one of the plan's.
 const TiledScene& view_at(const Prepared& prepared, double s);
 
-/// One job. `keep_films` = false: its meters alone, which a checkpoint may hold already.
+/// One job. `keep_films` = false: its metrics alone, which a checkpoint may hold already.
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& monitor, bool keep_films = true, Checkpoint* checkpoint = nullptr);
 
-/// The reference that the meters of exponent s use; null where none was made.
+/// The reference that the metrics of exponent s use; null where none was made.
 const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,
     const std::vector<ReferenceFilm>& monte_carlo, double s);
 

@@ -1,5 +1,5 @@
-// A program is spoken to by subjects/pipe.h, one question after another under a lock and with no limit to the whole; a
-// library is opened by subjects/plugin.h. A wrapper around either puts the arm's name into what it throws.
+// A program is spoken to by samplers/pipe.h, one question after another under a lock and with no limit to the whole; a
+// library is opened by samplers/plugin.h. A wrapper around either puts the arm's name into what it throws.
 #include "run/external_samplers.h"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ public:
     explicit Program(std::shared_ptr<const SamplerAdapter> program) : program_(std::move(program)) {}
     std::string name() const override { return program_->name(); }
     int numbers() const override { return program_->traits().numbers; }
-    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const auto count = static_cast<std::size_t>(numbers());
         std::size_t first = 0;
-        for (const OutsideRun& run : batch.runs) {
+        for (const ExternalRun& run : batch.runs) {
             std::vector<PrimarySample> u(run.rows);
             for (std::size_t i = 0; i < run.rows; ++i)
                 for (std::size_t k = 0; k < count; ++k) u[i][static_cast<int>(k)] = batch.u[(first + i) * count + k];
@@ -40,7 +40,7 @@ public:
     }
     bool has_density() const override { return program_->traits().has_pdf; }
     void density(
-        Vec3d wo, const OutsideSurface& /*surface*/, std::span<const Vec3d> wi, std::span<double> out) const override {
+        Vec3d wo, const ExternalSurface& /*surface*/, std::span<const Vec3d> wi, std::span<double> out) const override {
         std::vector<Pair> at;
         for (const Vec3d& w : wi) at.push_back({wo, w});
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
@@ -58,12 +58,12 @@ public:
     Named(std::string arm, std::shared_ptr<const ExternalSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
     std::string name() const override { return of_->name(); }
     int numbers() const override { return of_->numbers(); }
-    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         named([&] { of_->draw(batch, out); });
     }
     bool has_density() const override { return of_->has_density(); }
     void density(
-        Vec3d wo, const OutsideSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+        Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
         named([&] { of_->density(wo, surface, wi, out); });
     }
 
@@ -104,11 +104,11 @@ std::shared_ptr<const ExternalSampler> open(
 
 }  // namespace
 
-OutsideSamplers open_outside(const Experiment& experiment, double timeout_s) {
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s) {
     PipeLimits limits;
     limits.total_seconds = std::numeric_limits<double>::infinity();
     limits.limit_answers(timeout_s);
-    OutsideSamplers all;
+    ExternalSamplers all;
     for (const ArmPlan& arm : experiment.arms)
         if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment, limits));
     return all;

@@ -10,7 +10,7 @@ namespace crescent::inline runs {
 /// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name,
 /// where one does not start, is no sampler, or cannot be estimated with (no pdf, delta parts). `timeout_s`: what an
 /// answer may take; 0: the defaults of PipeLimits.
-OutsideSamplers open_outside(const Experiment& experiment, double timeout_s = 0);
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s = 0);
 
 /// What the libraries are, apart from their names; "" where there are none. Films of other libraries are other films.
 std::string marks_of(const Experiment& experiment);

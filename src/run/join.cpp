@@ -67,13 +67,13 @@ std::string difference(const std::string& there, const std::string& here) {
     std::set<std::string> keys;
     for (const auto& all : {a, b})
         for (const auto& [key, value] : all) keys.insert(key);
-    const auto said = [](const auto& in, const std::string& key) {
+    const auto message = [](const auto& in, const std::string& key) {
         const auto at = in.find(key);
         return at == in.end() ? "not given" : at->second.substr(0, 60);
     };
     for (const std::string& key : keys)
-        if (key != "seeds" && said(a, key) != said(b, key))
-            return fmt::format("; {} is {} there and {} here", key, said(a, key), said(b, key));
+        if (key != "seeds" && message(a, key) != message(b, key))
+            return fmt::format("; {} is {} there and {} here", key, message(a, key), message(b, key));
     return "; the published figures differ";
 }
 
@@ -107,7 +107,7 @@ void check_alike(const Part& first, const Part& part) {
             "it is of another experiment" + difference(a.experiment_text, b.experiment_text) +
                 "; expected parts of one experiment");
     for (const auto& [what, x, y] : {std::tuple("version", a.version, b.version), {"commit", a.commit, b.commit},
-             {"instrument", a.instrument, b.instrument}})
+             {"instrument", a.backend, b.backend}})
         if (x != y) refuse(first, part, fmt::format("{} is '{}' there and '{}' here", what, x, y));
     for (const char* key : {"geometry_pixels", "shape_pixels", "furnace", "evidence"})
         check_same(first, part, fmt::format("'{}'", key), first.json.at(key), part.json.at(key));
@@ -179,8 +179,8 @@ private:
     std::map<TailKey, KnownTail> tails_;
 };
 
-/// Claims of the instrument, which follow the experiment's own: one that fails in any part fails.
-std::vector<AssertionResult> instrument_claims(const std::vector<Part>& parts) {
+/// Claims of the back end, which follow the experiment's own: one that fails in any part fails.
+std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
     std::vector<AssertionResult> out;
     for (const Part& part : parts) {
         const auto& all = part.file.metrics.assertions;
@@ -232,7 +232,7 @@ Measured join(const std::vector<std::string>& given, const std::string& command)
     out.metrics.furnaces = of_first.furnaces, out.metrics.shape_pixels = of_first.shape_pixels;
     out.metrics.geometry_pixels = of_first.geometry_pixels, out.evidence = begins->file.evidence;
     add_spreads(out);
-    std::ranges::move(instrument_claims(parts), std::back_inserter(out.metrics.assertions));
+    std::ranges::move(backend_claims(parts), std::back_inserter(out.metrics.assertions));
     return out;
 }
 

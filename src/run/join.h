@@ -10,7 +10,7 @@ namespace crescent::inline runs {
 
 /// Joins parts: each a metrics.json or the folder of one. The metrics are those of one run with all seeds, bit for bit;
 /// there are no films, so that assertions on plates are skipped, and where seeds are missing so are those that need
-/// them. Throws InputError where a part cannot be read, is of another experiment, build or instrument, or where two
+/// them. Throws InputError where a part cannot be read, is of another experiment, build or back end, or where two
 /// parts give two values for one thing.
 Measured join(const std::vector<std::string>& parts, const std::string& command);
 

@@ -12,7 +12,7 @@
 
 namespace crescent::inline runs {
 
-/// One pass over the pixels: one arm, every rung, one exponent, one seed.
+/// One pass over the pixels: one arm, every sample count, one exponent, one seed.
 struct Job {
     std::string arm, sampler;      // its name in the experiment, and its word in arms/all.h
     std::vector<std::uint64_t> n;  // ascending
@@ -33,7 +33,7 @@ struct RunPlan {
     Experiment experiment;
     std::uint64_t hash = 0;            // of the whole
     SeedRange range;                   // last is never 0 here
-    std::vector<std::uint32_t> seeds;  // no two alike; films of the first are kept, of the others meters alone
+    std::vector<std::uint32_t> seeds;  // no two alike; films of the first are kept, of the others metrics alone
     std::vector<double> exponents;     // every s that a job has: a reference is needed for each
     std::vector<Job> jobs;             // seed by seed
 };

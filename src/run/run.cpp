@@ -67,13 +67,13 @@ Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, 
     return out;
 }
 
-/// What is kept is of one instrument, one experiment and one part of its seeds.
+/// What is kept is of one back end, one experiment and one part of its seeds.
 std::string checkpoint_key(const RunPlan& plan, const Engine& engine) {
-    return fmt::format("{} {:016x} {}:{}", engine.instrument->name(), plan.hash, plan.range.first, plan.range.last);
+    return fmt::format("{} {:016x} {}:{}", engine.backend->name(), plan.hash, plan.range.first, plan.range.last);
 }
 
 Engine engine_of(const RunOptions& options) {
-    return settled({options.threads, options.isa, options.instrument, options.timeout_s});
+    return settled({options.threads, options.isa, options.backend, options.timeout_s});
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ struct RunOptions {
     std::string isa;           // "": the best this machine has
     std::string command;       // as typed, for the provenance
     double keep_after_s = 10;  // passes and runs that take longer keep what they have finished, see checkpoint.h
-    std::shared_ptr<Instrument> instrument;  // null: the CPU
-    double timeout_s = 0;                    // for one answer of a program or plugin; 0: 10 and 60 s
+    std::shared_ptr<Backend> backend;  // null: the CPU
+    double timeout_s = 0;              // for one answer of a program or plugin; 0: 10 and 60 s
     OutputParts parts;
     SeedRange seeds;
 };

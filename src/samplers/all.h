@@ -16,7 +16,7 @@
 #include "samplers/sampler.h"
 #include "samplers/uniform.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 /// The types of the arms, in the order of their indices. Each is a Sampler (arms/sampler.h).
 template <template <class> class... A>
@@ -33,4 +33,4 @@ template <class Call, template <class> class... A> constexpr void for_each_sampl
     (f.template operator()<A>(), ...);
 }
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -7,11 +7,11 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/beckmann.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct BeckmannD {
     static constexpr std::string_view name = "beckmann-d";
-    static constexpr CaseSurface trials[] = {{.lobe = "beckmann", .sharpness = 1},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "beckmann", .sharpness = 1},
         {.lobe = "beckmann", .sharpness = 0.5}, {.lobe = "beckmann", .sharpness = 0.1},
         {.lobe = "beckmann", .sharpness = 0.01}, {.lobe = "beckmann", .sharpness = 0.3, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -19,7 +19,7 @@ template <class F> struct BeckmannD {
         .formula = R"(\frac{D(m)\,(n\cdot m)}{4(\omega_o\cdot m)})",
         .draw = R"($\tan^2\theta_m=-\alpha^2\log(1-u_1)$)",
         .axis = "the normal $n$",
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2e-5, "as blinn"}};
     /// n.m is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. Where exp(-tan^2 /
     /// alpha^2) is less than the smallest double there, p is 0 where Lambert is not.
@@ -34,7 +34,7 @@ template <class F> struct BeckmannD {
     }
 
     Beckmann<F> beckmann;
-    explicit BeckmannD(const ShadingPoint<F>& site) : beckmann{site.alpha} {}
+    explicit BeckmannD(const ShadingPoint<F>& shading_point) : beckmann{shading_point.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1), a2 = sqr(beckmann.alpha);
@@ -52,4 +52,4 @@ template <class F> struct BeckmannD {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

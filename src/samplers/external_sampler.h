@@ -11,10 +11,10 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 /// What a sampler may know of the surface point, beside wo. Files and C read its rows as they stand here.
-struct OutsideSurface {
+struct ExternalSurface {
     double s;        // Phong exponent
     double alpha;    // GGX roughness
     double diffuse;  // Y(rho_d)
@@ -22,20 +22,20 @@ struct OutsideSurface {
 };
 
 /// Rows that follow one another at one surface point.
-struct OutsideRun {
+struct ExternalRun {
     Vec3<double> wo;
-    OutsideSurface surface;
+    ExternalSurface surface;
     std::size_t rows;
 };
 
 /// A batch of draws. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
-struct OutsideBatch {
-    std::span<const OutsideRun> runs;
+struct ExternalBatch {
+    std::span<const ExternalRun> runs;
     std::span<const double> u;
 };
 
 /// Where a batch is drawn to, an entry a row. pdf 0: nothing was drawn.
-struct OutsideDraws {
+struct ExternalDraws {
     std::span<Vec3<double>> wi;
     std::span<double> pdf;
 };
@@ -48,20 +48,20 @@ public:
     /// Random numbers that a sample takes, 1 to 8.
     virtual int numbers() const = 0;
     /// One draw a row of u. May be called by many threads at once. Throws OutputError if it does not answer.
-    virtual void draw(const OutsideBatch& batch, const OutsideDraws& out) const = 0;
+    virtual void draw(const ExternalBatch& batch, const ExternalDraws& out) const = 0;
     /// Whether it can be asked for the density of any direction.
     virtual bool has_density() const { return false; }
     /// The density of each wi, 0 where it is never drawn. As draw() for threads and what it throws.
-    virtual void density(Vec3<double> /*wo*/, const OutsideSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
+    virtual void density(Vec3<double> /*wo*/, const ExternalSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
         std::span<double> out) const {
         for (double& p : out) p = 0;
     }
 };
 
 /// The samplers from outside that an experiment's arms name, by arm.
-using OutsideSamplers = std::map<std::string, std::shared_ptr<const ExternalSampler>, std::less<>>;
+using ExternalSamplers = std::map<std::string, std::shared_ptr<const ExternalSampler>, std::less<>>;
 /// Null where the arm is built in.
-inline const ExternalSampler* outside_of(const OutsideSamplers& all, std::string_view arm) {
+inline const ExternalSampler* external_of(const ExternalSamplers& all, std::string_view arm) {
     const auto found = all.find(arm);
     return found == all.end() ? nullptr : found->second.get();
 }
@@ -75,4 +75,4 @@ struct SamplerRef {
     SamplerRef(const char* word) : sampler(word) {}
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -9,11 +9,11 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct GgxBoundedVndf {
     static constexpr std::string_view name = "ggx-bounded-vndf";
-    static constexpr CaseSurface trials[] = {{.lobe = "ggx", .sharpness = 1}, {.lobe = "ggx", .sharpness = 0.5},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "ggx", .sharpness = 1}, {.lobe = "ggx", .sharpness = 0.5},
         {.lobe = "ggx", .sharpness = 0.1}, {.lobe = "ggx", .sharpness = 0.01}, {.lobe = "ggx", .sharpness = 0.001},
         {.lobe = "ggx", .sharpness = 0.3, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -21,12 +21,12 @@ template <class F> struct GgxBoundedVndf {
         .formula = R"(\frac{D(m)}{2(k(n\cdot\omega_o)+t)})",
         .draw = "even over a spherical cap that is cut lower down, stretched",
         .axis = "the normal $n$",
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {1e-4, "as ggx-vndf, whose cap is cut at a height that is rounded as well"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
 
     Ggx<F> ggx;
-    explicit GgxBoundedVndf(const ShadingPoint<F>& site) : ggx{site.alpha} {}
+    explicit GgxBoundedVndf(const ShadingPoint<F>& shading_point) : ggx{shading_point.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1);
@@ -58,4 +58,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -8,11 +8,11 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct GgxD {
     static constexpr std::string_view name = "ggx-d";
-    static constexpr CaseSurface trials[] = {{.lobe = "ggx", .sharpness = 0.5}, {.lobe = "ggx", .sharpness = 0.1},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "ggx", .sharpness = 0.5}, {.lobe = "ggx", .sharpness = 0.1},
         {.lobe = "ggx", .sharpness = 0.01}, {.lobe = "ggx", .sharpness = 0.001},
         {.lobe = "ggx", .sharpness = 0.3, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -20,11 +20,11 @@ template <class F> struct GgxD {
         .formula = R"(\frac{D(m)\,(n\cdot m)}{4(\omega_o\cdot m)})",
         .draw = R"($\tan^2\theta_m=\frac{\alpha^2u_1}{1-u_1}$)",
         .axis = "the normal $n$",
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2e-5, "as blinn"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return {.bounded = at.rho_d == 0}; }
     Ggx<F> ggx;
-    explicit GgxD(const ShadingPoint<F>& site) : ggx{site.alpha} {}
+    explicit GgxD(const ShadingPoint<F>& shading_point) : ggx{shading_point.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1), a2 = sqr(ggx.alpha);
@@ -42,4 +42,4 @@ template <class F> struct GgxD {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

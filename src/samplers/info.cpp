@@ -6,7 +6,7 @@
 #include "output/formula.h"
 #include "samplers/all.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 namespace {
 
@@ -61,4 +61,4 @@ std::uint64_t directions_per_sample(std::string_view sampler) {
     return arm ? static_cast<std::uint64_t>(arm->techniques) : 1;
 }
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

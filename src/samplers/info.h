@@ -1,5 +1,5 @@
 // What an arm says of itself, beside how it draws: the names, formulas and expectations from which the experiment's
-// keys, `crescent list arms`, plates, report, verdicts and the law on the GL instrument are made. An arm's file states
+// keys, `crescent list arms`, plates, report, verdicts and the law on the GL back end are made. An arm's file states
 // it as `static constexpr SamplerDoc manual`; this header needs none of the arms' code.
 #pragma once
 
@@ -10,12 +10,12 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 /// The direction that a density is centred on, where it has one and is symmetric about it.
 enum class PdfAxis { none, normal, mirror };
 
-/// A surface and a light that `crescent check` judges an arm on.
+/// A surface and a light that `crescent check` checks an arm on.
 struct CaseSurface {
     std::string_view lobe = "";       // a word of lobes/; "": none
     double sharpness = 32;            // that lobe's s or alpha
@@ -23,7 +23,7 @@ struct CaseSurface {
     std::string_view light = "fill";  // "fill", "disk", "overhead disk", "two disks", or fill + one of these
 };
 
-/// The surface and light of one trial, as an arm's theory is asked about them.
+/// The surface and light of one case, as an arm's theory is asked about them.
 struct CasePoint {
     double rho_d = 0, rho_s = 0;
     double s = 0, alpha = 0;
@@ -65,7 +65,7 @@ struct SamplerDoc {
     bool combines = false;  // it joins several densities
     std::string_view misses =
         "";  // light that it cannot reach; empty: it reaches all. Where such light shines it is biased
-    std::span<const CaseSurface> trials = {};  // empty: every lobe, and Lambert, under the fill
+    std::span<const CaseSurface> check_cases = {};  // empty: every lobe, and Lambert, under the fill
     GlTolerance gl = {};
 };
 
@@ -85,4 +85,4 @@ std::vector<std::string> sampler_names();
 /// Directions that a built-in arm draws a sample.
 std::uint64_t directions_per_sample(std::string_view sampler);
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -9,7 +9,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 namespace {
 
 TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
@@ -79,4 +79,4 @@ TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
 }
 
 }  // namespace
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -7,11 +7,11 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct LightArea {
     static constexpr std::string_view name = "light-area";
-    static constexpr CaseSurface trials[] = {{.lambert = true, .light = "disk"},
+    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "disk"},
         {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = "light-area (NEE)",
@@ -20,7 +20,7 @@ template <class F> struct LightArea {
         .draw = "even over a light's area",
         .axis = "the light",
         .misses = light_arm_misses,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
@@ -44,8 +44,11 @@ template <class F> struct LightArea {
     };
     Aim first;  // most scenes have but one
 
-    explicit LightArea(const ShadingPoint<F>& site)
-        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
+    explicit LightArea(const ShadingPoint<F>& shading_point)
+        : disks(shading_point.disks),
+          count(shading_point.disk_count),
+          others(shading_point.others),
+          other_count(shading_point.other_count) {
         if (count > 0) first = Aim(disks[0]);
     }
 
@@ -134,4 +137,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -14,11 +14,11 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct LightSolidAngle {
     static constexpr std::string_view name = "light-solid-angle";
-    static constexpr CaseSurface trials[] = {{.lambert = true, .light = "disk"},
+    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "disk"},
         {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = "light-solid-angle (NEE)",
@@ -27,7 +27,7 @@ template <class F> struct LightSolidAngle {
         .draw = R"(even over a light's solid angle $\Omega$; of a disk, over a cap around it)",
         .axis = "the light",
         .misses = light_arm_misses,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
@@ -43,8 +43,11 @@ template <class F> struct LightSolidAngle {
     };
     Cap first;  // most scenes have but one
 
-    explicit LightSolidAngle(const ShadingPoint<F>& site)
-        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
+    explicit LightSolidAngle(const ShadingPoint<F>& shading_point)
+        : disks(shading_point.disks),
+          count(shading_point.disk_count),
+          others(shading_point.others),
+          other_count(shading_point.other_count) {
         if (count > 0) first = cap_of(disks[0]);
     }
 
@@ -145,4 +148,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -8,9 +8,9 @@
 #include "samplers/light_area.h"
 #include "samplers/mixture.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
-inline constexpr CaseSurface mis_trials[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
+inline constexpr CaseSurface mis_cases[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
     {.lobe = "phong", .sharpness = 1000, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + two disks"}};
@@ -20,7 +20,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
     static constexpr int techniques = 2;
     Mixture<F> brdf;
     LightArea<F> light;
-    explicit TwoSampleMis(const ShadingPoint<F>& site) : brdf(site), light(site) {}
+    explicit TwoSampleMis(const ShadingPoint<F>& shading_point) : brdf(shading_point), light(shading_point) {}
 
     template <int t> auto sample_technique(Vec3<F> wo, Vec2<F> u) const {
         if constexpr (t == 0) return brdf.sample(wo, u);
@@ -56,7 +56,7 @@ template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
         .axis = "both",
         .needs_s = true,
         .combines = true,
-        .trials = mis_trials,
+        .check_cases = mis_cases,
         .gl = {5e-6, "as mixture; weights are at most 1"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, BalanceHeuristic>::TwoSampleMis;
@@ -83,10 +83,10 @@ template <class F> struct MisPower : TwoSampleMis<F, PowerHeuristic> {
         .axis = "both",
         .needs_s = true,
         .combines = true,
-        .trials = mis_trials,
+        .check_cases = mis_cases,
         .gl = {5e-6, "as mixture; weights are at most 1"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, PowerHeuristic>::TwoSampleMis;
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

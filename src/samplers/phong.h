@@ -7,11 +7,11 @@
 #include "math/functions.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct Phong {
     static constexpr std::string_view name = "phong";
-    static constexpr CaseSurface trials[] = {{.lobe = "phong", .sharpness = 8}, {.lobe = "phong", .sharpness = 32},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "phong", .sharpness = 8}, {.lobe = "phong", .sharpness = 32},
         {.lobe = "phong", .sharpness = 128}, {.lobe = "phong", .sharpness = 1e4}, {.lobe = "phong", .sharpness = 1e5},
         {.lobe = "phong", .sharpness = 32, .lambert = true}, {.lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -21,7 +21,7 @@ template <class F> struct Phong {
         .axis = "the mirror direction $R$",
         .about = PdfAxis::mirror,
         .needs_s = true,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"}};
     /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and past 90 deg from R no samples at
     /// all.
@@ -40,10 +40,10 @@ template <class F> struct Phong {
         return t;
     }
     F s, inverse, scale;
-    explicit Phong(const ShadingPoint<F>& site)
-        : s(site.s),
-          inverse(number<F>(1) / (site.s + number<F>(1))),
-          scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
+    explicit Phong(const ShadingPoint<F>& shading_point)
+        : s(shading_point.s),
+          inverse(number<F>(1) / (shading_point.s + number<F>(1))),
+          scale((shading_point.s + number<F>(1)) * number<F>(0.5 / pi)) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const Power<F> lobe = root(u.x, inverse);
@@ -59,4 +59,4 @@ template <class F> struct Phong {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

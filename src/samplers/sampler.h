@@ -10,7 +10,7 @@
 #include "samplers/info.h"
 #include "scene/lights/all.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 /// A density over solid angle, 1/sr.
 template <class F> struct PerSr {
@@ -30,7 +30,8 @@ template <class F> struct Drawn {
 };
 
 /// A direction that was drawn towards a light. Whether it meets that light is known from the draw; a test of the
-/// rounded direction may fail: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
+/// rounded direction may fail: float directions are 1e-7 apart, and so a area light of 1e-6 m at 3 m is three of them
+/// across.
 template <class F> struct DrawnToDisk : Drawn<F> {
     F disk;         // the index of that light, disks first
     MaskOf<F> met;  // wi meets it; it may still be behind another light, or hidden
@@ -105,4 +106,4 @@ concept Sampler = std::constructible_from<S, const ShadingPoint<F>&> && requires
     { S::manual } -> std::convertible_to<SamplerDoc>;
 } && (DrawsTwo<S, F> || (!requires { S::techniques; } && DrawsOne<S, F>));
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -130,7 +130,7 @@ template <class Visit> void for_each_ray(ShapeKind kind, Visit&& visit) {
     }
 }
 
-TEST(IntersectLaw, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
+TEST(IntersectConformance, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
     for (const ShapeKind kind : kinds) {
         int hits = 0;
         for_each_ray(kind, [&](const Sample& q, Vec3d x, Vec3d d) {
@@ -161,7 +161,7 @@ bool crosses_before(const Sample& q, Vec3d x, Vec3d d, double t) {
     return false;
 }
 
-TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
+TEST(IntersectConformance, NothingOfAClosedBodyStandsBeforeIt) {
     for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box})
         for_each_ray(kind, [&, k = 0](const Sample& q, Vec3d x, Vec3d d) mutable {
             if (k++ % 10 != 0) return;
@@ -170,7 +170,7 @@ TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
         });
 }
 
-TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
+TEST(IntersectConformance, ASmallSphereFarAwayIsMetWhereItIs) {
     PrimarySample next(11);
     for (const double far : {1e2, 1e4, 1e5})
         for (int k = 0; k < 300; ++k) {
@@ -184,7 +184,7 @@ TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
         }
 }
 
-TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
+TEST(IntersectConformance, FromInsideABodyTheFarWallIsMet) {
     PrimarySample next(3);
     for (int k = 0; k < 2000; ++k) {
         const Sample ball = some_shape(ShapeKind::sphere, next), box = some_shape(ShapeKind::box, next);
@@ -197,7 +197,7 @@ TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
     }
 }
 
-TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
+TEST(IntersectConformance, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
     PrimarySample next(5);
     int reveals = 0;
     for (int k = 0; k < 20'000; ++k) {

@@ -74,11 +74,11 @@ TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
         PrimarySample next(7 + static_cast<std::uint32_t>(kind));
         int clear = 0, unclear = 0, in_the_way = 0;
-        for (int trial = 0; trial < 1000; ++trial) {
+        for (int check_case = 0; check_case < 1000; ++check_case) {
             const Obstacle s = some_obstacle(kind, next);
             const bool parted = is_separated(s.body, s.from, s.disk.light().body());
             const int hidden_ones = hidden_segments(s, next, 200);
-            EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
+            EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << check_case;
             in_the_way += hidden_ones > 0;
             clear += parted;
             unclear += !parted && hidden_ones == 0;
@@ -93,12 +93,12 @@ TEST(PassesBy, IsNeverSaidOfABodyThatHidesSome) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
         PrimarySample next(17 + static_cast<std::uint32_t>(kind));
         int clear = 0, in_the_way = 0;
-        for (int trial = 0; trial < 1000; ++trial) {
+        for (int check_case = 0; check_case < 1000; ++check_case) {
             Obstacle s = some_obstacle(kind, next);
             s.from.half = {};
             const bool passes = passes_by(ball_around(s.body), s.from.middle, {s.disk.center, s.disk.radius});
             const int hidden_ones = hidden_segments(s, next, 200);
-            EXPECT_FALSE(passes && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
+            EXPECT_FALSE(passes && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << check_case;
             in_the_way += hidden_ones > 0;
             clear += passes;
         }

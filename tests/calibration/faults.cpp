@@ -181,7 +181,7 @@ std::vector<PlaceOfFault> places_of(
     Rng dice = dice_of(key);
     std::vector<PlaceOfFault> out;
     const std::vector<Vec3d> only = {{0, 0, 1}};
-    for (Vec3d o : right.wo == Traits::Asked::none ? std::span<const Vec3d>(only) : wo) {
+    for (Vec3d o : right.wo == Traits::WoDomain::none ? std::span<const Vec3d>(only) : wo) {
         out.push_back(std::visit(
             [&](const auto& f) {
                 return place_at(drawn_at(f, o, dice, capped ? draws_for_places : 4096), o, fault, dice);

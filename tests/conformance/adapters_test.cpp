@@ -60,13 +60,13 @@ struct PbrtLike {
 };
 
 /// As some classes of pbrt are: what is asked for comes last, without a default.
-enum class Asked { none, reflection, transmission, all };
-struct AskedPbrtLike : PbrtLike {
-    std::optional<Sample> Sample_f(Vec wo, float uc, Point u, Mode mode, Asked asked) const {
-        return asked == Asked::all ? PbrtLike::Sample_f(wo, uc, u, mode) : std::nullopt;
+enum class WoDomain { none, reflection, transmission, all };
+struct FlaggedPbrtLike : PbrtLike {
+    std::optional<Sample> Sample_f(Vec wo, float uc, Point u, Mode mode, WoDomain asked) const {
+        return asked == WoDomain::all ? PbrtLike::Sample_f(wo, uc, u, mode) : std::nullopt;
     }
-    float PDF(Vec wo, Vec wi, Mode mode, Asked asked) const {
-        return asked == Asked::all ? PbrtLike::PDF(wo, wi, mode) : 0;
+    float PDF(Vec wo, Vec wi, Mode mode, WoDomain asked) const {
+        return asked == WoDomain::all ? PbrtLike::PDF(wo, wi, mode) : 0;
     }
 };
 
@@ -138,13 +138,13 @@ template <class Sampler> void expect(const Sampler& sampler, crescent::State sta
 TEST(Adapters, AClassOfPbrtsShapeIsJudgedWithItsDeltaPart) {
     expect(crescent::adapters::Pbrt(PbrtLike{}), crescent::State::right);
     expect(crescent::adapters::Pbrt(PbrtLike{1.03f}), crescent::State::wrong);
-    expect(crescent::adapters::Pbrt(AskedPbrtLike{}), crescent::State::right);
+    expect(crescent::adapters::Pbrt(FlaggedPbrtLike{}), crescent::State::right);
 }
 
 TEST(Adapters, AreToldWhatElseIsKnown) {
-    const crescent::Traits both{.wo = crescent::Traits::Asked::both, .reciprocal = false};
+    const crescent::Traits both{.wo = crescent::Traits::WoDomain::both, .reciprocal = false};
     const crescent::adapters::Nori known(NoriLike{}, both);
-    EXPECT_EQ(crescent::user::traits_of(known).wo, crescent::Traits::Asked::both);
+    EXPECT_EQ(crescent::user::traits_of(known).wo, crescent::Traits::WoDomain::both);
     EXPECT_FALSE(crescent::user::traits_of(crescent::adapters::Pbrt(PbrtLike{}, both)).reciprocal);
 }
 

@@ -7,7 +7,7 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 
 namespace crescent {
 namespace {
@@ -34,7 +34,7 @@ std::shared_ptr<const SamplerAdapter> power(double k, Gives gives) {
         if (gives == Gives::weight) d.weight = 0.5 / pi * i.z / p(i);
         return d;
     };
-    return subject_of(r);
+    return make_adapter(r);
 }
 
 TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
@@ -55,19 +55,19 @@ TEST(AgainstWithoutAPdf, VariancesAreRankedByTheWeightsThatComeWithTheDraws) {
     const CheckResult j = against(a, sampler_against(power(0.8, Gives::pdf), a));
     const Verdict& v = named(j, "variance");
     ASSERT_EQ(v.state, State::right) << against_text(j);
-    EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.say;
+    EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.message;
     // X is cos^(1-k) / (k+1), of p (k+1) cos^k over cos: E[X^2] = 1 / ((k+1) (3-k)), E[X] = 1/2.
     const auto variance = [](double k) { return 1 / ((k + 1) * (3 - k)) - 0.25; };
     const double ratio = variance(0.5) / variance(0.8);
-    EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.say;
-    EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.say;
+    EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.message;
+    EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.message;
 }
 
 TEST(AgainstWithoutAPdf, NorAWeightThereIsNoVariance) {
     const std::vector<CheckCase> a = {make_user_case(power(1, Gives::pdf), 45, 130)};
     const Verdict v = named(against(a, sampler_against(power(1, Gives::nothing), a)), "variance");
     EXPECT_EQ(v.state, State::skipped);
-    EXPECT_NE(v.say.find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.say;
+    EXPECT_NE(v.message.find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.message;
 }
 
 /// Answers `questions` draws and then no more.
@@ -101,7 +101,8 @@ TEST(Against, WhatBreaksOffIsNamed) {
             against(a, sampler_against(first ? well : std::shared_ptr<const SamplerAdapter>(breaks), a));
         EXPECT_EQ(j.state, State::error);
         const std::string who = first ? "sampler A (fickle): " : "sampler B (fickle): ";
-        EXPECT_NE(named(j, "variance").say.find("broke off: " + who), std::string::npos) << named(j, "variance").say;
+        EXPECT_NE(named(j, "variance").message.find("broke off: " + who), std::string::npos)
+            << named(j, "variance").message;
     }
 }
 

@@ -15,7 +15,7 @@
 #include "check/user.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/faulty/planted.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 #include "tests/support/sanitized.h"
 
 namespace crescent {
@@ -53,20 +53,20 @@ private:
 };
 
 struct Seen {
-    CheckResult judgement;
+    CheckResult result;
     std::uint64_t most = 0;  // at one w_o
 };
 
-/// Every w_o is judged by a call of its own.
-Seen judged(const std::vector<CheckCase>& trials) {
+/// Every w_o is checked by a call of its own.
+Seen checked(const std::vector<CheckCase>& check_cases) {
     Seen out;
-    for (const CheckCase& t : trials) {
-        const auto program = std::make_shared<Counted>(t.subject);
+    for (const CheckCase& t : check_cases) {
+        const auto program = std::make_shared<Counted>(t.adapter);
         CheckCase one = t;
-        one.subject = program;
+        one.adapter = program;
         ProgressMonitor monitor;
-        const CheckResult j = judge({&one, 1}, TestSettings::quick(), monitor);
-        for (const Verdict& v : j.verdicts) out.judgement.verdicts.push_back(v);
+        const CheckResult j = run_checks({&one, 1}, TestSettings::quick(), monitor);
+        for (const Verdict& v : j.verdicts) out.result.verdicts.push_back(v);
         out.most = std::max(out.most, program->spending().answers);
     }
     return out;
@@ -74,7 +74,7 @@ Seen judged(const std::vector<CheckCase>& trials) {
 
 std::vector<CheckCase> at(const SyntheticSampler& recipe, std::initializer_list<std::pair<double, double>> grid) {
     std::vector<CheckCase> out;
-    for (const auto& [theta, azimuth] : grid) out.push_back(make_user_case(subject_of(recipe), theta, azimuth));
+    for (const auto& [theta, azimuth] : grid) out.push_back(make_user_case(make_adapter(recipe), theta, azimuth));
     return out;
 }
 
@@ -84,10 +84,10 @@ constexpr std::uint64_t promised = 500000, in_process = 1500000;
 TEST(Programs, OfRightGlassAreConclusiveWithinWhatTheyAreAsked) {
     const RoughGlass sharp{0.05, 1.5}, broad{0.5, 1.5};
     for (const SyntheticSampler& r : {recipe_of(sharp), recipe_of(broad)}) {
-        const Seen seen = judged(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
-        for (const Verdict& v : seen.judgement.verdicts)
+        const Seen seen = checked(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
+        for (const Verdict& v : seen.result.verdicts)
             EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
-                << r.parameters << " " << v.trial << " " << v.name << ": " << v.say;
+                << r.parameters << " " << v.check_case << " " << v.name << ": " << v.message;
         EXPECT_LE(seen.most, promised);
         EXPECT_GT(seen.most, 100000u);
     }
@@ -97,10 +97,10 @@ TEST(Programs, OfCoatsLayersAndAnisotropicLobesAreConclusiveWithinWhatTheyAreAsk
     Layers layers;
     layers.alpha = 0.1;
     for (const SyntheticSampler& r : {recipe_of(SmoothCoat{}), recipe_of(layers), ggx_visible_at(0.05, 0.5)}) {
-        const Seen seen = judged(at(r, {{45, 130}, {89, 180}}));
-        for (const Verdict& v : seen.judgement.verdicts)
+        const Seen seen = checked(at(r, {{45, 130}, {89, 180}}));
+        for (const Verdict& v : seen.result.verdicts)
             EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
-                << r.family << " " << v.trial << " " << v.name << ": " << v.say;
+                << r.family << " " << v.check_case << " " << v.name << ": " << v.message;
         EXPECT_LE(seen.most, promised) << r.family;
     }
 }
@@ -112,7 +112,7 @@ TEST(Programs, AreAskedNoMoreWhereNothingIsSettled) {
         return wi.z > 0 ? (std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 1.9 : 0.1) / (2 * pi)
                         : 0.0;
     };
-    EXPECT_LE(judged(at(wrinkled, {{75, 310}})).most, promised);
+    EXPECT_LE(checked(at(wrinkled, {{75, 310}})).most, promised);
 }
 
 /// A program that mixes up the rows of its blocks: of draws, of pdf(w) or of f(w).
@@ -160,8 +160,8 @@ TEST(Programs, ThatMixUpTheRowsOfABlockAreFound) {
     for (auto answers : {Mixed::Answers::draws, Mixed::Answers::pdf, Mixed::Answers::f})
         for (auto how :
             {Mixed::How::last_repeated, Mixed::How::first_two_exchanged, Mixed::How::late_rows_of_long_blocks}) {
-            const auto program = std::make_shared<Mixed>(subject_of(lobe), answers, how);
-            const CheckResult j = judged_at(program, 45, TestSettings::quick());
+            const auto program = std::make_shared<Mixed>(make_adapter(lobe), answers, how);
+            const CheckResult j = checked_at(program, 45, TestSettings::quick());
             EXPECT_EQ(named(j, "identity").state, State::wrong)
                 << static_cast<int>(answers) << static_cast<int>(how) << what_is_wrong(j);
         }
@@ -169,11 +169,12 @@ TEST(Programs, ThatMixUpTheRowsOfABlockAreFound) {
 
 /// All w_o of the grid in one call: four million questions, the greatest share of which none needs.
 TEST(Programs, AreAskedFourMillionTimesInAll) {
-    const auto program = std::make_shared<Counted>(subject_of(recipe_of(RoughGlass{0.3, 1.5})));
-    std::vector<CheckCase> trials = make_user_cases(program, false);
-    ASSERT_EQ(std::count_if(trials.begin(), trials.end(), [](const CheckCase& t) { return !t.baseline; }), 12);
+    const auto program = std::make_shared<Counted>(make_adapter(recipe_of(RoughGlass{0.3, 1.5})));
+    std::vector<CheckCase> check_cases = make_user_cases(program, false);
+    ASSERT_EQ(
+        std::count_if(check_cases.begin(), check_cases.end(), [](const CheckCase& t) { return !t.baseline; }), 12);
     ProgressMonitor monitor;
-    const CheckResult j = judge(trials, TestSettings::quick(), monitor);
+    const CheckResult j = run_checks(check_cases, TestSettings::quick(), monitor);
     EXPECT_NE(j.state, State::wrong) << what_is_wrong(j);  // a twelfth of four million leaves two w_o open
     EXPECT_LE(j.questions, 4000000u);
     EXPECT_EQ(j.questions, program->spending().answers);
@@ -227,14 +228,14 @@ TEST(Structs, AreAskedTheSameByAnyNumberOfThreads) {
     TestSettings settings = TestSettings::quick();
     settings.wo = {{30, 0}, {60, 40}, {85, 75}};
     std::atomic<std::uint64_t> asked = 0;
-    const auto told = [&] {
+    const auto describe = [&] {
         const CheckResult j = check_sampler("wrinkled", WrinkledForMany{{&asked}}, settings);
         std::string out = fmt::format("{} questions\n", j.questions);
         for (const Verdict& v : j.verdicts)
-            if (v.name != "efficiency") out += v.trial + " " + v.say + "\n";  // that one tells times
+            if (v.name != "efficiency") out += v.check_case + " " + v.message + "\n";  // that one tells times
         return out;
     };
-    EXPECT_EQ(told(), on_threads(1, told));
+    EXPECT_EQ(describe(), on_threads(1, describe));
 }
 
 class FaultsOfPrograms : public testing::TestWithParam<std::size_t> {};
@@ -244,10 +245,10 @@ TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
     const std::vector<PlantedFault> faults = renderer_faults();
     for (std::size_t i = GetParam(); i < faults.size(); i += 4 * test::every) {
         bool caught = false;
-        for (const CheckCase& trial : faults[i].trials) {
-            const Seen seen = judged({trial});
+        for (const CheckCase& check_case : faults[i].check_cases) {
+            const Seen seen = checked({check_case});
             EXPECT_LE(seen.most, promised) << faults[i].name;
-            for (const Verdict& v : seen.judgement.verdicts) caught = caught || v.state == State::wrong;
+            for (const Verdict& v : seen.result.verdicts) caught = caught || v.state == State::wrong;
             if (caught) break;
         }
         EXPECT_TRUE(caught) << faults[i].name;
@@ -255,8 +256,8 @@ TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
 }
 INSTANTIATE_TEST_SUITE_P(Quarter, FaultsOfPrograms, testing::Values(0u, 1u, 2u, 3u));
 
-TEST(AskedOnce, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
-    const auto program = std::make_shared<Counted>(subject_of(ggx_visible_at(0.3, 0.3)));
+TEST(CachingAdapter, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
+    const auto program = std::make_shared<Counted>(make_adapter(ggx_visible_at(0.3, 0.3)));
     const auto kept = cached(program);
     const Vec3d wo = tilt(30), a = tilt(20, 10), b = tilt(50, 200), c = tilt(70, 300);
     const std::vector<Pair> first = {{wo, a}, {wo, b}, {wo, a}}, second = {{wo, c}, {wo, b}, {a, b}};
@@ -272,32 +273,32 @@ TEST(AskedOnce, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
     EXPECT_EQ(out, direct);
 }
 
-/// An arm of the list has a trial for every surface and light; a program held against it gives the same answers in all
+/// An arm of the list has a case for every surface and light; a program held against it gives the same answers in all
 /// of them.
 TEST(Against, AsksAProgramOnceAtEachDirection) {
     const std::vector<CheckCase> a = make_cases("cosine", {}, false, {{45, 0}});
     ASSERT_GE(a.size(), 4u);
-    const auto answers = [&](std::span<const CheckCase> trials) {
-        const auto program = std::make_shared<Counted>(a[0].subject);
+    const auto answers = [&](std::span<const CheckCase> check_cases) {
+        const auto program = std::make_shared<Counted>(a[0].adapter);
         TestSettings settings;
         settings.budget = check::CheckBudget::limited();
         ProgressMonitor monitor;
-        compare_samplers(trials, sampler_against(program, trials), settings, false, monitor);
+        compare_samplers(check_cases, sampler_against(program, check_cases), settings, false, monitor);
         return program->spending().answers;
     };
     EXPECT_LT(answers(a), 2 * answers(std::span(a).first(1)));
 }
 
 /// Files are of equal bytes for equal calls, with the questions that were answered in them, whatever else is written.
-TEST(Asked, PicturesTakeNoQuestionsOfTheirOwn) {
+TEST(WoDomain, PicturesTakeNoQuestionsOfTheirOwn) {
     const auto answers = [](bool pictures) {
-        CheckCase trial = make_cases("cosine", {}, false, {{45, 0}})[0];
-        trial.subject = std::make_shared<Counted>(trial.subject);
+        CheckCase check_case = make_cases("cosine", {}, false, {{45, 0}})[0];
+        check_case.adapter = std::make_shared<Counted>(check_case.adapter);
         TestSettings settings;
         settings.budget = check::CheckBudget::limited();
         settings.pictures = pictures;
         ProgressMonitor monitor;
-        return verdict_json(judge({&trial, 1}, settings, monitor), {});
+        return verdict_json(run_checks({&check_case, 1}, settings, monitor), {});
     };
     EXPECT_EQ(answers(true), answers(false));
 }

@@ -74,7 +74,7 @@ void expect_stated(const std::string& name, std::size_t size, Run&& run, Excess&
     }
 }
 
-TEST(MathLaw, SineAndCosineOfTurns) {
+TEST(MathConformance, SineAndCosineOfTurns) {
     const Floats x = unit_numbers(1);
     const auto angle = [&](std::size_t k) {
         return 2 * 3.14159265358979323846264338327950288L * static_cast<long double>(x[k]);
@@ -90,7 +90,7 @@ TEST(MathLaw, SineAndCosineOfTurns) {
         [&](std::size_t k, float v) { return off(v, cosl(angle(k))); });
 }
 
-TEST(MathLaw, PowersOfTwo) {
+TEST(MathConformance, PowersOfTwo) {
     Floats x(n);
     for (std::size_t k = 0; k < n; ++k) x[k] = -126 + 253 * draw(2, 0, k).x;
     expect_stated(
@@ -105,7 +105,7 @@ Floats exponents(float least, float most) {
     return y;
 }
 
-TEST(MathLaw, PowerAndWhatItLacksOfOne) {
+TEST(MathConformance, PowerAndWhatItLacksOfOne) {
     const Floats x = unit_numbers(4), y = exponents(1e-6f, 131072);
     const auto want = [&](std::size_t k) {
         return powl(static_cast<long double>(x[k]), static_cast<long double>(y[k]));
@@ -123,7 +123,7 @@ TEST(MathLaw, PowerAndWhatItLacksOfOne) {
         });
 }
 
-TEST(MathLaw, RootAndWhatItLacksOfOne) {
+TEST(MathConformance, RootAndWhatItLacksOfOne) {
     const Floats x = unit_numbers(5), y = exponents(1e-6f, 0.5f);
     expect_stated(
         "root", n, [&](const MathTable& t, float* out) { t.root(x.data(), y.data(), out, n); },
@@ -138,7 +138,7 @@ TEST(MathLaw, RootAndWhatItLacksOfOne) {
         });
 }
 
-TEST(MathLaw, LogarithmOfOneMinus) {
+TEST(MathConformance, LogarithmOfOneMinus) {
     const Floats u = unit_numbers(6);
     expect_stated(
         "log_one_minus", n, [&](const MathTable& t, float* out) { t.log_one_minus(u.data(), out, n); },
@@ -158,7 +158,7 @@ Floats directions(std::uint32_t seed, const Floats& scale) {
     return a;
 }
 
-TEST(MathLaw, CosinePower) {
+TEST(MathConformance, CosinePower) {
     const Floats s = exponents(1, 1e6f);
     Floats width(n);
     for (std::size_t k = 0; k < n; ++k) width[k] = std::sqrt(s[k]) / 3;
@@ -178,7 +178,7 @@ TEST(MathLaw, CosinePower) {
         });
 }
 
-TEST(MathLaw, Normalize) {
+TEST(MathConformance, Normalize) {
     Floats a(3 * n);
     for (std::size_t k = 0; k < 3 * n; ++k) {
         const Vec2<float> u = draw(8, 3, k);

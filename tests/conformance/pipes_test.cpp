@@ -56,8 +56,8 @@ TEST(Pipes, ThatBreakTouchNoSignal) {
 TEST(Greetings, SayWhatAProgramIs) {
     Handshake g;
     EXPECT_EQ(
-        read_greeting("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
-                      "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
+        read_handshake("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
+                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
             g)
             .got,
         "");
@@ -66,7 +66,7 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_EQ(g.traits.channels, 3);
     EXPECT_TRUE(g.traits.delta && g.weight && g.f_cos && g.blocks && g.traits.importance && g.traits.own_random);
     EXPECT_FALSE(g.traits.reciprocal || g.hemisphere);
-    EXPECT_EQ(g.traits.wo, Traits::Asked::both);
+    EXPECT_EQ(g.traits.wo, Traits::WoDomain::both);
     EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
     EXPECT_EQ(g.traits.bits, 24);
 }
@@ -74,7 +74,7 @@ TEST(Greetings, SayWhatAProgramIs) {
 TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     const auto fault = [](const char* answer) {
         Handshake g;
-        const GreetingFault fault = read_greeting(answer, g);
+        const HandshakeError fault = read_handshake(answer, g);
         return fault ? "expected " + fault.expected + ", " + fault.got : "";
     };
     EXPECT_NE(fault("hello 2 x colour=3").find("expected one of u, domain, wo, channels"), std::string::npos);

@@ -172,7 +172,7 @@ TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
     for (const Verdict& v : j.verdicts) errors += v.state == State::error;
     EXPECT_EQ(errors, 2 * verdict_names.size() + 1) << what_is_wrong(j);  // w_o at 85 and 89 deg; special w_o
     for (const Verdict& v : j.verdicts) EXPECT_TRUE(v.evidence.is_object()) << v.name;
-    EXPECT_EQ(unseen_told(j), "") << "what is right is not the whole";
+    EXPECT_EQ(unseen_text(j), "") << "what is right is not the whole";
     EXPECT_NE(what_is_wrong(j).find("sample(wo, u) threw 'no grazing light' at w_o = ("), std::string::npos)
         << what_is_wrong(j);
 }

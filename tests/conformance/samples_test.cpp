@@ -45,8 +45,8 @@ TEST(SamplesOfFiles, BesideThePoleAreNotAccusedOfWhatTheirTableDoesNotSay) {
     for (const double degrees : {5.0, 20.0}) {
         const double angle = degrees * pi / 180;
         ProgressMonitor monitor;
-        const CheckCase trial = make_user_case(lobe_in_files({std::sin(angle), 0, std::cos(angle)}), 0, 0);
-        const CheckResult j = judge({&trial, 1}, TestSettings::quick(), monitor);
+        const CheckCase check_case = make_user_case(lobe_in_files({std::sin(angle), 0, std::cos(angle)}), 0, 0);
+        const CheckResult j = run_checks({&check_case, 1}, TestSettings::quick(), monitor);
         EXPECT_NE(j.state, State::wrong) << degrees << " deg: " << what_is_wrong(j);
     }
 }

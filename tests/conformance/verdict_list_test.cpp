@@ -1,4 +1,4 @@
-// The list of verdicts is what a judgement holds, in its order, and what the manual says.
+// The list of verdicts is what a result holds, in its order, and what the manual says.
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
     TestSettings few;
     few.wo = {{45, 0}};
     ProgressMonitor monitor;
-    const CheckResult j = judge(make_cases("uniform", {}, false, few.wo), few, monitor);
+    const CheckResult j = run_checks(make_cases("uniform", {}, false, few.wo), few, monitor);
     ASSERT_EQ(j.verdicts.size() % verdict_names.size(), 0u);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i)
         EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);

@@ -15,10 +15,10 @@ CheckResult of(std::initializer_list<std::tuple<const char*, const char*, State>
     for (const auto& [arm, name, state] : verdicts) {
         Verdict v;
         v.arm = arm;
-        v.trial = "w_o 45 deg";
+        v.check_case = "w_o 45 deg";
         v.name = name;
         v.state = state;
-        v.say = "So it is.";
+        v.message = "So it is.";
         v.expected = state == State::right;
         j.verdicts.push_back(v);
     }

@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 
 namespace crescent {
 namespace {
@@ -21,8 +21,8 @@ TestSettings limited() {
     return settings;
 }
 
-CheckResult judged(const SyntheticSampler& recipe, double theta = 45) {
-    return judged_at(subject_of(recipe), theta, limited());
+CheckResult checked(const SyntheticSampler& recipe, double theta = 45) {
+    return checked_at(make_adapter(recipe), theta, limited());
 }
 
 Vec3d cosine(double u1, double u2) { return math::spherical(std::sqrt(u1), std::sqrt(1 - u1), 2 * pi * u2); }
@@ -60,9 +60,9 @@ SyntheticSampler by_walk(double scale, bool own, int channels = 1) {
 TEST(WithoutAPdf, EstimatesOfFAreHeldToTheirMeansAlone) {
     for (bool own : {false, true})
         for (int channels : {1, 3}) {
-            const CheckResult right = judged(by_walk(1, own, channels));
+            const CheckResult right = checked(by_walk(1, own, channels));
             EXPECT_EQ(right.state, State::right) << own << channels << what_is_wrong(right);
-            const CheckResult wrong = judged(by_walk(1.1, own, channels));
+            const CheckResult wrong = checked(by_walk(1.1, own, channels));
             EXPECT_EQ(wrong.state, State::wrong) << own << channels << what_is_wrong(wrong);
         }
 }
@@ -89,10 +89,10 @@ SyntheticSampler resampled(bool by_root) {
 }
 
 TEST(WithoutAPdf, DrawsThatGoElsewhereThanTheirWeightsSayAreFound) {
-    const CheckResult right = judged(resampled(false)), wrong = judged(resampled(true));
+    const CheckResult right = checked(resampled(false)), wrong = checked(resampled(true));
     EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
-    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").say;
-    EXPECT_EQ(named(wrong, "physics").state, State::right) << named(wrong, "physics").say;
+    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").message;
+    EXPECT_EQ(named(wrong, "physics").state, State::right) << named(wrong, "physics").message;
 }
 
 TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
@@ -101,11 +101,11 @@ TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
     r.pdf = [](Vec3d, Vec3d) { return 1.0; };
     r.f = [](Vec3d, Vec3d i) { return i.z > 0 ? 0.5 / pi : 0; };
     r.sample = [](Vec3d, const PrimarySample& u) { return Draw{cosine(u[0], u[1]), 1}; };
-    const CheckResult j = judged(r);
+    const CheckResult j = checked(r);
     EXPECT_EQ(j.state, State::inconclusive);
     const Verdict& v = named(j, "density");
-    EXPECT_NE(v.say.find("could not be examined"), std::string::npos) << v.say;
-    EXPECT_NE(v.settle.find("weight=yes"), std::string::npos) << v.settle;
+    EXPECT_NE(v.message.find("could not be examined"), std::string::npos) << v.message;
+    EXPECT_NE(v.next_step.find("weight=yes"), std::string::npos) << v.next_step;
 }
 
 /// (k+1)/(2 pi) cos^k about n, asked of no pdf, with a weight; `halves`: one number chooses it or the cosine.
@@ -129,7 +129,7 @@ SyntheticSampler power_lobe(double k, bool halves) {
 CheckResult pictured(const SyntheticSampler& recipe) {
     TestSettings settings;
     settings.pictures = true;
-    return judged_at(subject_of(recipe), 45, settings);
+    return checked_at(make_adapter(recipe), 45, settings);
 }
 
 TEST(WithoutAPdf, ThePeakIsStatedWithItsStandardError) {
@@ -141,8 +141,8 @@ TEST(WithoutAPdf, ThePeakIsStatedWithItsStandardError) {
                      se = v.evidence["implied_peak"]["standard_error"].get<double>();
         EXPECT_GT(se, 0);
         EXPECT_LT(se, 0.15 * peak) << "a cell of a handful of draws";
-        EXPECT_NEAR(peak, due, 0.05 * due + 4 * se) << v.say;
-        EXPECT_NE(v.say.find(" +- "), std::string::npos) << v.say;
+        EXPECT_NEAR(peak, due, 0.05 * due + 4 * se) << v.message;
+        EXPECT_NE(v.message.find(" +- "), std::string::npos) << v.message;
     }
 }
 

@@ -129,7 +129,7 @@ inline std::vector<std::string> all_arms() {
     return names;
 }
 
-/// What the tests draw with, opened once: CRESCENT_GL_CONTEXT (egl, osmesa), by default the instrument's own choice.
+/// What the tests draw with, opened once: CRESCENT_GL_CONTEXT (egl, osmesa), by default the back end's own choice.
 /// EGL's and OSMesa's drivers share tables within a process, so that one process has one of them.
 inline Context& context() {
     const char* kind = std::getenv("CRESCENT_GL_CONTEXT");

@@ -7,7 +7,7 @@
 #include "compare/compare.h"
 #include "compare/synthetic.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Renders by name; all of arm "a" begin with a, of "b" with b.
 class MemoryRenders {
@@ -27,7 +27,7 @@ public:
     CompareResult compare(const std::vector<CompareFlag>& flags = {}) const {
         ProgressMonitor monitor;
         const ComparePlan planned = plan(flags);
-        return judge(planned, read_all(planned, monitor, source()), monitor);
+        return test_differences(planned, read_all(planned, monitor, source()), monitor);
     }
     std::map<std::string, Render> renders;
 
@@ -51,4 +51,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

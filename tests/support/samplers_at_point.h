@@ -1,6 +1,6 @@
 // The films of arms beside a reference film, for tests. Of all arms each pixel is held against the one whose variance
-// there is least, as draws of a double-precision oracle measure it, which meet every lobe and every lamp: an arm that
-// misses a peak has a large variance, whatever its own few samples say.
+// there is least, as draws of a double-precision oracle measure it, which meet every lobe and every area light: an arm
+// that misses a peak has a large variance, whatever its own few samples say.
 #pragma once
 
 #include <fmt/format.h>
@@ -90,7 +90,7 @@ private:
 /// How the pixels of a scene compare: those that an arm knows to 2 % and those of them that are off.
 struct Compared {
     int known = 0, off = 0, pixels = 0;
-    std::string told;
+    std::string describe;
 };
 
 class ArmsOf {
@@ -130,8 +130,8 @@ inline Compared compare_scene(const Scene& scene, const ReferenceFilm& reference
             const double allowed = stated + 5 * std::sqrt(variance) + single_precision * y;
             if (std::fabs(y - mean) <= allowed) continue;
             ++out.off;
-            out.told += fmt::format(" ({}, {}) {}: reference {:.5g} +- {:.2g}, arm {:.5g} +- {:.2g};", i, j, best, y,
-                stated, mean, std::sqrt(variance));
+            out.describe += fmt::format(" ({}, {}) {}: reference {:.5g} +- {:.2g}, arm {:.5g} +- {:.2g};", i, j, best,
+                y, stated, mean, std::sqrt(variance));
         }
     return out;
 }

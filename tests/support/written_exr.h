@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// One part; a channel's value at a pixel is smooth in x and y and another for each channel.
 struct WrittenExr {
@@ -74,4 +74,4 @@ struct WrittenExr {
     }
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -29,5 +29,5 @@ tools.cmake.cmaketoolchain:user_presets=""
 tools.cmake.cmake_layout:test_folder=\$TMP
 END_OF_PROFILE
 PATH="$tools/bin:$PATH" expect 0 "$tools/bin/conan" create "$CRESCENT_SOURCE/examples/conan" -pr:a profile --no-remote
-grep -q '^right$' printed said || die "the test of the package judges no sampler: $(tail -n 20 said)"
+grep -q '^right$' printed said || die "the test of the package checks no sampler: $(tail -n 20 said)"
 grep -q "crescent/$(cat "$CRESCENT_SOURCE/VERSION")" said || die "another version: $(grep crescent/ said | head -n 1)"

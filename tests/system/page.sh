@@ -39,13 +39,13 @@ wait "$programs" && diff native.json "$CRESCENT_SOURCE/apps/web/native.json" >di
     die "apps/web/native.json is not the program's (node apps/web/native.mjs build/crescent): $(cat native.log difference)"
 
 # The verdicts, which pause in the page.
-esbuild "$CRESCENT_SOURCE/apps/web/door.ts" --format=esm --target=es2022 --log-level=warning --outfile=door.mjs ||
-    die "door.ts"
+esbuild "$CRESCENT_SOURCE/apps/web/api.ts" --format=esm --target=es2022 --log-level=warning --outfile=api.mjs ||
+    die "api.ts"
 "$CRESCENT" check phong --wo 60 --quiet --json phong.json >/dev/null
-expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/verdicts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/verdicts.mjs" "$work/api.mjs" "$CRESCENT_PAGE/crescent.wasm" \
     phong.json 60
 cat printed
-expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/parts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/parts.mjs" "$work/api.mjs" "$CRESCENT_PAGE/crescent.wasm" \
     "$CRESCENT_SOURCE/experiments/gallery.toml"
 cat printed
 

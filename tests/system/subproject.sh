@@ -66,7 +66,7 @@ struct Glass {  // a smooth boundary, as it is filled in by users
         return {{-wo[0], -wo[1], wo[2]}, 1, 1, 1};
     }
     double pdf(std::array<double, 3>, std::array<double, 3>) const { return 0; }
-    crescent::Traits traits() const { return {.wo = crescent::Traits::Asked::both, .eta = 1.5}; }
+    crescent::Traits traits() const { return {.wo = crescent::Traits::WoDomain::both, .eta = 1.5}; }
 };
 struct Cosine {
     struct Drawn { std::array<float, 3> wi; float pdf; };

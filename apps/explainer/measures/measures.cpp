@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -154,12 +154,12 @@ double WeightTail::expected(std::size_t bin) const {
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     WeightTail out;
     out.s = s, out.k = (s - 1) / (s + 1), out.least = 2 / (s + 1), out.n = n;
-    ShadingPoint<float> site{};
-    site.wo = {0, 0, 1}, site.s = static_cast<float>(s);
-    const Phong<float> arm(site);
+    ShadingPoint<float> shading_point{};
+    shading_point.wo = {0, 0, 1}, shading_point.s = static_cast<float>(s);
+    const Phong<float> arm(shading_point);
     std::vector<double> weights;
     for (std::uint64_t k = 0; k < n; ++k) {
-        const Drawn<float> drawn = arm.sample(site.wo, draw(seed, 0, k));
+        const Drawn<float> drawn = arm.sample(shading_point.wo, draw(seed, 0, k));
         const double p = static_cast<double>(drawn.pdf.v);
         weights.push_back(drawn.wi.z > 0 && p > 0 ? static_cast<double>(drawn.wi.z) / (pi * p) : 0);
     }
@@ -191,4 +191,4 @@ Measures take_measures(const Data& data, const std::string&, ProgressMonitor& mo
     return out;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,4 +1,4 @@
-// What shots of single pixels and densities need beyond films and meters, taken once for the whole film. Radiance in
+// What shots of single pixels and densities need beyond films and metrics, taken once for the whole film. Radiance in
 // W/(sr m^2) of luminance Y, f and densities in 1/sr, angles in degrees.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 #include "data.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 /// One arm in the opened pixel.
 struct ArmAtPixel {
@@ -65,4 +65,4 @@ std::pair<int, int> worst_pixel(
     const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, const Box& box);
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -8,7 +8,7 @@
 
 #include "tests/support/explainer_data.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 namespace {
 
 std::size_t at(const Film& film, const OpenPixel& pixel) {
@@ -87,4 +87,4 @@ TEST(Measures, WhatThePhongArmCannotReachIsNearItsTheory) {
 }
 
 }  // namespace
-}  // namespace crescent::film
+}  // namespace crescent::explainer

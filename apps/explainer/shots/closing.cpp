@@ -2,7 +2,7 @@
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Shot closing(const Data& data) {
     const Provenance& p = data.provenance;
@@ -38,4 +38,4 @@ Shot closing(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -5,7 +5,7 @@
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -92,8 +92,8 @@ Shot exponent(const Data& data) {
             f.polyline(col.lobe, ink, 4, in);
             f.text({col.foot.x + 124, col.foot.y - 130, 200, 50}, col.name, with_px(title_text, 44), in);
             show(f, col.block, crop.times, {x, 342, width, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
-            const double told = f.ease(11.5, 12.1);
-            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
+            const double shown = f.ease(11.5, 12.1);
+            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), shown);
             f.text({x, 796, width, 48}, col.surround, with(with(label_text, surround_ink), Align::centre),
                 f.ease(14, 14.6));
         }
@@ -101,4 +101,4 @@ Shot exponent(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -9,7 +9,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -162,7 +162,7 @@ Shot firefly(const Data& data) {
     const auto drawn = std::make_shared<const Firefly>(data);
     Shot shot;
     shot.name = "firefly";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("A firefly is born");
     shot.seen = Words("The running mean of the pixel by ", data.arm(data.cast.cosine),
         " against the number of draws leaps at one of them. "
@@ -176,4 +176,4 @@ Shot firefly(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -9,7 +9,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -156,7 +156,7 @@ Shot heavy_tail(const Data& data) {
     const auto drawing = std::make_shared<const HeavyTail>(data);
     Shot shot;
     shot.name = "heavy-tail";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("Why it does not go away");
     shot.seen = Words("Left, on logarithmic axes, how many samples of ", data.arm(data.cast.phong),
         " weigh how much: a straight fall over many decades. "
@@ -168,4 +168,4 @@ Shot heavy_tail(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -2,7 +2,7 @@
 #include "ladder_shot.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Shot ladder_cosine(const Data& data) {
     const Cast& c = data.cast;
@@ -27,4 +27,4 @@ Shot ladder_cosine(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -10,7 +10,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -231,7 +231,7 @@ Shot one_pixel(const Data& data) {
     const auto drawn = std::make_shared<const OnePixel>(data);
     Shot shot;
     shot.name = "one-pixel";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("One pixel, opened");
     shot.seen = Words(
         "A pixel of the crescent grows into the hemisphere above its surface point. Colours show in turn the "
@@ -244,4 +244,4 @@ Shot one_pixel(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

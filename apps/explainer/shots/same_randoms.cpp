@@ -7,7 +7,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -165,7 +165,7 @@ Shot same_randoms(const Data& data) {
     const auto drawn = std::make_shared<const SameRandoms>(data);
     Shot shot;
     shot.name = "same-randoms";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("The same random numbers, two maps");
     shot.seen = Words(
         "Dots in a square, one for each pair of random numbers, travel to the hemisphere seen from above: first by ",
@@ -178,4 +178,4 @@ Shot same_randoms(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

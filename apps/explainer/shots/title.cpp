@@ -3,7 +3,7 @@
 #include "shots.h"
 #include "timeline.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -55,4 +55,4 @@ Shot title(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

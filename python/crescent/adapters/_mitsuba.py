@@ -185,7 +185,7 @@ def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0
         raise ValueError(f"{known.get('name', type(it).__name__)}: there is no emitter in it")
     for light in scene.emitters():
         if light.flags() & (int(mi.EmitterFlags.DeltaPosition) | int(mi.EmitterFlags.DeltaDirection)):
-            raise ValueError(f"{type(light).__name__} shines from one direction: there is no density to judge")
+            raise ValueError(f"{type(light).__name__} shines from one direction: there is no density to check")
     own = _Emitter(mi, scene, point)
     known.setdefault("name", "emitter")
     return Sampler(own.sample, own.pdf, wo="none", serial=True, **known)

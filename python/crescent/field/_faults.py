@@ -1,4 +1,4 @@
-"""Faults of public projects: each is written anew from its public description, beside the same sampler mended."""
+"""Faults of public projects: each is written anew from its public description, beside the same sampler fixed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._check import check
-from .._judgement import CheckResult
+from .._result import CheckResult
 from .._sampler import Sampler
 
 
@@ -22,11 +22,11 @@ class Fault:
     says: str  #: what was wrong, in a sentence
     caught_by: tuple[str, ...]  #: verdicts that accuse it
     sampler: Sampler
-    mended: Sampler
+    fixed: Sampler
 
-    def judged(self, mended: bool = False) -> CheckResult:
-        """The judgement of the fault, or of what it became."""
-        return check(self.mended if mended else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
+    def checked(self, fixed: bool = False) -> CheckResult:
+        """The result of the fault, or of what it became."""
+        return check(self.fixed if fixed else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
 
 
 W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: where each is looked at, in degrees

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from .._judgement import Verdict
+from .._result import Verdict
 
 
 @dataclass(frozen=True)

@@ -177,7 +177,7 @@ def emitters() -> list[Shipped]:
     return shining + [Shipped("emitter", plugin) for plugin in skies]
 
 
-#: Plugins that are not judged here, and why.
+#: Plugins that are not checked here, and why.
 LEFT_OUT = {
     "measured, measured_polarized": "need a file of measurements, which the package does not include",
     "point, spot, directional, directionalarea, projector": "emit from one direction: there is no density to check",

@@ -68,8 +68,8 @@ public:
     /// For many tests of one number of degrees of freedom: the quantiles of Student's t.
     static std::pair<double, double> quantiles(double freedom, const Passing& passing) {
         const double nu = std::clamp(freedom, 1.0, 1e6);
-        return {stats::student_two_sided_quantile(nu, passing.level),
-            stats::student_two_sided_quantile(nu, 2 * passing.level_again)};
+        return {statistics::student_two_sided_quantile(nu, passing.level),
+            statistics::student_two_sided_quantile(nu, 2 * passing.level_again)};
     }
     static Needed by_student(
         double floor, Variances v, std::pair<double, double> t, double freedom, const Passing& passing) {
@@ -158,19 +158,19 @@ struct NodeTest {
 
 /// The nodes that are tested, by both kinds of draws.
 std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, const Passing& of_family) {
-    std::vector<Answer> asked;
-    ask_nodes(e, [&](const Answer& a) {
-        if (a.family == Family::node || a.family == Family::node_sets) asked.push_back(a);
+    std::vector<Answer> tested;
+    test_nodes(e, [&](const Answer& a) {
+        if (a.family == Family::node || a.family == Family::node_sets) tested.push_back(a);
     });
     const auto by_sets = static_cast<double>(
-        std::ranges::count_if(asked, [](const Answer& a) { return a.family == Family::node_sets; }));
+        std::ranges::count_if(tested, [](const Answer& a) { return a.family == Family::node_sets; }));
     Passing one = of_family, of_sets = of_family;
-    one.level /= std::max(static_cast<double>(asked.size()) - by_sets, 1.0);
+    one.level /= std::max(static_cast<double>(tested.size()) - by_sets, 1.0);
     of_sets.level /= std::max(by_sets, 1.0);
     const std::pair<double, double> t = Needed::quantiles(replicate_sets - 1, of_sets);
     std::vector<NodeTest> out;
-    out.reserve(asked.size());
-    for (const Answer& a : asked) {
+    out.reserve(tested.size());
+    for (const Answer& a : tested) {
         const auto i = static_cast<std::size_t>(a.member);
         const NodeSplit s = split_of(e, sums, i);
         if (a.family == Family::node)
@@ -244,7 +244,7 @@ double noncentrality(double degrees, double level) {
     double low = 0, high = degrees + 1000;
     for (int k = 0; k < 50; ++k) {
         const double middle = (low + high) / 2;
-        (stats::chi_squared_tail(degrees, middle) > level ? low : high) = middle;
+        (statistics::chi_squared_tail(degrees, middle) > level ? low : high) = middle;
     }
     return high - degrees;
 }

@@ -7,7 +7,7 @@
 //   3i + 1   -              max         edge u      normal       normal     .w: radius
 //   3i + 2   -              -           edge v      -            -            .w: normal.point of its plane
 // Large and far bodies have other numbers, see numbers() in src/scene/shapes/.
-#include "site.glsl"
+#include "shading_point.glsl"
 
 uniform vec4 bodies[3 * BODY_SLOTS];
 const int first_box = SPHERES, first_quad = first_box + BOXES, first_plate = first_quad + QUADS,

@@ -9,7 +9,7 @@
 // Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no
 // more than three times 16 roundings (relative error < 3e-6, a tenth of that as a rule); the
 // program adds draws up in double.
-#include "site.glsl"
+#include "shading_point.glsl"
 #include "disk_hit.glsl"
 #include "random.glsl"
 
@@ -112,7 +112,7 @@ float accumulate(Drawn drawn, float weight, int aimed, bool met) {
     bool up = !down && drawn.pdf != 0.0;
     horizon += down ? 1u : 0u;
     float g = up ? weight * (cosine / drawn.pdf) : 0.0;
-    float lobe = up ? lobe_of(site.wo, drawn.wi) : 0.0;
+    float lobe = up ? lobe_of(shading_point.wo, drawn.wi) : 0.0;
     block.all.xy += g * vec2(1.0, lobe);
     float x = g * (around.fill_d + lobe * around.fill_s);
     bool any = false;
@@ -133,11 +133,11 @@ void take(uint pixel, uvec4 h, uint sample_index) {
     vec2 u = unit_floats(odd ? h.zw : h.xy);
 #ifdef TWO_TECHNIQUES
     uvec4 second = draws(pixel, sample_index >> 1u, 1u, seed);
-    Drawn a = sample_mixture(site.wo, u), b = sample_light_area(site.wo, unit_floats(odd ? second.zw : second.xy));
-    float x = accumulate(a, weight_of(a.pdf, pdf_light_area(site.wo, a.wi)), -1, false);
-    x += accumulate(b, weight_of(b.pdf, pdf_mixture(site.wo, b.wi)), aimed_disk, aimed_met);
+    Drawn a = sample_mixture(shading_point.wo, u), b = sample_light_area(shading_point.wo, unit_floats(odd ? second.zw : second.xy));
+    float x = accumulate(a, weight_of(a.pdf, pdf_light_area(shading_point.wo, a.wi)), -1, false);
+    x += accumulate(b, weight_of(b.pdf, pdf_mixture(shading_point.wo, b.wi)), aimed_disk, aimed_met);
 #else
-    Drawn drawn = sample_arm(site.wo, u);
+    Drawn drawn = sample_arm(shading_point.wo, u);
     float x = accumulate(drawn, 1.0, aimed_disk, aimed_met);
 #endif
     if (sample_index == uint(first_sample)) mean = x;
@@ -152,7 +152,7 @@ void take(uint pixel, uvec4 h, uint sample_index) {
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    around = load_site(at);
+    around = load_point(at);
     for (int k = 0; k < DISKS; ++k) facing[k] = facing_disk(disks[k]);
     uint pixel = uint((corner.y + at.y) * image_width + corner.x + at.x);
     bool mine = around.kind == float(LOBE);

@@ -1,6 +1,6 @@
 // What a sampler is, as src/arms/sampler.h: sample_<arm>(wo, u) returns a direction and the density it was drawn with;
 // pdf_<arm>(wo, wi) that density, 0 off the support. Local frame (n = +z); u in [0,1)^2; pdf in 1/sr.
-#include "site.glsl"
+#include "shading_point.glsl"
 
 // pdf 0: nothing was drawn, the sample weighs 0 and counts.
 struct Drawn {

@@ -1,6 +1,6 @@
 // Random numbers as a pure function of (seed, pixel, sample, dimension): pcg4d of Jarzynski & Olano 2020, "Hash
 // Functions for GPU Rendering", JCGT 9(3). One call serves two neighbouring samples and two dimensions; there is no
-// state, so threads, lanes, ranks and rungs cannot change a draw.
+// state, so threads, lanes, ranks and sample counts cannot change a draw.
 #pragma once
 
 #include <cstdint>

@@ -4,9 +4,9 @@
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct HorizonFracMeter {
+struct HorizonFracMetric {
     static constexpr MetricInfo info = {
         .means = "part of the directions drawn at geometry pixels that fall under the horizon",
         .label = "horizon share"};
@@ -19,4 +19,4 @@ struct HorizonFracMeter {
     }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

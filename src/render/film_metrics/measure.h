@@ -1,4 +1,4 @@
-// What a meter sees of a film, and what it says of itself. A meter takes the pixels of a box, row by row from the
+// What a metric sees of a film, and what it says of itself. A metric takes the pixels of a box, row by row from the
 // bottom-left, and then tells its value; its sums run in double, so that equal films give equal numbers.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
 /// One pixel of a film beside the reference. Y in W/(sr m^2).
 struct FilmPixel {
@@ -27,16 +27,16 @@ struct FilmFacts {
     double firefly_k = 0;
 };
 
-/// What a meter says of itself.
+/// What a metric says of itself.
 struct MetricInfo {
     std::string_view means;
     std::string_view label{};        // markup, where the report writes it otherwise than its name
     bool in_tables = true;           // of the report and the terminal
     bool from_two_samples = false;   // one sample a pixel leaves it unknown
-    bool of_single_samples = false;  // the highest rung holds those of all others; it has no spread over seeds
+    bool of_single_samples = false;  // the highest sample count holds those of all others; it has no spread over seeds
 };
 
-/// What a meter's value is: double, or an integer where it counts.
-template <class Meter> using MeterOf = decltype(std::declval<const Meter&>().value(FilmFacts{}));
+/// What a metric's value is: double, or an integer where it counts.
+template <class Metric> using MetricOf = decltype(std::declval<const Metric&>().value(FilmFacts{}));
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

@@ -3,11 +3,11 @@
 
 #include "render/film_metrics/rmse.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct RmseFrameMeter : RmseMeter {
+struct RmseFrameMetric : RmseMetric {
     static constexpr MetricInfo info = {
         .means = "root mean square error of Y over the whole frame", .label = "whole-frame RMSE", .in_tables = false};
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

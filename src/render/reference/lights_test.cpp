@@ -56,7 +56,7 @@ template <class Kind> void expect_sound(const Kind& kind, Vec3d x) {
 }
 
 TEST(LightKinds, AreAimedAtWithTheDensityTheyState) {
-    for_each_lamp([]<class Kind>() {
+    for_each_area_light([]<class Kind>() {
         for (const Vec3d x : {Vec3d{0, 0, 0}, {0.5, -0.3, 0.1}, {-2, -1, 0}}) expect_sound(Kind::example(), x);
     });
     for (const double radius : {1e-3, 0.1, 0.9}) expect_sound(lights::Sphere{{0.2, -0.3, 1.2}, radius}, {0, 0, 0});
@@ -138,13 +138,14 @@ TEST(LightKinds, StandBeforeOneAnother) {
 
 namespace {
 
-/// The test scene without fill, its lamps of another size and moved.
-Experiment lamps(double radius, double offset, const std::vector<std::string>& overrides = {}) {
+/// The test scene without fill, its area lights of another size and moved.
+Experiment area_lights(double radius, double offset, const std::vector<std::string>& overrides = {}) {
     Experiment e = test::small_scene(overrides);
     e.image = {32, 22};
     e.fill = {};
     for (DiskLight& disk : e.disks) disk.radius = radius;
-    e.disks[0].center = {-1.5, 3.5, 1.0}, e.disks[1].center = {3, 3, 2};  // a lamp of 1 m clears ball, block and ground
+    e.disks[0].center = {-1.5, 3.5, 1.0},
+    e.disks[1].center = {3, 3, 2};  // a area light of 1 m clears ball, block and ground
     test::shift(e, {offset, -0.5 * offset, offset / 3});
     return e;
 }
@@ -175,25 +176,25 @@ void expect_means(const Experiment& e, const std::vector<std::string>& arms, std
 
 const std::vector<std::string> aiming = {"light-area", "light-solid-angle", "mis-balance", "mis-power"};
 const std::vector<std::string> reaching = {
-    "uniform", "cosine", "mixture"};  // whose hits are too few where a lamp is small
+    "uniform", "cosine", "mixture"};  // whose hits are too few where a area light is small
 
-class LampLaw : public testing::TestWithParam<double> {};
+class AreaLightAgreement : public testing::TestWithParam<double> {};
 
-TEST_P(LampLaw, EveryArmThatIsRightHasTheReferencesMeanWhereverTheSceneStands) {
+TEST_P(AreaLightAgreement, EveryArmThatIsRightHasTheReferencesMeanWhereverTheSceneStands) {
     const double radius = GetParam();
     for (const double offset : {0.0, 1e3, 1e5, 1e6}) {
         const std::string what = "radius " + std::to_string(radius) + " m, moved by " + std::to_string(offset) + " m";
-        const Experiment e = lamps(radius, offset);
+        const Experiment e = area_lights(radius, offset);
         expect_means(e, aiming, 256, what);
         if (radius >= 0.1) expect_means(e, reaching, 1024, what);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Radii, LampLaw, testing::Values(1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6));
+INSTANTIATE_TEST_SUITE_P(Radii, AreaLightAgreement, testing::Values(1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6));
 
-TEST(Lamps, TheirSizeChangesNoMoreThanTheirLight) {
-    const auto irradiance = [](double radius, const std::string& arm) {  // per area of lamp
-        const Scene scene(lamps(radius, 0));
+TEST(AreaLights, TheirSizeChangesNoMoreThanTheirLight) {
+    const auto irradiance = [](double radius, const std::string& arm) {  // per area of area light
+        const Scene scene(area_lights(radius, 0));
         ProgressMonitor monitor;
         const Film film = estimate_films(scene, arm, {64}, 3, "", monitor)[0];
         double sum = 0;
@@ -203,8 +204,8 @@ TEST(Lamps, TheirSizeChangesNoMoreThanTheirLight) {
     for (const std::string& arm : aiming) EXPECT_NEAR(irradiance(1e-6, arm) / irradiance(1e-4, arm), 1, 1e-5) << arm;
 }
 
-TEST(Lamps, SixtyFourAreAllCounted) {
-    Experiment e = lamps(0.05, 0);
+TEST(AreaLights, SixtyFourAreAllCounted) {
+    Experiment e = area_lights(0.05, 0);
     e.disks.resize(1);
     e.disks[0].radius = 0.05, e.disks[0].normal = {0, -1, 0};
     for (int k = 1; k < 64; ++k) {
@@ -217,10 +218,10 @@ TEST(Lamps, SixtyFourAreAllCounted) {
     expect_means(e, aiming, 256, "64 lamps");
 }
 
-TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
+TEST(AreaLights, ScenesMayStandAnywhereForABodyInTheirLight) {
     ProgressMonitor monitor;
     const auto film_at = [&](double offset) {
-        return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", monitor)[0];
+        return estimate_films(Scene(area_lights(0.2, offset)), "light-area", {16}, 3, "", monitor)[0];
     };
     const Film here = film_at(0), there = film_at(1e6);
     std::size_t other = 0;

@@ -86,9 +86,9 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
     EXPECT_GT(dark, 50);
 }
 
-/// A lamp of half-angle `half` right above a point that is seen from above, through a body that hides half of it or
-/// not.
-Experiment lamp_above(double half, bool hidden) {
+/// A area light of half-angle `half` right above a point that is seen from above, through a body that hides half of it
+/// or not.
+Experiment area_light_above(double half, bool hidden) {
     Experiment e = test::small_scene();
     e.shapes.resize(2);
     e.shapes[0].form = shapes::Plane{{0, 0, 0}, {0, 1, 0}};
@@ -104,7 +104,7 @@ TEST(DiskQuadrature, StatesNoLessThanItsErrorWhereTheIntegralIsKnown) {
     for (const double half : {1e-6, 1e-3, 0.03, 0.3, 1.0, 1.5})
         for (const double s : {0.01, 1.0, 32.0, 1e3, 1e5, 1e6})
             for (const bool hidden : {false, true}) {
-                const Scene scene(lamp_above(half, hidden));
+                const Scene scene(area_light_above(half, hidden));
                 Surface surface;
                 surface.rho_d = {0.3, 0.3, 0.3}, surface.rho_s = 0.5, surface.s = s;
                 const DiskIntegral got = DiskQuadrature(scene, 0)(hit, surface);

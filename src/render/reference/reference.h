@@ -1,4 +1,4 @@
-// What the meters compare with, where the experiment asks for no other: the radiance of every pixel without a sample.
+// What the metrics compare with, where the experiment asks for no other: the radiance of every pixel without a sample.
 // Lambert x fill in closed form, lobe x fill by a table of its albedo, every light by DiskQuadrature; states its own
 // error per pixel.
 #pragma once

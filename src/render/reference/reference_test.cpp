@@ -73,7 +73,7 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthAndThatOfTheArmsWithinTheDoubts) {
         const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, monitor)[0];
         EXPECT_EQ(differences(scene, film, seed), "") << "scene " << seed << "\n" << draw.what;
         const test::Compared arms = test::compare_scene(scene, film, seed);
-        EXPECT_EQ(arms.off, 0) << "scene " << seed << arms.told << "\n" << draw.what;
+        EXPECT_EQ(arms.off, 0) << "scene " << seed << arms.describe << "\n" << draw.what;
         known += arms.known, pixels += arms.pixels;
     }
     EXPECT_GT(known, pixels / 2);
@@ -96,7 +96,7 @@ TEST(ReferencesOfManyExponents, AreThoseOfEachAlone) {
     }
 }
 
-/// A reference of lamps that are 15 % brighter than the scene's is found out wherever arms know the pixels.
+/// A reference of area lights that are 15 % brighter than the scene's is found out wherever arms know the pixels.
 TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
     ProgressMonitor monitor;
     int lit = 0, found = 0;
@@ -127,8 +127,8 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
     const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, monitor)[0];
-    for (const char* arm :
-        {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
+    for (const char* arm : {"uniform", "cosine", "mixture", "mis-balance",
+             "mis-power"}) {  // lamps_test.cpp has those that aim at area lights
         const Film film = estimate_films(scene, arm, {1024}, 17, "", monitor)[0];
         double difference = 0, variance = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {

@@ -107,7 +107,7 @@ std::vector<Residual> residuals(const Sheet& sheet) {
 void draw_heat(Sheet& sheet) {
     std::vector<Residual> runs = residuals(sheet);
     std::vector<RunKey> keys = keys_of(sheet.plan, sheet.experiment());
-    instrument_header(sheet, "FINGERPRINT", "linear Rec.709 Y residual, not PNG", stream_words(keys));
+    backend_header(sheet, "FINGERPRINT", "linear Rec.709 Y residual, not PNG", stream_words(keys));
     note_biased_arms(sheet);
     if (runs.empty()) {
         paint_missing(sheet, content_band, "the plan names no run");

@@ -23,26 +23,29 @@ struct Axes {
 };
 
 Axes axes_of(const std::vector<LadderCurve>& curves, const Rect& plot) {
-    std::vector<double> rungs, values;
+    std::vector<double> sample_counts, values;
     for (const LadderCurve& l : curves) {
-        rungs.insert(rungs.end(), l.n.begin(), l.n.end());
+        sample_counts.insert(sample_counts.end(), l.n.begin(), l.n.end());
         values.insert(values.end(), l.value.begin(), l.value.end());
         for (const auto& [low, high] : l.interval) values.insert(values.end(), {low, high});
     }
-    return {plot, log_axis("N", rungs, 1.16), log_axis("", values, 1.4)};
+    return {plot, log_axis("N", sample_counts, 1.16), log_axis("", values, 1.4)};
 }
 
-std::string rung_text(double n) { return n == std::floor(n) ? count(static_cast<std::uint64_t>(n)) : number(n, 3); }
+std::string sample_count_label(double n) {
+    return n == std::floor(n) ? count(static_cast<std::uint64_t>(n)) : number(n, 3);
+}
 
 void draw_axes(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves) {
-    std::set<double> rungs;
-    for (const LadderCurve& l : curves) rungs.insert(l.n.begin(), l.n.end());
+    std::set<double> sample_counts;
+    for (const LadderCurve& l : curves) sample_counts.insert(l.n.begin(), l.n.end());
     double last = -1e9;
-    for (const double n : rungs) {
+    for (const double n : sample_counts) {
         double x = a.x(n);
         c.line(x, a.plot.bottom(), x, a.plot.bottom() + 5, muted, 1.5);
         if (x - last < 44) continue;
-        c.text({x - 40, a.plot.bottom() + 6, 80, 20}, rung_text(n), with(with_px(small_text, 16), Align::centre));
+        c.text(
+            {x - 40, a.plot.bottom() + 6, 80, 20}, sample_count_label(n), with(with_px(small_text, 16), Align::centre));
         last = x;
     }
     for (const double v : a.up.ticks) {

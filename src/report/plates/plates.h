@@ -14,14 +14,14 @@
 namespace crescent::plates {
 
 /// What the plates are made from. Films are looked up by key; photographs go through the display chain,
-/// instruments read the float films.
+/// back ends read the float films.
 struct PlateInputs {
     const Experiment& experiment;
     const Metrics& metrics;
     const ShapeMap& shapes;
     std::function<const Film*(const RunKey&)> film;           // nullptr: not run
-    std::function<const ReferenceFilm*(double s)> reference;  // the one the meters use
-    std::string instrument;                                   // "CPU" or the GL strings, for the instrument plates
+    std::function<const ReferenceFilm*(double s)> reference;  // the one the metrics use
+    std::string backend;                                      // "CPU" or the GL strings, for the back end plates
     Theme theme = Theme::dark;
     std::function<const ExternalSampler*(const std::string& arm)> outside{};  // nullptr: it is built in
 };

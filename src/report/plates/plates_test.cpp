@@ -28,10 +28,10 @@ std::vector<PlateKind> kinds_where(bool photograph) {
         if ((plate_infos[k].look == PlateLook::photograph) == photograph) out.push_back(PlateKind(k));
     return out;
 }
-const std::vector<PlateKind> photographs = kinds_where(true), instruments = kinds_where(false);
+const std::vector<PlateKind> photographs = kinds_where(true), backends = kinds_where(false);
 const std::vector<PlateKind> all_kinds = [] {
     std::vector<PlateKind> out = photographs;
-    out.insert(out.end(), instruments.begin(), instruments.end());
+    out.insert(out.end(), backends.begin(), backends.end());
     return out;
 }();
 
@@ -64,7 +64,7 @@ TEST(Plates, InksOfTheLightThemeStandOutFromItsGround) {
     using namespace plates;
     const double paper = luminance_of(themed(ground, Theme::light));
     EXPECT_GT(paper, 0.9);
-    for (const Colour& c : {bright, muted, photograph_accent, instrument_accent, alert, series[0], series[1], series[2],
+    for (const Colour& c : {bright, muted, photograph_accent, backend_accent, alert, series[0], series[1], series[2],
              series[3], series[4], series[5]})
         EXPECT_GE((paper + 0.05) / (luminance_of(themed(c, Theme::light)) + 0.05), 4.5)
             << c.r << " " << c.g << " " << c.b;
@@ -127,7 +127,7 @@ TEST(Plates, LongNamesStayInTheirBoxes) {
         world.add_arm(name, "phong");
         std::swap(world.e.arms[i], world.e.arms.back());
     }
-    world.instrument =
+    world.backend =
         "OpenGL 4.5 (Core Profile) of some driver with a long name, on a renderer with a longer one (256 bits)";
     world.e.regions[0].name = "the highlight crescent as the key light draws it on the sphere";
     for (RunMetrics& run : world.metrics.runs) run.regions[0].region = world.e.regions[0].name;
@@ -143,11 +143,11 @@ TEST(Plates, LongNamesStayInTheirBoxes) {
 
 TEST(Plates, EveryInstrumentSaysWhatComputedItsFilms) {
     World world(960, 540);
-    world.instrument = "GL 4.5, llvmpipe, OSMesa";
-    for (PlateKind kind : instruments) {
+    world.backend = "GL 4.5, llvmpipe, OSMesa";
+    for (PlateKind kind : backends) {
         const std::vector<Setting> settings = world.settings(world.plan(kind, 2));
         EXPECT_TRUE(std::any_of(settings.begin(), settings.end(), [&](const Setting& s) {
-            return s.text.find(world.instrument) != std::string::npos;
+            return s.text.find(world.backend) != std::string::npos;
         })) << int(kind);
     }
 }
@@ -180,7 +180,7 @@ TEST(Plates, APhotographSaysSoAndCarriesNoMeasuredNumber) {
         EXPECT_FALSE(has(settings, "RMSE")) << int(kind);
         EXPECT_FALSE(has(settings, "INSTRUMENT")) << int(kind);
     }
-    for (PlateKind kind : instruments) {
+    for (PlateKind kind : backends) {
         std::vector<Setting> settings = world.settings(world.plan(kind, 2));
         EXPECT_TRUE(has(settings, "INSTRUMENT")) << int(kind);
         EXPECT_FALSE(has(settings, "PHOTO-ONLY")) << int(kind);
@@ -213,20 +213,20 @@ TEST(Plates, ARunThatWasNotMadeIsNamedOnThePlate) {
 
 TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
     World world(96, 54);
-    const char* say = "reference not good enough in H";
+    const char* message = "reference not good enough in H";
     world.metrics.references = {{32, "H", {}, {}, 0.1, {}, most_error_share}};
-    EXPECT_FALSE(has(world.settings(world.plan(PlateKind::heat, 2)), say));
+    EXPECT_FALSE(has(world.settings(world.plan(PlateKind::heat, 2)), message));
     world.metrics.references[0].error_share = 2 * most_error_share;
-    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::heat, 2)), say));
-    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), say));
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::heat, 2)), message));
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), message));
 }
 
-TEST(Meters, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
+TEST(Metrics, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
     World world(96, 54);
     world.e.regions.push_back({"all", {0, 0, 95, 53}, {}});
     for (RunMetrics& m : world.metrics.runs) m.regions.push_back({"all", 1.234, 0.5, 10, {}});
     for (SeedSpread& b : world.metrics.bands)
-        if (b.meter == "var.H") b.band.q05 = 7.5968e-4, b.band.q95 = 7.8312e-4;
+        if (b.metric == "var.H") b.band.q05 = 7.5968e-4, b.band.q95 = 7.8312e-4;
     const std::vector<Setting> settings = world.settings(world.plan(PlateKind::meters, 2));
     EXPECT_TRUE(has(settings, "0.000760 – 0.000783"));
     EXPECT_TRUE(has(settings, "1.100 – 1.300"));
@@ -236,13 +236,13 @@ TEST(Meters, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
 TEST(Plates, NameTheArmsThatCannotReachAllLight) {
     World world(96, 54);
     world.e.fill = {1, 1, 1};
-    const char* say = "out of reach: light-area";
+    const char* message = "out of reach: light-area";
     for (PlateKind kind : {PlateKind::heat, PlateKind::meters})
         EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), "biased"));
     world.add_arm("light-area", "light-area");
     for (PlateKind kind : {PlateKind::heat, PlateKind::meters}) {
-        EXPECT_TRUE(has(world.settings(world.plan(kind, 4)), say));
-        EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), say)) << "not on this plate";
+        EXPECT_TRUE(has(world.settings(world.plan(kind, 4)), message));
+        EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), message)) << "not on this plate";
     }
 }
 

@@ -22,8 +22,8 @@ void append(png_structp png, png_bytep data, png_size_t n) {
 }
 void keep(png_structp) {}
 
-[[noreturn]] void fail(png_structp png, png_const_charp say) {
-    *static_cast<std::string*>(png_get_error_ptr(png)) = say;
+[[noreturn]] void fail(png_structp png, png_const_charp message) {
+    *static_cast<std::string*>(png_get_error_ptr(png)) = message;
     longjmp(png_jmpbuf(png), 1);
 }
 void ignore(png_structp, png_const_charp) {}

@@ -118,18 +118,18 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
 namespace {
 
 // The surface that the density is shown for: that of the shape whose exponent is the experiment's.
-ShadingPoint<double> site_of(const Experiment& e, double s, double tilt) {
+ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
     const Shape* shape = e.shape_of_s();
     Material material = shape ? shape->material : Material{};
     material.s = s;
     const Surface surface = surface_of(material, s);
-    ShadingPoint<double> site{};
-    site.wo = {-math::sin(tilt), 0, math::cos(tilt)};
-    site.s = surface.s;
-    site.alpha = surface.alpha;
-    site.diffuse = luminance(surface.rho_d);
-    site.lobe = surface.rho_s;
-    return site;
+    ShadingPoint<double> shading_point{};
+    shading_point.wo = {-math::sin(tilt), 0, math::cos(tilt)};
+    shading_point.s = surface.s;
+    shading_point.alpha = surface.alpha;
+    shading_point.diffuse = luminance(surface.rho_d);
+    shading_point.lobe = surface.rho_s;
+    return shading_point;
 }
 
 // An arm without one density (several techniques, each with its own) is left at 0.
@@ -190,14 +190,14 @@ bool aims_at_lights_alone(const std::string& sampler) {
 Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
     : ask_(one_by_one([](const Vec3d&) { return 0.0; })), tilt_(tilt) {
     if (aims_at_lights_alone(sampler)) {
-        ask_at_a_pixel(e, sampler, s);
+        query_at_a_pixel(e, sampler, s);
         return;
     }
-    ShadingPoint<double> site = site_of(e, s, tilt);
+    ShadingPoint<double> shading_point = point_of(e, s, tilt);
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
         if constexpr (has_pdf<A<double>>) {
             if (sampler != A<double>::name) return;
-            ask_ = one_by_one([arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
+            ask_ = one_by_one([arm = A<double>(shading_point), wo = shading_point.wo](const Vec3d& wi) {
                 double p = arm.pdf(wo, wi).v;
                 return std::isfinite(p) ? p : 0.0;
             });
@@ -207,8 +207,9 @@ Density::Density(const Experiment& e, const std::string& sampler, double s, doub
 }
 
 Density::Density(const Experiment& e, const ExternalSampler& outside, double s, double tilt) : tilt_(tilt) {
-    const ShadingPoint<double> site = site_of(e, s, tilt);
-    ask_ = [&outside, wo = site.wo, on = OutsideSurface{site.s, site.alpha, site.diffuse, site.lobe}](
+    const ShadingPoint<double> shading_point = point_of(e, s, tilt);
+    ask_ = [&outside, wo = shading_point.wo,
+               on = ExternalSurface{shading_point.s, shading_point.alpha, shading_point.diffuse, shading_point.lobe}](
                std::span<const Vec3d> wi, std::span<double> out) {
         outside.density(wo, on, wi, out);
         for (double& p : out) p = p > 0 && std::isfinite(p) ? p : 0.0;
@@ -223,7 +224,7 @@ void Density::find_peak() {
     for (const double p : at(plane)) peak_ = std::max(peak_, p);
 }
 
-void Density::ask_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
+void Density::query_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
     const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, s, tilt_);
     if (!pixel) return;
     const Vec3d r = pixel->mirror();

@@ -55,7 +55,7 @@ public:
     const std::string& where() const { return where_; }
 
 private:
-    void ask_at_a_pixel(const Experiment& e, const std::string& sampler, double s);
+    void query_at_a_pixel(const Experiment& e, const std::string& sampler, double s);
     void find_peak();
     std::function<void(std::span<const Vec3d>, std::span<double>)> ask_;
     double tilt_, peak_ = 0;

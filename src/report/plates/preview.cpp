@@ -106,7 +106,7 @@ PlatePlan preview_plan(const Experiment& e) {
 
 void paint_preview(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
-    instrument_header(sheet, "PREVIEW", "pixels from the bottom-left", "", false);
+    backend_header(sheet, "PREVIEW", "pixels from the bottom-left", "", false);
     const View v = view(sheet.in.reference(e.s()));
     const std::vector<Marked> boxes = marked(e);
     Rect slot{picture_slot.x + ruler_w, picture_slot.y, picture_slot.w - ruler_w, picture_slot.h - ruler_h};

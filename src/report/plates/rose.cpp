@@ -125,7 +125,7 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
 }
 
 /// Null where the arm is built in, or nobody is there to be asked.
-const ExternalSampler* from_outside(const Sheet& sheet, const std::string& arm) {
+const ExternalSampler* from_external(const Sheet& sheet, const std::string& arm) {
     return sheet.in.outside ? sheet.in.outside(arm) : nullptr;
 }
 
@@ -137,7 +137,7 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
     }
     std::vector<Part> parts;
     for (const RunKey& k : keys) {
-        const ExternalSampler* own = from_outside(sheet, k.arm);
+        const ExternalSampler* own = from_external(sheet, k.arm);
         parts.push_back({k, own ? Density(e, *own, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
     }
     return parts;
@@ -174,7 +174,7 @@ double peak_in_plane(const Part& part) {
 std::string why_no_density(const Sheet& sheet, const std::string& arm) {
     const Experiment& e = sheet.experiment();
     const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
-    const ExternalSampler* own = from_outside(sheet, arm);
+    const ExternalSampler* own = from_external(sheet, arm);
     return arm_name(arm, e) +
         (own && own->has_density() ? " says that its density is 0 in the plane of incidence"
                 : own              ? " is a library without crescent_sampler_pdf: its density is not known"
@@ -216,11 +216,11 @@ void draw_rose(Sheet& sheet) {
     std::vector<Part> parts = parts_of(sheet, tilt);
     std::vector<RunKey> keys;
     for (const Part& p : parts) keys.push_back(p.key);
-    instrument_header(sheet, "PDF ROSE",
+    backend_header(sheet, "PDF ROSE",
         "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
         "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i);
-    if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured
+    if (sheet.in.backend == "CPU") sheet.notes.clear();  // nothing was measured
     for (const std::string& note : {fmt::format("R stands {}° from n", number(tilt_deg)),
              std::string(
                  "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),

@@ -23,13 +23,13 @@ TEST(Rose, StatesThePeaksOfTheDensities) {
 }
 
 /// cos / pi from outside, or a sampler that is not asked for its density.
-struct CosineFromOutside : ExternalSampler {
+struct ExternalCosine : ExternalSampler {
     bool asked = true;
     std::string name() const override { return "cosine"; }
     int numbers() const override { return 2; }
-    void draw(const OutsideBatch&, const OutsideDraws&) const override {}
+    void draw(const ExternalBatch&, const ExternalDraws&) const override {}
     bool has_density() const override { return asked; }
-    void density(Vec3d, const OutsideSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
+    void density(Vec3d, const ExternalSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
         for (std::size_t i = 0; i < wi.size(); ++i) out[i] = std::max(wi[i].z, 0.0) / pi;
     }
 };
@@ -40,7 +40,7 @@ TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
     PlatePlan plan;
     plan.kind = PlateKind::rose;
     plan.runs = {{"mine", 0, 0}};
-    CosineFromOutside mine;
+    ExternalCosine mine;
     PlateInputs in = world.inputs();
     in.outside = [&](const std::string& arm) { return arm == "mine" ? &mine : nullptr; };
     const auto says = [&](const char* text) {

@@ -169,10 +169,10 @@ void photograph_header(Sheet& sheet, const std::string& what, const std::string&
         stream);
 }
 
-void instrument_header(
+void backend_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
-    header(sheet, instrument_accent,
-        tinted("INSTRUMENT " + name, instrument_accent, sheet.canvas.theme()) + " / " + what, stream);
+    header(sheet, backend_accent, tinted("INSTRUMENT " + name, backend_accent, sheet.canvas.theme()) + " / " + what,
+        stream);
     if (of_films)
         for (const ReferenceQuality& r : sheet.in.metrics.references)
             if (r.error_share > most_error_share) {
@@ -180,7 +180,7 @@ void instrument_header(
                     "reference not good enough in " + escaped(r.region) + ": errors there are too large");
                 break;
             }
-    const std::string& on = sheet.in.instrument;
+    const std::string& on = sheet.in.backend;
     if (!on.empty())
         sheet.notes.push_back(
             (of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
@@ -209,11 +209,11 @@ void finish(Sheet& sheet) {
 
     Rect foot = footer_band;
     if (sheet.not_finite > 0) {
-        std::string say = fmt::format(
+        std::string message = fmt::format(
             "{} pixel{} not a number, shown in magenta", count(sheet.not_finite), sheet.not_finite == 1 ? "" : "s");
         Text how = with(with(with(small_text, alert), Align::right), Weight::semibold);
-        double w = sheet.canvas.measure(say, how).w + 2;
-        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, say, how);
+        double w = sheet.canvas.measure(message, how).w + 2;
+        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, message, how);
         foot.w -= w + gap;
     }
     std::string notes = joined(sheet.notes, "  ·  ");

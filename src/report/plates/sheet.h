@@ -28,7 +28,7 @@ inline constexpr Colour rule{0.235, 0.247, 0.267};
 inline constexpr Colour bright{0.953, 0.953, 0.941};
 inline constexpr Colour muted{0.682, 0.702, 0.729};
 inline constexpr Colour photograph_accent{0.957, 0.733, 0.373};
-inline constexpr Colour instrument_accent{0.431, 0.792, 0.867};
+inline constexpr Colour backend_accent{0.431, 0.792, 0.867};
 inline constexpr Colour alert{1.0, 0.43, 1.0};
 /// For arms in the order of the experiment, told apart by lightness as well as by hue; the first, the baseline, is
 /// grey.
@@ -44,9 +44,9 @@ struct Themed {
 };
 inline constexpr Themed light_theme[] = {{ground, {0.988, 0.988, 0.984}}, {panel, {0.941, 0.945, 0.949}},
     {rule, {0.804, 0.816, 0.831}}, {bright, {0.098, 0.106, 0.118}}, {muted, {0.345, 0.369, 0.400}},
-    {photograph_accent, {0.604, 0.357, 0.000}}, {instrument_accent, {0.000, 0.408, 0.498}},
-    {alert, {0.741, 0.000, 0.741}}, {series[0], {0.392, 0.392, 0.392}}, {series[3], {0.710, 0.161, 0.176}},
-    {series[4], {0.184, 0.455, 0.118}}, {series[5], {0.439, 0.290, 0.690}}};
+    {photograph_accent, {0.604, 0.357, 0.000}}, {backend_accent, {0.000, 0.408, 0.498}}, {alert, {0.741, 0.000, 0.741}},
+    {series[0], {0.392, 0.392, 0.392}}, {series[3], {0.710, 0.161, 0.176}}, {series[4], {0.184, 0.455, 0.118}},
+    {series[5], {0.439, 0.290, 0.690}}};
 /// A colour of this file as a theme shows it, its opacity kept; another stays as it is.
 constexpr Colour themed(const Colour& c, Theme theme) {
     if (theme == Theme::light)
@@ -145,9 +145,9 @@ struct Sheet {
 /// "Khronos PBR Neutral / PHOTO-ONLY / `what`", and `stream` ("seed 7") at the right: no measured number stands on a
 /// photograph.
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream);
-/// "INSTRUMENT `name` / `what`"; names the instrument in the footer. `of_films`: what it shows was read off films,
-/// which any instrument may have computed; else it is the CPU's, and the films of the run are named beside it.
-void instrument_header(
+/// "INSTRUMENT `name` / `what`"; names the back end in the footer. `of_films`: what it shows was read off films,
+/// which any back end may have computed; else it is the CPU's, and the films of the run are named beside it.
+void backend_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films = true);
 /// Names in the footer the arms of the plate that cannot reach all light of the scene, so that their errors stop
 /// falling.

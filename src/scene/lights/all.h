@@ -13,7 +13,7 @@ namespace crescent::inline scene {
 using LightKinds = KindList<lights::Disk, lights::Sphere, lights::Rectangle>;
 
 /// Calls f.template operator()<Kind>() for every kind other than the disk, in order.
-template <class F> void for_each_lamp(F&& f) {
+template <class F> void for_each_area_light(F&& f) {
     const auto among = [&]<class Disk, class... Kind>(
                            KindList<Disk, Kind...>) { (f.template operator()<Kind>(), ...); };
     among(LightKinds{});
@@ -21,7 +21,7 @@ template <class F> void for_each_lamp(F&& f) {
 /// The same for the kind at an index.
 template <class F> void with_light_kind(std::size_t index, F&& f) {
     std::size_t k = 1;
-    for_each_lamp([&]<class Kind>() {
+    for_each_area_light([&]<class Kind>() {
         if (k++ == index) f.template operator()<Kind>();
     });
 }

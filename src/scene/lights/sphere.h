@@ -20,7 +20,7 @@ struct Sphere {
             parameter::length("radius", &Sphere::radius, "Radius.")};
     }
 
-    /// One to judge arms under, as every kind has one: the surface at 0, n = +z, m.
+    /// One to check arms under, as every kind has one: the surface at 0, n = +z, m.
     static constexpr Sphere example() { return {{-0.61, 0.51, 1.39}, 0.45}; }
 
     shapes::Sphere body() const { return {center, radius}; }

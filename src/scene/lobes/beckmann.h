@@ -40,7 +40,7 @@ template <class F> struct BeckmannLobe {
         .formula = R"(\frac{D(h)\,G_1(\omega_o)\,G_1(\omega_i)}{4(n\cdot\omega_o)(n\cdot\omega_i)})",
         .parameter = LobeParameter::alpha,
         .own_arm = "beckmann-d",
-        .judged_from = 1e-3};  // at 3e-4 and 89 degrees its integral is known to 6e-4, not to the 7e-5 that is stated
+        .checked_from = 1e-3};  // at 3e-4 and 89 degrees its integral is known to 6e-4, not to the 7e-5 that is stated
     Beckmann<F> beckmann;
     BeckmannLobe(F, F alpha) : beckmann{alpha} {}
     [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {  // (20)

@@ -26,7 +26,7 @@ struct LobeDoc {
     LobeParameter parameter = LobeParameter::s;
     bool about_mirror = false;      // it peaks about R; else it is about the half vector, a streak at grazing w_o
     std::string_view own_arm = "";  // the arm of arms/all.h that draws from it
-    double judged_from = 0;         // the least alpha that verdicts are given at; 0: any
+    double checked_from = 0;        // the least alpha that verdicts are given at; 0: any
 };
 
 /// Where a lobe's height lies, as angles from its peak in the plane across that of incidence, rad.

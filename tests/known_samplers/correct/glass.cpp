@@ -99,7 +99,7 @@ Draw RoughGlass::sample(Vec3d o, const PrimarySample& u) const {
 Traits RoughGlass::traits() const {
     Traits t;
     t.numbers = 3;
-    t.wo = Traits::Asked::both;
+    t.wo = Traits::WoDomain::both;
     t.eta = Vec3d{eta, eta, eta};
     t.importance = importance;
     return t;

@@ -140,13 +140,13 @@ SyntheticSampler mixture_of(std::string family, std::string parameters, std::vec
 
 SyntheticSampler fishers(Rng& d) {
     std::vector<std::pair<double, Lobe>> parts;
-    std::string told;
+    std::string describe;
     for (int i = 0, n = d.whole(1, 4); i < n; ++i) {
         const double k = d.log(1, 1e4), share = d.uniform(0.1, 1);
         parts.emplace_back(share, fisher(d.direction(-1, 1), k));
-        told += fmt::format("{}kappa {:.4g}", i ? ", " : "", k);
+        describe += fmt::format("{}kappa {:.4g}", i ? ", " : "", k);
     }
-    return mixture_of("von Mises-Fisher", told, std::move(parts));
+    return mixture_of("von Mises-Fisher", describe, std::move(parts));
 }
 SyntheticSampler cones(Rng& d) {
     std::vector<std::pair<double, Lobe>> parts = {{0.3, band({0, 0, 1}, 0, 1)}};

@@ -1,5 +1,5 @@
 // Right samplers at random parameters: a bench that calls one of them wrong is itself wrong. Each is written in double
-// from its source, with sample and pdf apart, as users write theirs; `crescent check --right N` judges N of them.
+// from its source, with sample and pdf apart, as users write theirs; `crescent check --right N` checks N of them.
 #pragma once
 
 #include <functional>
@@ -50,12 +50,12 @@ std::vector<SamplerFamily> table_families();       // cells, texels and bilinear
 /// Anisotropic GGX with visible normals at given roughness.
 SyntheticSampler ggx_visible_at(double alpha_x, double alpha_y);
 
-/// A recipe as a subject.
-std::shared_ptr<const SamplerAdapter> subject_of(SyntheticSampler recipe);
+/// A recipe as a sampler.
+std::shared_ptr<const SamplerAdapter> make_adapter(SyntheticSampler recipe);
 
 /// Sampler `index` of the law: its families take turns, its parameters follow from seed and index.
 SyntheticSampler right_sampler(std::uint64_t index, std::uint32_t seed);
 /// The same at the w_o that goes with it: from the normal to 89 deg.
-CheckCase right_trial(std::uint64_t index, std::uint32_t seed);
+CheckCase correct_case(std::uint64_t index, std::uint32_t seed);
 
 }  // namespace crescent

@@ -98,7 +98,7 @@ double Sky::pdf(Vec3d w) const {
 SyntheticSampler recipe_of(std::shared_ptr<const Sky> sky) {
     SyntheticSampler r{sky->by_alias ? "sky by alias table" : "sky by CDF",
         fmt::format("{} x {}", sky->columns, sky->rows), {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.sample = [sky](Vec3d, const PrimarySample& u) { return sky->sample(u); };
     r.pdf = [sky](Vec3d, Vec3d wi) { return sky->pdf(wi); };
     return r;

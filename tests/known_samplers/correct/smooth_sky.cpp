@@ -107,7 +107,7 @@ SyntheticSampler smooth_sky(int cells, double sun) {
     const auto sky = std::make_shared<const SmoothSky>(cells, std::move(values));
     SyntheticSampler r{
         "smooth sky in single precision", fmt::format("{} x {}, sun {:g}", cells, cells, sun), {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.sample = [sky](Vec3d, const PrimarySample& u) { return sky->sample(u); };
     r.pdf = [sky](Vec3d, Vec3d wi) { return sky->pdf(wi); };
     return r;

@@ -19,9 +19,9 @@ using Faults = std::vector<PlantedFault>;
 void plant(Faults& out, const std::string& name, std::string breaks, SyntheticSampler recipe) {
     PlantedFault fault{name, std::move(breaks), {}, cause_of(name)};
     std::vector<std::pair<double, double>> at = {{20, 40}, {45, 130}, {75, 310}};
-    if (recipe.traits.wo == Traits::Asked::both) at = {{45, 130}, {75, 310}, {135, 130}};
-    const auto subject = subject_of(std::move(recipe));
-    for (const auto& [theta, azimuth] : at) fault.trials.push_back(make_user_case(subject, theta, azimuth));
+    if (recipe.traits.wo == Traits::WoDomain::both) at = {{45, 130}, {75, 310}, {135, 130}};
+    const auto adapter = make_adapter(std::move(recipe));
+    for (const auto& [theta, azimuth] : at) fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
     out.push_back(std::move(fault));
 }
 

@@ -242,12 +242,12 @@ std::vector<PlantedFault> held_out_faults() {
     std::vector<PlantedFault> out;
     for (const Planted& p : all) {
         PlantedFault fault{p.name, p.recipe.family, {}, p.cause};
-        const bool both = p.recipe.traits.wo == Traits::Asked::both;
-        const auto subject = subject_of(p.recipe);
+        const bool both = p.recipe.traits.wo == Traits::WoDomain::both;
+        const auto adapter = make_adapter(p.recipe);
         for (const auto& [theta, azimuth] : both
                 ? std::vector<std::pair<double, double>>{{20, 40}, {65, 200}, {150, 310}}
                 : std::vector<std::pair<double, double>>{{20, 40}, {50, 110}, {70, 200}})
-            fault.trials.push_back(make_user_case(subject, theta, azimuth));
+            fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
         out.push_back(std::move(fault));
     }
     return out;

@@ -115,7 +115,7 @@ SyntheticSampler recipe_of(const Mixture& m, const FaultInjection& by = [](Vec3d
 }
 SyntheticSampler alone(const Lobe& l) { return recipe_of(Mixture{{l}, {1}, {1}, false, false}); }
 SyntheticSampler of_light(SyntheticSampler r) {
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     return r;
 }
 
@@ -232,9 +232,9 @@ std::vector<PlantedFault> held_out_lobe_faults() {
     std::vector<PlantedFault> out;
     for (const Planted& p : all) {
         PlantedFault fault{p.name, p.recipe.family, {}, p.cause};
-        const auto subject = subject_of(p.recipe);
+        const auto adapter = make_adapter(p.recipe);
         for (const auto& [theta, azimuth] : {std::pair{20.0, 40.0}, {50.0, 110.0}, {70.0, 200.0}})
-            fault.trials.push_back(make_user_case(subject, theta, azimuth));
+            fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
         out.push_back(std::move(fault));
     }
     return out;

@@ -134,9 +134,9 @@ CaseLighting two_disks() { return case_setup(LobeKind::none, true, "two disks", 
 /// The density of A where it aims at disk k alone, chosen with certainty.
 template <template <class> class A> double towards(LocalDisk<double> disk, const Pair& at) {
     disk.power = 1;
-    ShadingPoint<double> site{};
-    site.disks = &disk, site.disk_count = 1;
-    return A<double>(site).pdf(at.wo, at.wi).v;
+    ShadingPoint<double> shading_point{};
+    shading_point.disks = &disk, shading_point.disk_count = 1;
+    return A<double>(shading_point).pdf(at.wo, at.wi).v;
 }
 
 /// Faults of arms that choose between lights. The list's first of two disks stands behind the second in part.
@@ -285,7 +285,7 @@ std::vector<PlantedFault> arm_faults(bool full) {
                 if (A<float>::name == p.arm)
                     right = std::make_shared<BuiltIn<A>>(on.surface, tilt(theta, azimuth), on.light);
             });
-            fault.trials.push_back(
+            fault.check_cases.push_back(
                 make_case_on(on, theta, azimuth, p.arm, std::make_shared<FaultySampler>(right, p.bend(on.surface))));
         }
         out.push_back(std::move(fault));

@@ -13,7 +13,7 @@ namespace crescent {
 struct PlantedFault {
     std::string name;    // a few words
     std::string breaks;  // the arm it breaks
-    std::vector<CheckCase> trials;
+    std::vector<CheckCase> check_cases;
     std::string cause{};  // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
     std::string verdict{};  // the one that asks for it; "" where several do
 };

@@ -19,13 +19,13 @@ using Faults = std::vector<PlantedFault>;
 /// At three w_o above, at two below where the sampler takes both sides, at none for a sky.
 void plant(Faults& out, const std::string& name, std::string breaks, SyntheticSampler recipe, bool state = false) {
     PlantedFault fault{name, std::move(breaks), {}, cause_of(name)};
-    const Traits::Asked asked = recipe.traits.wo;
-    const std::shared_ptr<const SamplerAdapter> subject = subject_of(std::move(recipe));
+    const Traits::WoDomain asked = recipe.traits.wo;
+    const std::shared_ptr<const SamplerAdapter> adapter = make_adapter(std::move(recipe));
     std::vector<std::pair<double, double>> at = {{0, 0}, {45, 130}, {75, 310}};
-    if (asked == Traits::Asked::both) at = {{45, 130}, {75, 310}, {135, 130}, {110, 310}};
-    if (asked == Traits::Asked::none) at = {{0, 0}};
+    if (asked == Traits::WoDomain::both) at = {{45, 130}, {75, 310}, {135, 130}, {110, 310}};
+    if (asked == Traits::WoDomain::none) at = {{0, 0}};
     if (state) at.resize(1);
-    for (const auto& [theta, azimuth] : at) fault.trials.push_back(make_user_case(subject, theta, azimuth));
+    for (const auto& [theta, azimuth] : at) fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
     out.push_back(std::move(fault));
 }
 
@@ -89,12 +89,12 @@ void glass_faults(Faults& out) {
 /// D for D n.m, on both sides of the surface.
 void half_vector_faults(Faults& out) {
     const RoughGlass g{0.3, 1.5};
-    for (const bool told : {true, false}) {
+    for (const bool describe : {true, false}) {
         SyntheticSampler r = recipe_of(g);
         bend_pdf(r, [g](Vec3d o, Vec3d i, double p) { return p > 0 ? p / g.half(o, i).z : 0; });
-        if (!told) r.traits.eta = {};
+        if (!describe) r.traits.eta = {};
         plant(out,
-            told ? "n.m left out of the pdf of glass" : "n.m left out of the pdf of glass whose index is not told",
+            describe ? "n.m left out of the pdf of glass" : "n.m left out of the pdf of glass whose index is not told",
             "glass", r);
     }
 }

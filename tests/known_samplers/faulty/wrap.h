@@ -52,7 +52,7 @@ public:
         for (std::size_t i = 0; bend_.f && i < out.size(); ++i) out[i] = bend_.f(at[i], out[i]);
     }
     bool has_true_f() const override { return true; }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override { right_->f(at, out); }
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override { right_->f(at, out); }
 
 private:
     void bend_pdf(std::span<const Pair> at, std::span<double> out) const {

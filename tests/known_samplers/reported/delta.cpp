@@ -62,7 +62,7 @@ SyntheticSampler dispersive_glass(double scale) {
     SyntheticSampler r{"dispersive glass", "", {}, {}, {}};
     r.traits.numbers = 4;
     r.traits.channels = 3;
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = Traits::WoDomain::both;
     r.traits.delta = true;
     r.traits.eta = Vec3d{eta[0], eta[1], eta[2]};
     r.pdf = [](Vec3d, Vec3d) { return 0.0; };
@@ -91,7 +91,7 @@ SyntheticSampler dispersive_glass(double scale) {
 SyntheticSampler mask(double open) {
     SyntheticSampler r{"mask", "", {}, {}, {}};
     r.traits.numbers = 3;
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = Traits::WoDomain::both;
     r.traits.delta = true;
     r.pdf = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 * std::fabs(i.z) / pi : 0; };
     r.f = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 / pi : 0; };

@@ -19,7 +19,7 @@ struct KnownSampler {
     std::string name;
     Known known = Known::right;
     std::string verdict{};  // of a wrong one the verdict that is wrong; "" if any may be
-    std::vector<CheckCase> trials{};
+    std::vector<CheckCase> check_cases{};
 };
 
 /// A list of known samplers, each at one azimuth and at the given angles of w_o
@@ -36,7 +36,7 @@ public:
     /// A right one that it calls wrong.
     void called_wrong(
         std::string name, std::string verdict, SyntheticSampler r, std::initializer_list<double> theta = {45});
-    void add(std::string name, Known known, std::string verdict, std::vector<CheckCase> trials);
+    void add(std::string name, Known known, std::string verdict, std::vector<CheckCase> check_cases);
     std::vector<KnownSampler> take() { return std::move(list_); }
 
 private:

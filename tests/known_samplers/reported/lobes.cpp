@@ -149,7 +149,7 @@ SyntheticSampler window(double beside = 0) {
     cdf.back() = 1;
     const Vec3d to = tilt(20, 40), t = normalize(cross(to, {1, 0, 0})), b = cross(to, t);
     SyntheticSampler r = recipe("window");
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.pdf = [=](Vec3d, Vec3d w) {
         const double z = dot(w, to);
         if (!(z > 0)) return 0.0;

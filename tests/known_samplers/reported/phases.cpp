@@ -13,7 +13,7 @@ namespace crescent {
 namespace {
 
 /// Henyey & Greenstein 1941; drawn with g = `drawn`, p and f with `claimed`.
-SyntheticSampler phase(double drawn, double claimed, double scale, Traits::Asked wo = Traits::Asked::both) {
+SyntheticSampler phase(double drawn, double claimed, double scale, Traits::WoDomain wo = Traits::WoDomain::both) {
     SyntheticSampler r{"phase", "", {}, {}, {}};
     r.traits.wo = wo;
     const auto p = [](double g, Vec3d o, Vec3d i) {
@@ -49,7 +49,7 @@ SyntheticSampler glass_from_above(double eta, bool importance) {
     RoughGlass g{0.3, eta};
     g.importance = importance;
     SyntheticSampler r = recipe_of(g);
-    r.traits.wo = Traits::Asked::upper;
+    r.traits.wo = Traits::WoDomain::upper;
     r.traits.eta = {};
     return r;
 }
@@ -76,7 +76,7 @@ SyntheticSampler tilted_lambert(bool draws) {
 /// cos / pi above for w_o above, nothing for w_o below.
 SyntheticSampler one_sided() {
     SyntheticSampler r{"one side", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = Traits::WoDomain::both;
     r.pdf = [](Vec3d o, Vec3d i) { return o.z > 0 ? std::max(i.z, 0.0) / pi : 0; };
     r.sample = [](Vec3d o, const PrimarySample& u) {
         const Vec3d wi = about({0, 0, 1}, std::sqrt(1 - u[0]), u[1]);
@@ -90,10 +90,10 @@ SyntheticSampler one_sided() {
 std::vector<KnownSampler> phase_functions() {
     KnownList list;
     for (double g : {0.3, 0.75, -0.5}) list.right("phase function, g = " + std::to_string(g), phase(g, g, 1), {0, 150});
-    list.right("phase function of w_o above alone", phase(0.75, 0.75, 1, Traits::Asked::upper), {60, 85});
+    list.right("phase function of w_o above alone", phase(0.75, 0.75, 1, Traits::WoDomain::upper), {60, 85});
     list.wrong("phase function of the other sign", "density", phase(0.6, -0.6, 1), {60});
     list.wrong("phase function that creates energy", "physics", phase(0.6, 0.6, 1.05), {60});
-    list.wrong("the same of w_o above alone", "physics", phase(0.6, 0.6, 1.05, Traits::Asked::upper), {60});
+    list.wrong("the same of w_o above alone", "physics", phase(0.6, 0.6, 1.05, Traits::WoDomain::upper), {60});
     list.right("paper", paper(0.4, 0.4), {30, 150});
     list.missed("paper that creates energy below", paper(0.1, 5));  // nobody states whether eta^2 scales f there
     for (double eta : {1.5, 1 / 1.5})

@@ -73,7 +73,7 @@ SyntheticSampler tilted_sphere(float tilt) {
         return Draw{{sin * std::cos(phi), sin * std::sin(phi), z}, 0.25 / pi};
     };
     r.pdf = [](Vec3d, Vec3d) { return 0.25 / pi; };
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     return r;
 }
 
@@ -139,7 +139,7 @@ SyntheticSampler float_sky(std::size_t width, std::size_t height, bool lines = f
     SyntheticSampler r{"a sky in float", "", {}, {}, {}};
     r.sample = [sky](Vec3d, const PrimarySample& u) { return sky->sample(u); };
     r.pdf = [sky](Vec3d, Vec3d w) { return sky->pdf(w); };
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     return r;
 }
 

@@ -44,7 +44,7 @@ SyntheticSampler bright_weights() {
 /// know.
 SyntheticSampler hidden_sun(bool own_numbers) {
     SyntheticSampler r{"even, with a sun", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.traits.own_random = own_numbers;
     r.pdf = [](Vec3d, Vec3d) { return 1 / (4 * pi); };
     r.sample = [](Vec3d, const PrimarySample& u) {
@@ -66,7 +66,7 @@ SyntheticSampler bands(double share) {
         return share * height[k] / all / (2 * pi);
     };
     SyntheticSampler r{"bands", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.pdf = [p](Vec3d, Vec3d wi) { return p(wi.z); };
     r.sample = [p, all](Vec3d, const PrimarySample& u) {
         double left = u[0] * all;

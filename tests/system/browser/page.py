@@ -30,7 +30,7 @@ small = "#experiment=three-glosses&n=4"
 
 
 def same_bits(driver):
-    """Every arm, three scenes, every rung, and the references: the program's hashes in Chromium."""
+    """Every arm, three scenes, every sample count, and the references: the program's hashes in Chromium."""
     native = set(pathlib.Path(native_path).read_text().split("\n"))
     driver.get("about:blank")
     driver.execute_script(pathlib.Path(bundle).read_text())
@@ -52,15 +52,15 @@ def opens_and_measures(driver):
     took = browser.open_page(driver, page)
     told = driver.execute_script("return {...document.documentElement.dataset}")
     print(f"  first picture after {told['first']} ms, three arms at N = 64 after {told['films']} ms, "
-          f"with the reference and all meters {took} ms, {told['workers']} workers")
+          f"with the reference and all metrics {took} ms, {told['workers']} workers")
     assert int(told["workers"]) >= 1
     assert "published" in browser.text(driver, "#pictures")
     beside = [e.text for e in driver.find_elements(By.CSS_SELECTOR, ".hash")]
     assert len(beside) == 3 and all(line.endswith(": the same bits") for line in beside), beside
     assert len(driver.find_elements(By.CSS_SELECTOR, "#pictures canvas")) == 4
-    rungs = driver.execute_script(
+    counts = driver.execute_script(
         "return [...document.querySelectorAll('#charts figure')].map((s) => s.querySelectorAll('circle').length)")
-    assert rungs and all(count == 9 for count in rungs), f"three arms at three rungs are charted, not {rungs}"
+    assert counts and all(count == 9 for count in counts), f"three arms at three sample counts are charted, not {counts}"
     driver.execute_script(
         "document.getElementById('controls').open = true;"
         "const at = document.querySelector('[data-path=\"sphere.s\"] input[type=range]');"

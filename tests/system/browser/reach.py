@@ -78,8 +78,8 @@ def tests(page, folder):
                 browser.keys(driver, Keys.HOME)
                 browser.tab_to(driver, "#check")
                 browser.keys(driver, Keys.ENTER)
-                browser.wait(driver, "document.querySelector('#judged table')")
-                assert "--wo 0" in browser.text(driver, "#judged"), browser.text(driver, "#judged")
+                browser.wait(driver, "document.querySelector('#check-result table')")
+                assert "--wo 0" in browser.text(driver, "#check-result"), browser.text(driver, "#check-result")
                 shot(driver, "check")
             browser.tab_to(driver, "#next")
             browser.keys(driver, Keys.ENTER)
@@ -127,7 +127,7 @@ def tests(page, folder):
                     shot(driver, f"{name}-{scheme}-{width}")
 
     def rows_stand_beside_each_other(driver):
-        """Meters of arms that stand side by side have one line each, however long the words above them are."""
+        """Metrics of arms that stand side by side have one line each, however long the words above them are."""
         browser.open_page(driver, page, "#experiment=three-glosses&n=4&arms=uniform,cosine,phong")
         for width in (700, 1000, 1280, 1600, 3840):
             browser.size(driver, width, 900)
@@ -204,7 +204,7 @@ def tests(page, folder):
         browser.wait(driver, f"({box}).join() === '{x0},{y0},{x0 + 1},{y0 + 1}' && {browser.FINISHED}")
 
     def regions_are_drawn(driver):
-        """A region is dragged on a picture or typed: both reach the address, the outline and the meters."""
+        """A region is dragged on a picture or typed: both reach the address, the outline and the metrics."""
         browser.open_page(driver, page, small)
         canvas = driver.find_element(By.CSS_SELECTOR, "#pictures canvas")
         hand = ActionChains(driver).move_to_element_with_offset(canvas, -60, 20)

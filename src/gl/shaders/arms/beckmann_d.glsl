@@ -5,7 +5,7 @@
 #include "lobes/beckmann.glsl"
 
 Drawn sample_beckmann_d(vec3 wo, vec2 u) {
-    float a2 = sqr(site.alpha);
+    float a2 = sqr(shading_point.alpha);
     float tan2 = -a2 * 0.69314718056 * log2_from(1.0 - u.x, -u.x);
     float cos = 1.0 / sqrt(1.0 + tan2), sin = cos * sqrt(tan2);
     SinCos phi = sincos_turns(u.y);
@@ -16,5 +16,5 @@ Drawn sample_beckmann_d(vec3 wo, vec2 u) {
 }
 float pdf_beckmann_d(vec3 wo, vec3 wi) {
     vec3 m = halfway(wo, wi);
-    return above_horizon(wo, wi, beckmann_D(m, site.alpha) * m.z / half_jacobian(dot(wo, m)));
+    return above_horizon(wo, wi, beckmann_D(m, shading_point.alpha) * m.z / half_jacobian(dot(wo, m)));
 }

@@ -4,17 +4,17 @@
 #include "arms/halfway.glsl"
 
 Drawn sample_blinn(vec3 wo, vec2 u) {
-    Power root = power(u.x, 1.0 / (site.s + 1.0));
+    Power root = power(u.x, 1.0 / (shading_point.s + 1.0));
     float cos = root.value;
     float sin = sqrt(root.one_minus * (1.0 + cos));
     SinCos phi = sincos_turns(u.y);
     vec3 m = vec3(sin * phi.cos, sin * phi.sin, cos);
-    float p = (site.s + 1.0) * (0.5 / pi) * (u.x / cos) / half_jacobian(dot(wo, m));
+    float p = (shading_point.s + 1.0) * (0.5 / pi) * (u.x / cos) / half_jacobian(dot(wo, m));
     vec3 wi = mirror_about(wo, m);
     return Drawn(wi, above_horizon(wo, wi, u.x > 0.0 ? p : 0.0));
 }
 float pdf_blinn(vec3 wo, vec3 wi) {
     vec3 m = halfway(wo, wi);
     return above_horizon(
-        wo, wi, (site.s + 1.0) * (0.5 / pi) * cosine_power(m, vec3(0.0, 0.0, 1.0), site.s) / half_jacobian(dot(wo, m)));
+        wo, wi, (shading_point.s + 1.0) * (0.5 / pi) * cosine_power(m, vec3(0.0, 0.0, 1.0), shading_point.s) / half_jacobian(dot(wo, m)));
 }

@@ -6,10 +6,10 @@
 #include "lobes/ggx.glsl"
 
 float ggx_vndf_density(vec3 wo, vec3 wi, vec3 m) {
-    return above_horizon(wo, wi, ggx_G1(wo, site.alpha) * ggx_D(m, site.alpha) / (4.0 * max(wo.z, 1e-12)));
+    return above_horizon(wo, wi, ggx_G1(wo, shading_point.alpha) * ggx_D(m, shading_point.alpha) / (4.0 * max(wo.z, 1e-12)));
 }
 Drawn sample_ggx_vndf(vec3 wo, vec2 u) {
-    float a = site.alpha;
+    float a = shading_point.alpha;
     vec3 stretched = unit(vec3(a * wo.xy, wo.z));
     float rise = (1.0 - u.x) * (1.0 + stretched.z);  // z + stretched.z on the cap
     float z = rise - stretched.z;

@@ -7,8 +7,8 @@
 #include "arms/phong.glsl"
 
 float mixture_q() {
-    float sum = site.lobe + site.diffuse;
-    return sum > 0.0 ? min(site.lobe / sum, 0.9) : 0.0;
+    float sum = shading_point.lobe + shading_point.diffuse;
+    return sum > 0.0 ? min(shading_point.lobe / sum, 0.9) : 0.0;
 }
 float pdf_mixture(vec3 wo, vec3 wi) {
     float q = mixture_q();

@@ -1,9 +1,9 @@
 // blinn-phong, as src/lobes/blinn_phong.h: (s+2)(s+4)/(8 pi (2^(-s/2) + s)) (n.h)^s.
 // Giesen 2009, "Phong and Blinn-Phong normalization factors".
-#include "site.glsl"
+#include "shading_point.glsl"
 
 float lobe_blinn_phong(vec3 wo, vec3 wi) {
-    float s = site.s;
+    float s = shading_point.s;
     float half_power = s < 252.0 ? exp2_split(-0.5 * s).value : 0.0;  // 2^-126 is nothing beside s
     float scale = (s + 2.0) * (s + 4.0) / (8.0 * pi * (half_power + s));
     float f = scale * cosine_power(unit(wo + wi), vec3(0.0, 0.0, 1.0), s);

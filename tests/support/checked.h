@@ -12,14 +12,14 @@
 
 namespace crescent {
 
-inline CheckResult judged_alone(const CheckCase& trial, const TestSettings& settings) {
+inline CheckResult checked_alone(const CheckCase& check_case, const TestSettings& settings) {
     ProgressMonitor monitor;
-    return judge({&trial, 1}, settings, monitor);
+    return run_checks({&check_case, 1}, settings, monitor);
 }
 /// w_o at (theta, phi), degrees.
-inline CheckResult judged_at(
-    std::shared_ptr<const SamplerAdapter> subject, double theta, const TestSettings& settings, double phi = 130) {
-    return judged_alone(make_user_case(std::move(subject), theta, phi), settings);
+inline CheckResult checked_at(
+    std::shared_ptr<const SamplerAdapter> adapter, double theta, const TestSettings& settings, double phi = 130) {
+    return checked_alone(make_user_case(std::move(adapter), theta, phi), settings);
 }
 
 /// The first verdict of that name. Throws std::runtime_error where there is none.

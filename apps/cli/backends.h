@@ -9,7 +9,7 @@
 namespace crescent::cli {
 
 /// Null for "cpu", which is built in. Throws InputError where flags do not fit together, OutputError where this build
-/// has no such instrument or the machine lacks a part of it.
-std::shared_ptr<Instrument> instrument(const RunFlags& flags);
+/// has no such back end or the machine lacks a part of it.
+std::shared_ptr<Backend> backend(const RunFlags& flags);
 
 }  // namespace crescent::cli

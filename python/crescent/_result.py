@@ -1,4 +1,4 @@
-"""A judgement: nine verdicts a direction w_o, in words, as data, and as files."""
+"""A result: nine verdicts a direction w_o, in words, as data, and as files."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _verdict(raw: dict[str, Any]) -> Verdict:
 
 @dataclass(frozen=True)
 class _Kept:
-    """A judgement as texts and numbers alone, which go from process to process."""
+    """A result as texts and numbers alone, which go from process to process."""
 
     state: str
     as_expected: bool
@@ -72,12 +72,12 @@ class _Kept:
 class CheckResult:
     """What a call of :func:`crescent.check` found. It has no truth value: ask for ``.state``."""
 
-    def __init__(self, judged: _crescent.Judged | _Kept) -> None:
-        self._judged = judged
-        self._verdicts = tuple(_verdict(raw) for raw in judged.verdicts)
+    def __init__(self, checked: _crescent.CheckRun | _Kept) -> None:
+        self._run = checked
+        self._verdicts = tuple(_verdict(raw) for raw in checked.verdicts)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        j = self._judged
+        j = self._run
         texts = {"table": j.text(), "all": j.text(True), "json": j.json(), "junit": j.junit(), "html": j.html()}
         return CheckResult, (
             _Kept(self.state, self.as_expected, self.tests, self.questions, list(j.verdicts), texts),
@@ -86,12 +86,12 @@ class CheckResult:
     @property
     def state(self) -> State:
         """The worst of all verdicts: wrong, error, inconclusive or right."""
-        return self._judged.state  # type: ignore[return-value]
+        return self._run.state  # type: ignore[return-value]
 
     @property
     def as_expected(self) -> bool:
         """Every verdict is what the list of built-in arms expects; of a sampler of one's own: none is wrong."""
-        return bool(self._judged.as_expected)
+        return bool(self._run.as_expected)
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
@@ -101,12 +101,12 @@ class CheckResult:
     @property
     def tests(self) -> int:
         """How many statistical tests shared alpha."""
-        return int(self._judged.tests)
+        return int(self._run.tests)
 
     @property
     def questions(self) -> int:
         """How many draws, densities and values of f the sampler was asked for; 0 of arms of the list."""
-        return int(self._judged.questions)
+        return int(self._run.questions)
 
     def of(self, name: str) -> tuple[Verdict, ...]:
         """The verdicts of one name over all w_o."""
@@ -124,35 +124,35 @@ class CheckResult:
         return iter(self._verdicts)
 
     def __bool__(self) -> NoReturn:
-        raise TypeError("a judgement is right, wrong, inconclusive or an error: compare .state with one of them")
+        raise TypeError("a result is right, wrong, inconclusive or an error: compare .state with one of them")
 
     def __repr__(self) -> str:
         broken = f": {', '.join(self.broken())}" if self.broken() else ""
         return f"<CheckResult {self.state}{broken}; {len(self._verdicts)} verdicts>"
 
     def __str__(self) -> str:
-        return self._judged.text()
+        return self._run.text()
 
     def text(self, all: bool = False) -> str:
         """The table of the terminal; `all`: every verdict with its sentence."""
-        return self._judged.text(all)
+        return self._run.text(all)
 
     def json(self) -> str:
         """The text of docs/check.schema.json: equal calls give equal bytes."""
-        return self._judged.json()
+        return self._run.json()
 
     def junit(self, path: Path) -> None:
         """Writes JUnit XML for a build server."""
-        _write(path, self._judged.junit())
+        _write(path, self._run.junit())
 
     def html(self, path: Path) -> None:
         """Writes one page: the summary, a matrix of w_o and verdicts, maps, histograms and roses."""
-        _write(path, self._judged.html())
+        _write(path, self._run.html())
 
     def _repr_html_(self) -> str:
         """The page in a frame of a notebook's cell."""
-        page = self._judged.html().replace("&", "&amp;").replace('"', "&quot;")
-        return f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0" title="judgement"></iframe>'
+        page = self._run.html().replace("&", "&amp;").replace('"', "&quot;")
+        return f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0" title="result"></iframe>'
 
 
 def _write(path: Path, text: str) -> None:

@@ -1,4 +1,4 @@
-// How compare counts and judges, on renders that are made up, whose truth is known.
+// How compare counts and checks, on renders that are made up, whose truth is known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "compare/plan.h"
 #include "compare/synthetic.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::HasSubstr;
@@ -64,10 +64,10 @@ TEST(CompareJudges, EventsThatNoRenderMetAreSaidAndABoundAllowsForThem) {
         const CompareResult without = compare_synthetic(w, seed, {same}),
                             with = compare_synthetic(w, seed, {same, bound});
         EXPECT_EQ(without.state, State::fails);
-        const BiasResult told = between(without, "a", the_reference), allowed = between(with, "a", the_reference);
-        EXPECT_THAT(told.sentence, HasSubstr("Without a bias a would have to meet events brighter than"));
-        ASSERT_TRUE(told.unless);
-        EXPECT_LT(told.unless->size, event_size(w.a));
+        const BiasResult describe = between(without, "a", the_reference), allowed = between(with, "a", the_reference);
+        EXPECT_THAT(describe.sentence, HasSubstr("Without a bias a would have to meet events brighter than"));
+        ASSERT_TRUE(describe.unless);
+        EXPECT_LT(describe.unless->size, event_size(w.a));
         EXPECT_FALSE(allowed.differs()) << allowed.sentence;
         EXPECT_THAT(allowed.sentence, HasSubstr("heavy tail: a is darker by "));
         EXPECT_EQ(with.state, State::inconclusive) << with.sentence;
@@ -121,13 +121,13 @@ TEST(CompareJudges, IntervalsHoldTheTruthAsOftenAsTheySay) {
     for (std::uint32_t seed = 1; seed <= repeats; ++seed) {
         const CompareResult r = compare_synthetic(
             w, seed + 200, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"arms", "b", "spp"}, "16", true, ""}});
-        for (const auto& [meter, value] : truth) {
-            const MeterValue& m = r.arms[1].region(whole_frame).meter(meter);
-            held[meter] += m.interval && m.interval->first <= value && value <= m.interval->second;
+        for (const auto& [metric, value] : truth) {
+            const MetricValue& m = r.arms[1].region(whole_frame).metric(metric);
+            held[metric] += m.interval && m.interval->first <= value && value <= m.interval->second;
         }
     }
     // 95 of 100 are meant; fewer than 86 with a probability below 0.1 %.
-    for (const auto& [meter, count] : held) EXPECT_GE(count, 86) << meter;
+    for (const auto& [metric, count] : held) EXPECT_GE(count, 86) << metric;
 }
 
 TEST(CompareJudges, MetersAreWhatTheirNamesSay) {
@@ -135,15 +135,15 @@ TEST(CompareJudges, MetersAreWhatTheirNamesSay) {
     const CompareResult r =
         compare_synthetic(w, 7, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"flip"}, "true", true, ""}});
     const RegionResult& b = r.arms[1].region(whole_frame);
-    EXPECT_NEAR(*b.meter("var").value, 0.04, 0.002);
-    EXPECT_NEAR(*b.meter("bias2").value, 0.01, 0.001);
-    EXPECT_NEAR(*b.meter("rmse").value, std::sqrt(0.05), 0.005);
-    EXPECT_NEAR(*b.meter("relmse").value, 0.05 / 1.01, 0.002);
-    EXPECT_NEAR(*b.meter("y_mean").value, 1.1, 0.01);
-    EXPECT_NEAR(*b.meter("efficiency").value, 1 / (2 * *b.meter("var").value), 1e-9);
-    EXPECT_NEAR(*b.meter("unit_time").value, 2 * *b.meter("var").value, 1e-12);
-    EXPECT_GT(*b.meter("flip_ldr").value, 0);
-    EXPECT_FALSE(r.arms[0].region(whole_frame).meter("efficiency").value);
+    EXPECT_NEAR(*b.metric("var").value, 0.04, 0.002);
+    EXPECT_NEAR(*b.metric("bias2").value, 0.01, 0.001);
+    EXPECT_NEAR(*b.metric("rmse").value, std::sqrt(0.05), 0.005);
+    EXPECT_NEAR(*b.metric("relmse").value, 0.05 / 1.01, 0.002);
+    EXPECT_NEAR(*b.metric("y_mean").value, 1.1, 0.01);
+    EXPECT_NEAR(*b.metric("efficiency").value, 1 / (2 * *b.metric("var").value), 1e-9);
+    EXPECT_NEAR(*b.metric("unit_time").value, 2 * *b.metric("var").value, 1e-12);
+    EXPECT_GT(*b.metric("flip_ldr").value, 0);
+    EXPECT_FALSE(r.arms[0].region(whole_frame).metric("efficiency").value);
     EXPECT_FALSE(b.heavy());
 }
 
@@ -157,10 +157,10 @@ TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
             if (!a.heavy()) continue;
             ++heavy, numbered += a.renders_needed.has_value();
             if (a.renders_needed) EXPECT_GE(*a.renders_needed, 6);
-            EXPECT_FALSE(a.meter("rmse").interval);
-            ASSERT_TRUE(a.meter("fireflies").interval);
-            EXPECT_GE(a.meter("fireflies").interval->first, 0);
-            EXPECT_LE(a.meter("fireflies").interval->second, static_cast<double>(a.pixels));
+            EXPECT_FALSE(a.metric("rmse").interval);
+            ASSERT_TRUE(a.metric("fireflies").interval);
+            EXPECT_GE(a.metric("fireflies").interval->first, 0);
+            EXPECT_LE(a.metric("fireflies").interval->second, static_cast<double>(a.pixels));
         }
     }
     EXPECT_GE(heavy, 15);
@@ -193,14 +193,14 @@ TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
     const CompareResult r = compare_synthetic(world(8, 0), 5);
     ASSERT_EQ(r.noise.size(), 1u);
     const NoiseResult& n = r.noise[0];  // b over a: 0.04 / 0.25
-    EXPECT_EQ(std::count(n.told_apart.begin(), n.told_apart.end(), true), 9);
+    EXPECT_EQ(std::count(n.distinguished.begin(), n.distinguished.end(), true), 9);
     for (const double x : n.log2_ratio) EXPECT_NEAR(x, std::log2(0.16), 0.7);
     std::uint64_t tiles = 0;
-    for (const std::uint64_t count : n.regions.back().told) tiles += count;
+    for (const std::uint64_t count : n.regions.back().describe) tiles += count;
     EXPECT_EQ(tiles, 9u);
     const CompareResult equal = compare_synthetic({fine, fine, 8, 24}, 5);
-    EXPECT_EQ(std::count(equal.noise[0].told_apart.begin(), equal.noise[0].told_apart.end(), true), 0);
+    EXPECT_EQ(std::count(equal.noise[0].distinguished.begin(), equal.noise[0].distinguished.end(), true), 0);
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -1,6 +1,7 @@
-// sites_of() finds the sites tile by tile on all cores; they are put into one array of floats, layer after layer, and
-// uploaded once as RGBA32F. A pixel without a site has -1 in the place of its lobe. Lengths in m.
-#include "site_texture.h"
+// shading_points_of() finds the shading points tile by tile on all cores; they are put into one array of floats, layer
+// after layer, and uploaded once as RGBA32F. A pixel without a shading point has -1 in the place of its lobe. Lengths
+// in m.
+#include "point_texture.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -22,30 +23,30 @@ std::vector<TileBox> tiles_in(const TileBox& box) {
 
 }  // namespace
 
-SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor)
+PointTexture::PointTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor)
     : context_(context), box_(box), image_width_(static_cast<std::size_t>(scene.image().width)) {
     const std::vector<TileBox> tiles = tiles_in(box);
     std::vector<std::vector<ShadingPoints>> all(tiles.size());
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (!monitor.stop) all[k] = sites_of(scene, tiles[k], nullptr);
+        if (!monitor.stop) all[k] = shading_points_of(scene, tiles[k], nullptr);
     });
     monitor.check();
     for (std::vector<ShadingPoints>& groups : all)
         for (ShadingPoints& group : groups) groups_.push_back(std::move(group));
 
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
-                      layer_count = site_layers(count_lights(scene));
+                      layer_count = point_layers(count_lights(scene));
     std::vector<float> layers(4 * texels * layer_count, 0.0f);
     for (std::size_t k = 0; k < texels; ++k) layers[4 * (layer_of_lobe * texels + k) + 3] = -1;
     tbb::parallel_for(std::size_t{0}, groups_.size(), [&](std::size_t g) {
-        for (std::size_t i = 0; i < groups_[g].count; ++i) fill_site(layers, groups_[g], i);
+        for (std::size_t i = 0; i < groups_[g].count; ++i) fill_point(layers, groups_[g], i);
     });
     upload(layers, layer_count);
 }
 
-SiteTexture::~SiteTexture() { context_.gl().DeleteTextures(1, &texture_); }
+PointTexture::~PointTexture() { context_.gl().DeleteTextures(1, &texture_); }
 
-void SiteTexture::fill_site(std::vector<float>& layers, const ShadingPoints& s, std::size_t i) const {
+void PointTexture::fill_point(std::vector<float>& layers, const ShadingPoints& s, std::size_t i) const {
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()), at = texel(s, i);
     std::size_t layer = 0;
     const auto put = [&](float x, float y, float z, float w) {
@@ -72,7 +73,7 @@ void SiteTexture::fill_site(std::vector<float>& layers, const ShadingPoints& s, 
     }
 }
 
-void SiteTexture::upload(const std::vector<float>& layers, std::size_t layer_count) {
+void PointTexture::upload(const std::vector<float>& layers, std::size_t layer_count) {
     const Functions& gl = context_.gl();
     gl.GenTextures(1, &texture_);
     bind();
@@ -84,18 +85,18 @@ void SiteTexture::upload(const std::vector<float>& layers, std::size_t layer_cou
     context_.check("sending the sites to the device");
 }
 
-void SiteTexture::bind() const {
+void PointTexture::bind() const {
     context_.gl().ActiveTexture(GL_TEXTURE0);
     context_.gl().BindTexture(GL_TEXTURE_2D_ARRAY, texture_);
 }
 
-std::size_t SiteTexture::texel(const ShadingPoints& group, std::size_t i) const {
+std::size_t PointTexture::texel(const ShadingPoints& group, std::size_t i) const {
     const std::size_t x = group.pixel[i] % image_width_, y = group.pixel[i] / image_width_;
     return (y - static_cast<std::size_t>(box_.y0)) * static_cast<std::size_t>(width()) +
         (x - static_cast<std::size_t>(box_.x0));
 }
 
-std::vector<int> SiteTexture::lobes() const {
+std::vector<int> PointTexture::lobes() const {
     std::vector<int> out;
     for (const ShadingPoints& group : groups_)
         if (std::find(out.begin(), out.end(), group.lobe) == out.end()) out.push_back(group.lobe);
@@ -103,7 +104,7 @@ std::vector<int> SiteTexture::lobes() const {
     return out;
 }
 
-LobePixels SiteTexture::pixels_of(int lobe) const {
+LobePixels PointTexture::pixels_of(int lobe) const {
     const std::size_t across = static_cast<std::size_t>(width());
     LobePixels out{
         std::vector<std::uint64_t>(static_cast<std::size_t>((height() + strip_rows - 1) / strip_rows)), width(), 0};
@@ -123,7 +124,7 @@ LightCounts count_lights(const Scene& scene) {
 }
 
 std::vector<TileBox> rectangles_of(int width, int height, const LightCounts& lights, int largest_texture) {
-    const int texels = static_cast<int>((std::size_t{256} << 20) / (16 * site_layers(lights)));
+    const int texels = static_cast<int>((std::size_t{256} << 20) / (16 * point_layers(lights)));
     const int across = std::min(width, largest_texture);
     const int up = std::clamp(texels / across, 1, std::min(height, largest_texture));
     std::vector<TileBox> out;

@@ -1,4 +1,4 @@
-// Whole runs: what the meters read off GL films is what they read off the CPU's, within 1 % of the band that the seeds
+// Whole runs: what the metrics read off GL films is what they read off the CPU's, within 1 % of the band that the seeds
 // span.
 #include <gtest/gtest.h>
 
@@ -19,28 +19,28 @@ box = [4, 4, 90, 16]
         "metered.toml", {"seeds=8", "n=64", "arms.phong.n=[4,16,64]"});
 }
 
-Measured measured_with(const std::shared_ptr<Instrument>& instrument) {
+Measured measured_with(const std::shared_ptr<Backend>& backend) {
     ProgressMonitor monitor;
     RunOptions options;
-    options.instrument = instrument;
+    options.backend = backend;
     return measure_in_memory(metered_scene(), options, monitor);
 }
 
-TEST(MeterLaw, EveryMeterOfARunIsTheCpusWithinOnePercentOfItsBand) {
-    const Measured cpu = measured_with(nullptr), gl = measured_with(find_instrument("gl")->open({}));
+TEST(MetricsAgreement, EveryMeterOfARunIsTheCpusWithinOnePercentOfItsBand) {
+    const Measured cpu = measured_with(nullptr), gl = measured_with(find_backend("gl")->open({}));
     ASSERT_EQ(cpu.metrics.bands.size(), gl.metrics.bands.size());
     ASSERT_GT(cpu.metrics.bands.size(), 20u);
     for (std::size_t k = 0; k < cpu.metrics.bands.size(); ++k) {
         const SeedSpread &a = cpu.metrics.bands[k], &b = gl.metrics.bands[k];
-        // Meters that no seed changes have a band of no width: rounding of the films' floats is left to them.
+        // Metrics that no seed changes have a band of no width: rounding of the films' floats is left to them.
         const double allowed = 0.01 * (a.band.q95 - a.band.q05) + 1e-6 * std::abs(a.measured);
-        EXPECT_NEAR(b.measured, a.measured, allowed) << to_string(a.key) << " " << a.meter;
-        EXPECT_NEAR(b.band.median, a.band.median, allowed) << to_string(a.key) << " " << a.meter;
+        EXPECT_NEAR(b.measured, a.measured, allowed) << to_string(a.key) << " " << a.metric;
+        EXPECT_NEAR(b.band.median, a.band.median, allowed) << to_string(a.key) << " " << a.metric;
     }
     EXPECT_TRUE(gl.metrics.all_hold());
     EXPECT_EQ(gl.metrics.assertions.size(), cpu.metrics.assertions.size() + 8) << "the GL's own claims join";
-    EXPECT_EQ(gl.provenance.instrument_details.size(), 3u);
-    EXPECT_TRUE(cpu.provenance.instrument_details.empty());
+    EXPECT_EQ(gl.provenance.backend_details.size(), 3u);
+    EXPECT_TRUE(cpu.provenance.backend_details.empty());
 }
 
 }  // namespace

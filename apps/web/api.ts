@@ -1,6 +1,6 @@
-// One instance of the WebAssembly module, as apps/web/door.h describes it. Everything that is computed is computed there.
+// One instance of the WebAssembly module, as apps/web/api.h describes it. Everything that is computed is computed there.
 
-/** What the core said instead of an answer: "input" is the reader's mistake, "memory" and "bug" are not. */
+/** What the core returns instead of an answer: "input" is the reader's mistake, "memory" and "bug" are not. */
 export class DoorError extends Error {
   constructor(readonly kind: string, text: string) {
     super(text);
@@ -45,7 +45,7 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
 
 const unwinding = 1, rewinding = 2; // what asyncify_get_state() says
 
-export class Door {
+export class Api {
   private readonly calls: Record<string, Call>;
   private readonly memory: WebAssembly.Memory;
   private paused: (() => number) | undefined; // goes on with a call that left the module, apps/web/pause.h
@@ -60,9 +60,9 @@ export class Door {
     const pause = (): void => {
       const call = this.calls;
       if (call["asyncify_get_state"]!() === rewinding) call["asyncify_stop_rewind"]!();
-      else call["asyncify_start_unwind"]!((this.room = call["pause_room"]!()));
+      else call["asyncify_start_unwind"]!((this.room = call["pause_buffer"]!()));
     };
-    const imports: WebAssembly.Imports = { door: { failed, pause }, wasi_snapshot_preview1: {} };
+    const imports: WebAssembly.Imports = { api: { failed, pause }, wasi_snapshot_preview1: {} };
     for (const { module: from, name } of WebAssembly.Module.imports(module))
       if (from === "wasi_snapshot_preview1") imports[from]![name] = system[name]!;
     const instance = new WebAssembly.Instance(module, imports);
@@ -81,9 +81,9 @@ export class Door {
   /** A call that takes and returns numbers. A trap becomes an error with a sentence. */
   number(name: string, ...given: number[]): number {
     try {
-      const told = this.calls[name]!(...given);
+      const info = this.calls[name]!(...given);
       if (this.calls["asyncify_get_state"]!() === unwinding) this.pauseIn(name, given);
-      return told;
+      return info;
     } catch (error) {
       if (error instanceof DoorError) throw error;
       const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
@@ -105,7 +105,7 @@ export class Door {
 
   private request(request: unknown): void {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
-    const at = this.number("room", bytes.length);
+    const at = this.number("request_buffer", bytes.length);
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
   }
 
@@ -115,7 +115,7 @@ export class Door {
     if (this.paused && name === "go_on") this.paused();
     else this.number(name, ...given);
     if (this.paused) return '{"more":1}';
-    return this.words(this.number("said_at"), this.number("said_size"));
+    return this.words(this.number("response_data"), this.number("response_size"));
   }
 
   ask<T>(name: string, request?: unknown, ...given: number[]): T {
@@ -136,7 +136,7 @@ export class Door {
 
   /** Bytes into the module, for the call that follows. */
   give(bytes: ArrayBuffer): void {
-    const at = this.number("tile_room", bytes.byteLength);
+    const at = this.number("tile_buffer", bytes.byteLength);
     new Uint8Array(this.memory.buffer, at, bytes.byteLength).set(new Uint8Array(bytes));
   }
 }

@@ -9,13 +9,13 @@ namespace crescent {
 
 struct RightFamily {
     std::string name;
-    std::uint64_t judged = 0, accused = 0, undecided = 0;
+    std::uint64_t checked = 0, false_alarms = 0, undecided = 0;
 };
 
 struct FalseAlarmStudy {
     std::vector<RightFamily> families;
-    std::uint64_t judged = 0, accused = 0, undecided = 0;
-    std::vector<std::string> said;  // of every verdict that is not right, a line each
+    std::uint64_t checked = 0, false_alarms = 0, undecided = 0;
+    std::vector<std::string> message;  // of every verdict that is not right, a line each
     double alpha = 0;
     bool full = false;
 };
@@ -24,6 +24,6 @@ struct FalseAlarmStudy {
 FalseAlarmStudy measure_false_alarms(
     std::uint64_t first, std::uint64_t count, const TestSettings& settings, ProgressMonitor& monitor);
 /// A table by family, and what was said.
-std::string right_law_text(const FalseAlarmStudy& law);
+std::string false_alarm_text(const FalseAlarmStudy& study);
 
 }  // namespace crescent

@@ -1,4 +1,4 @@
-// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on
+// crescent_backends FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on
 // GL, in one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some
 // repetitions, CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's
 // arithmetic peak in Gflop/s as its maker states it; the last column is then the fraction of it that the samples'
@@ -28,7 +28,7 @@ struct Figures {
     double cpu = 0, gl = 0;  // Msamples/s
 };
 
-Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampler, std::uint64_t n, double samples) {
+Figures measure_arm(const Scene& scene, Backend& gl, const std::string& sampler, std::uint64_t n, double samples) {
     ProgressMonitor monitor;
     const Job job{sampler, sampler, {n}, scene.s(), 1};
     gl.films(scene, {sampler, sampler, {1}, job.s, 1}, monitor);  // compiles
@@ -47,7 +47,7 @@ std::string processor() {
     return "unknown processor";
 }
 
-void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<Instrument>& gl, double peak) {
+void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<Backend>& gl, double peak) {
     Scene scene(experiment);
     scene.remember_primaries();
     std::uint64_t pixels = 0, glossy = 0;
@@ -79,8 +79,8 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
 
 int main(int argc, char** argv) try {
     if (argc < 3 || argc > 6)
-        throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
-    const auto kind = find_instrument("gl");
+        throw InputError({"crescent_backends", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
+    const auto kind = find_backend("gl");
     if (!kind) throw OutputError("this build has no GL instrument");
     Experiment experiment = load(argv[1]);
     for (Shape& shape : experiment.shapes)

@@ -2,7 +2,7 @@
 // it to an arm. Directions in the local frame unless they are said to be the world's; lengths in m, radiance in
 // W/(sr m^2).
 //
-// `sites` has one texel a pixel and these layers, written by gl/site_texture.cpp:
+// `shading_points` has one texel a pixel and these layers, written by gl/point_texture.cpp:
 //   0  wo, s                  3  the frame's t (world), fill_d     6 + 2k  disk k: from the surface to its centre, d
 //   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
 //      rho_s, -               5  its n, lobe + 1 (-1: no surface)
@@ -11,7 +11,7 @@
 // power.
 #include "lights.glsl"
 
-uniform sampler2DArray sites;
+uniform sampler2DArray shading_points;
 uniform vec3 disk_kind[DISK_SLOTS];  // radius; 1: emits from both sides; power, Y(L) pi r^2 relative to all disks
 
 // A disk light as seen from the surface.
@@ -29,7 +29,7 @@ struct ShadingPoint {
     vec3 wo;
     float s, alpha, diffuse, lobe;  // Phong exponent, GGX roughness, Y(rho_d), rho_s
 };
-ShadingPoint site;
+ShadingPoint shading_point;
 
 // What the estimator alone knows.
 struct Surroundings {
@@ -40,14 +40,14 @@ struct Surroundings {
     float kind;            // lobe + 1; -1: no surface
 };
 
-Surroundings load_site(ivec2 at) {
-    vec4 a = texelFetch(sites, ivec3(at, 0), 0), b = texelFetch(sites, ivec3(at, 1), 0),
-         c = texelFetch(sites, ivec3(at, 2), 0);
-    vec4 t = texelFetch(sites, ivec3(at, 3), 0), u = texelFetch(sites, ivec3(at, 4), 0),
-         n = texelFetch(sites, ivec3(at, 5), 0);
-    site = ShadingPoint(a.xyz, a.w, b.x, b.y, b.z);
+Surroundings load_point(ivec2 at) {
+    vec4 a = texelFetch(shading_points, ivec3(at, 0), 0), b = texelFetch(shading_points, ivec3(at, 1), 0),
+         c = texelFetch(shading_points, ivec3(at, 2), 0);
+    vec4 t = texelFetch(shading_points, ivec3(at, 3), 0), u = texelFetch(shading_points, ivec3(at, 4), 0),
+         n = texelFetch(shading_points, ivec3(at, 5), 0);
+    shading_point = ShadingPoint(a.xyz, a.w, b.x, b.y, b.z);
     for (int k = 0; k < DISKS; ++k) {
-        vec4 center = texelFetch(sites, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(sites, ivec3(at, 7 + 2 * k), 0);
+        vec4 center = texelFetch(shading_points, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(shading_points, ivec3(at, 7 + 2 * k), 0);
         float height = dot(center.xyz, normal.xyz);
         bool apart = abs(height) > 1e-6 * (length(center.xyz) + disk_kind[k].x);
         disks[k] =
@@ -56,7 +56,7 @@ Surroundings load_site(ivec2 at) {
     }
     for (int k = 0; k < OTHERS; ++k) {
         vec4 n[5];
-        for (int j = 0; j < 5; ++j) n[j] = texelFetch(sites, ivec3(at, 6 + 2 * DISKS + 5 * k + j), 0);
+        for (int j = 0; j < 5; ++j) n[j] = texelFetch(shading_points, ivec3(at, 6 + 2 * DISKS + 5 * k + j), 0);
         others[k] = LocalLight(int(n[4].z), n[4].w, n[0].xyz, n[1].xyz, n[2].xyz,
             float[7](n[2].w, n[3].x, n[3].y, n[3].z, n[3].w, n[4].x, n[4].y));
         light_worth[k] = vec2(n[0].w, n[1].w);

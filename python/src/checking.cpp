@@ -1,4 +1,4 @@
-// Samplers and their judgement, for crescent/_check.py: subjects in, a CheckResult out.
+// Samplers and their result, for crescent/_check.py: samplers in, a CheckResult out.
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -13,23 +13,23 @@ namespace crescent::python {
 
 namespace {
 
-using Subject = std::shared_ptr<const SamplerAdapter>;
+using Adapter = std::shared_ptr<const SamplerAdapter>;
 
 /// CheckCases over w_o, and who is asked in them.
 struct CheckCases {
     std::vector<CheckCase> all;
-    Subject subject;  // null: an arm of the list
+    Adapter adapter;  // null: an arm of the list
     std::size_t size() const {
-        std::size_t judged = 0;
-        for (const CheckCase& t : all) judged += !t.baseline;
-        return judged;
+        std::size_t checked = 0;
+        for (const CheckCase& t : all) checked += !t.baseline;
+        return checked;
     }
 };
 
-Traits::Asked asked_word(const std::string& wo) {
-    if (wo == "upper") return Traits::Asked::upper;
-    if (wo == "both") return Traits::Asked::both;
-    if (wo == "none") return Traits::Asked::none;
+Traits::WoDomain wo_domain(const std::string& wo) {
+    if (wo == "upper") return Traits::WoDomain::upper;
+    if (wo == "both") return Traits::WoDomain::both;
+    if (wo == "none") return Traits::WoDomain::none;
     throw nb::value_error(fmt::format("wo is '{}': expected 'upper', 'both' or 'none'", wo).c_str());
 }
 
@@ -39,21 +39,21 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
     c.traits.numbers = numbers;
     c.traits.channels = channels;
-    c.traits.wo = asked_word(wo);
+    c.traits.wo = wo_domain(wo);
     c.traits.has_pdf = !c.pdf.is_none();
     c.traits.delta = delta;
     c.traits.reciprocal = reciprocal;
     c.traits.own_random = own_random;
     c.traits.importance = importance;
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
-    const auto subject = std::make_shared<CallableSampler>(std::move(c));
-    return {make_user_cases(subject, full, grid), subject};
+    const auto adapter = std::make_shared<CallableSampler>(std::move(c));
+    return {make_user_cases(adapter, full, grid), adapter};
 }
 
-/// What was judged of what, in words and for files.
-struct Judged {
-    CheckResult judgement;
-    JudgementSource source;
+/// What was checked of what, in words and for files.
+struct CheckRun {
+    CheckResult result;
+    ResultSource source;
     bool against = false;
 };
 
@@ -68,37 +68,38 @@ TestSettings settings_of(double alpha, std::uint32_t seed, bool full, bool accep
     return r;
 }
 
-void tell(const CheckCases& trials, Raised* raised) {
-    if (const auto* callables = dynamic_cast<const CallableSampler*>(trials.subject.get())) callables->tell(raised);
+void set_raised(const CheckCases& check_cases, Raised* raised) {
+    if (const auto* callables = dynamic_cast<const CallableSampler*>(check_cases.adapter.get()))
+        callables->set_raised(raised);
 }
 
-bool is_serial(const CheckCases& trials) {
-    return dynamic_cast<const CallableSampler*>(trials.subject.get()) && trials.subject->serial();
+bool is_serial(const CheckCases& check_cases) {
+    return dynamic_cast<const CallableSampler*>(check_cases.adapter.get()) && check_cases.adapter->serial();
 }
 
-Judged judged(CheckCases& trials, CheckCases* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
-    bool expect_same, int threads, const std::string& command, const nb::object& progress) {
+CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::uint32_t seed, bool full,
+    bool accept_few, bool expect_same, int threads, const std::string& command, const nb::object& progress) {
     const TestSettings settings = settings_of(alpha, seed, full, accept_few);
     PolledMonitor monitor;
     Raised raised(monitor);
-    Judged out{{}, {version(), commit(), command}, other != nullptr};
+    CheckRun out{{}, {version(), commit(), command}, other != nullptr};
     const auto work = [&] {
         if (!other) {
-            out.judgement = judge(trials.all, settings, monitor);
+            out.result = run_checks(check_cases.all, settings, monitor);
             return;
         }
-        std::vector<CheckCase> a = trials.all, b = other->all;
+        std::vector<CheckCase> a = check_cases.all, b = other->all;
         for (std::vector<CheckCase>* side : {&a, &b})
             std::erase_if(*side, [](const CheckCase& t) { return t.baseline; });
-        if (other->subject) b = sampler_against(other->subject, a);
-        out.judgement = compare_samplers(a, b, settings, expect_same, monitor);
+        if (other->adapter) b = sampler_against(other->adapter, a);
+        out.result = compare_samplers(a, b, settings, expect_same, monitor);
     };
-    const bool serial = is_serial(trials) || (other && is_serial(*other));
-    tell(trials, &raised);
-    if (other) tell(*other, &raised);
+    const bool serial = is_serial(check_cases) || (other && is_serial(*other));
+    set_raised(check_cases, &raised);
+    if (other) set_raised(*other, &raised);
     const auto quiet = [&] {
-        tell(trials, nullptr);
-        if (other) tell(*other, nullptr);
+        set_raised(check_cases, nullptr);
+        if (other) set_raised(*other, nullptr);
     };
     try {
         watched(monitor, raised, progress, serial, [&] { threads > 0 ? on_threads(threads, work) : work(); });
@@ -112,29 +113,29 @@ Judged judged(CheckCases& trials, CheckCases* other, double alpha, std::uint32_t
 
 /// What distribution the draws have: as text and as JSON.
 std::pair<std::string, std::string> described(
-    CheckCases& trials, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
+    CheckCases& check_cases, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
     check::DescribeSettings settings;
     settings.seed = seed;
     if (full) settings.draws *= 16, settings.draws_of_limited *= 16;
     PolledMonitor monitor;
     Raised raised(monitor);
     std::vector<check::Description> all;
-    const auto work = [&] { all = check::describe(trials.all, settings, monitor); };
-    tell(trials, &raised);
+    const auto work = [&] { all = check::describe(check_cases.all, settings, monitor); };
+    set_raised(check_cases, &raised);
     try {
-        watched(
-            monitor, raised, progress, is_serial(trials), [&] { threads > 0 ? on_threads(threads, work) : work(); });
+        watched(monitor, raised, progress, is_serial(check_cases),
+            [&] { threads > 0 ? on_threads(threads, work) : work(); });
     } catch (...) {
-        tell(trials, nullptr);
+        set_raised(check_cases, nullptr);
         throw;
     }
-    tell(trials, nullptr);
+    set_raised(check_cases, nullptr);
     std::string text;
     for (const check::Description& d : all) text += check::description_text(d) + "\n";
     return {text, check::description_json(all).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
 }
 
-/// The trials of an arm of the list where `a` was judged.
+/// The cases of an arm of the list where `a` was checked.
 CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
     if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
         const std::string near = nearest(arm, names);
@@ -142,17 +143,17 @@ CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
             "against is '{}': no built-in arm{}", arm, near.empty() ? "" : fmt::format("; did you mean '{}'?", near))
                 .c_str());
     }
-    std::vector<CheckCase> judged = a.all;
-    std::erase_if(judged, [](const CheckCase& t) { return t.baseline; });
-    return {sampler_named_against(arm, judged), nullptr};
+    std::vector<CheckCase> checked = a.all;
+    std::erase_if(checked, [](const CheckCase& t) { return t.baseline; });
+    return {sampler_named_against(arm, checked), nullptr};
 }
 
-void draw_batches(const CheckCases& trials, std::uint32_t batches) {
-    if (!trials.subject) throw nb::value_error("an arm of the list has no callables");
+void draw_batches(const CheckCases& check_cases, std::uint32_t batches) {
+    if (!check_cases.adapter) throw nb::value_error("an arm of the list has no callables");
     PolledMonitor monitor;
     Raised raised(monitor);
-    tell(trials, &raised);
-    const int count = trials.subject->traits().numbers;
+    set_raised(check_cases, &raised);
+    const int count = check_cases.adapter->traits().numbers;
     const auto batch = [&](std::uint32_t b) {
         std::vector<PrimarySample> u(32768);
         std::vector<Draw> out(u.size());
@@ -162,14 +163,14 @@ void draw_batches(const CheckCases& trials, std::uint32_t batches) {
                 u[i][k] = pair.x;
                 if (k + 1 < count) u[i][k + 1] = pair.y;
             }
-        trials.subject->sample(0, trials.all.front().wo, u, out);
+        check_cases.adapter->sample(0, check_cases.all.front().wo, u, out);
     };
-    watched(monitor, raised, nb::none(), trials.subject->serial(), [&] {
-        if (trials.subject->serial())
+    watched(monitor, raised, nb::none(), check_cases.adapter->serial(), [&] {
+        if (check_cases.adapter->serial())
             for (std::uint32_t b = 0; b < batches; ++b) batch(b);
         else parallel_for(std::uint32_t{0}, batches, batch);
     });
-    tell(trials, nullptr);
+    set_raised(check_cases, nullptr);
 }
 
 using AsDict = nb::typed<nb::dict, std::string, nb::any>;
@@ -177,10 +178,10 @@ using AsDict = nb::typed<nb::dict, std::string, nb::any>;
 AsDict as_dict(const Verdict& v) {
     nb::dict out;
     out["arm"] = v.arm;
-    out["case"] = v.trial;
+    out["case"] = v.check_case;
     out["name"] = v.name;
     out["state"] = std::string(word(v.state));
-    out["say"] = v.say;
+    out["say"] = v.message;
     out["cause"] = v.cause;
     out["settle"] = settling(v, FrontEnd::python);
     out["expected"] = v.expected;
@@ -189,61 +190,61 @@ AsDict as_dict(const Verdict& v) {
     return out;
 }
 
-std::vector<AsDict> verdicts_of(const Judged& j) {
+std::vector<AsDict> verdicts_of(const CheckRun& j) {
     std::vector<AsDict> out;
-    for (const Verdict& v : j.judgement.verdicts) out.push_back(as_dict(v));
+    for (const Verdict& v : j.result.verdicts) out.push_back(as_dict(v));
     return out;
 }
 
-void add_judged(nb::module_& m) {
-    nb::class_<Judged>(m, "Judged", "A judgement as it came: verdicts with their evidence, and where it comes from.")
-        .def_prop_ro("state", [](const Judged& j) { return std::string(word(j.judgement.state)); })
-        .def_prop_ro("as_expected", [](const Judged& j) { return j.judgement.as_expected; })
-        .def_prop_ro("tests", [](const Judged& j) { return j.judgement.tests; })
-        .def_prop_ro("questions", [](const Judged& j) { return j.judgement.questions; })
+void add_check_run(nb::module_& m) {
+    nb::class_<CheckRun>(m, "CheckRun", "A result as it came: verdicts with their evidence, and where it comes from.")
+        .def_prop_ro("state", [](const CheckRun& j) { return std::string(word(j.result.state)); })
+        .def_prop_ro("as_expected", [](const CheckRun& j) { return j.result.as_expected; })
+        .def_prop_ro("tests", [](const CheckRun& j) { return j.result.tests; })
+        .def_prop_ro("questions", [](const CheckRun& j) { return j.result.questions; })
         .def_prop_ro("verdicts", &verdicts_of)
         .def(
             "text",
-            [](const Judged& j, bool all) {
-                return j.against ? against_text(j.judgement) : verdict_table(j.judgement, all);
+            [](const CheckRun& j, bool all) {
+                return j.against ? against_text(j.result) : verdict_table(j.result, all);
             },
             nb::arg("all") = false)
-        .def("json", [](const Judged& j) { return verdict_json(j.judgement, j.source); })
-        .def("junit", [](const Judged& j) { return verdict_junit(j.judgement); })
-        .def("html", [](const Judged& j) { return verdict_html(j.judgement, j.source); });
+        .def("json", [](const CheckRun& j) { return verdict_json(j.result, j.source); })
+        .def("junit", [](const CheckRun& j) { return verdict_junit(j.result); })
+        .def("html", [](const CheckRun& j) { return verdict_html(j.result, j.source); });
 }
 
 }  // namespace
 
-void add_judging(nb::module_& m) {
+void add_checking(nb::module_& m) {
     using namespace nb::literals;
-    nb::class_<CheckCases>(m, "CheckCases", "A sampler over a grid of w_o, ready to be judged.")
+    nb::class_<CheckCases>(m, "CheckCases", "A sampler over a grid of w_o, ready to be checked.")
         .def("__len__", &CheckCases::size)
         .def_prop_ro(
             "draws",
             [](const CheckCases& t) {
-                const auto* c = dynamic_cast<const CallableSampler*>(t.subject.get());
+                const auto* c = dynamic_cast<const CallableSampler*>(t.adapter.get());
                 return c ? c->draws() : 0;
             },
             "Draws that the callables made so far.");
-    m.def("trials_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
+    m.def("cases_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
         "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "own_random"_a,
         "eta"_a.none(), "importance"_a, "full"_a, "grid"_a);
     m.def(
-        "trials_of_arm",
+        "cases_of_arm",
         [](const std::string& arm, const Settings& settings, bool full, const Grid& grid) {
             return CheckCases{make_cases(arm, settings, full, grid), nullptr};
         },
         "arm"_a, "settings"_a, "full"_a, "grid"_a);
-    m.def("draw", &draw_batches, "trials"_a, "batches"_a,
+    m.def("draw", &draw_batches, "cases"_a, "batches"_a,
         "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
-    m.def("arm_beside", &arm_beside, "arm"_a, "trials"_a);
-    m.def("judge", &judged, "trials"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
+    m.def("baseline_of", &arm_beside, "arm"_a, "cases"_a);
+    m.def("run_checks", &checked, "cases"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
         "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
-    m.def("describe", &described, "trials"_a, "seed"_a, "full"_a, "threads"_a, "progress"_a.none());
+    m.def("describe", &described, "cases"_a, "seed"_a, "full"_a, "threads"_a, "progress"_a.none());
     m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes beside the place and renames.");
     m.def("sampler_names", &sampler_names, "The built-in arms.");
-    add_judged(m);
+    add_check_run(m);
 }
 
 }  // namespace crescent::python

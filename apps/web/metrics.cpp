@@ -1,4 +1,4 @@
-// Numbers under the pictures: the meters of a film beside what was published for the same run, tails, and charts
+// Numbers under the pictures: the metrics of a film beside what was published for the same run, tails, and charts
 // of both.
 #include <fmt/format.h>
 
@@ -11,9 +11,10 @@ namespace crescent::web {
 
 namespace {
 
-ordered_json one_meter(const RunMetrics& run, const std::string& name) {
+ordered_json one_metric(const RunMetrics& run, const std::string& name) {
     const std::optional<Published>& figures = bench().experiment.figures;
-    ordered_json out = {{"value", told(meter_value(run, name))}, {"text", figures_of(name, meter_value(run, name))}};
+    ordered_json out = {
+        {"value", json_number(metric_value(run, name))}, {"text", figures_of(name, metric_value(run, name))}};
     const bool same_seed = figures && (!figures->seed || *figures->seed == run.key.seed);
     const auto published = same_seed ? figures->find(run.key.arm, run.key.n, run.key.s, name) : std::nullopt;
     if (published) out["published"] = figures_of(name, *published);
@@ -40,10 +41,10 @@ void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan
     largest.resize(plan.kept);
 }
 
-void say_tail(std::vector<float>& largest) {
+void send_tail(std::vector<float>& largest) {
     std::ranges::sort(largest, std::greater<>());
     const std::optional<Tail> found = fit_pooled_tail(largest);
-    if (!found) return say(ordered_json{{"words", "no tail: the samples do not spread"}});
+    if (!found) return respond(ordered_json{{"words", "no tail: the samples do not spread"}});
     // The mean is the integral and exists whatever k is; from k = 1 on the samples seen do not bound it.
     const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
     const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
@@ -51,16 +52,16 @@ void say_tail(std::vector<float>& largest) {
         : found->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
         : sure                                   ? "the variance looks finite"
                                                  : "the variance may be finite";
-    say(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
+    respond(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
         {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
 }
 
-ordered_json meters_of(const Slot& s) {
+ordered_json metrics_of(const Slot& s) {
     const Bench& b = bench();
     const RunMetrics run = measure(b.experiment, s.key, s.film, b.reference, b.shapes);
-    ordered_json out = {{"key", to_string(s.key)}, {"largest", told(run.largest)}, {"bad", run.bad}};
-    for (const auto& [name, info] : meter_names(b.experiment))
-        if (!(info->from_two_samples && s.key.n < 2)) out["meters"][name] = one_meter(run, name);
+    ordered_json out = {{"key", to_string(s.key)}, {"largest", json_number(run.largest)}, {"bad", run.bad}};
+    for (const auto& [name, info] : metric_names(b.experiment))
+        if (!(info->from_two_samples && s.key.n < 2)) out["metrics"][name] = one_metric(run, name);
     for (const Region& region : b.experiment.regions) {
         const double error = rms(b.reference.error, b.reference.width, region.box);
         const double rmse = run.region(region.name)->rmse;
@@ -71,13 +72,13 @@ ordered_json meters_of(const Slot& s) {
 
 }  // namespace
 
-/// Film `index` -> {key, meters: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
-CRESCENT_EXPORT(meters)(int index)->void {
+/// Film `index` -> {key, metrics: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
+CRESCENT_EXPORT(metrics)(int index)->void {
     const auto out = std::make_shared<ordered_json>();
     const auto hash = std::make_shared<FilmHash>();
     Parts parts{[=] {
-        count_work(bench().pixels() * meter_cost);
-        *out = meters_of(slot(index));
+        count_work(bench().pixels() * metric_cost);
+        *out = metrics_of(slot(index));
     }};
     for (std::size_t plane = 0; plane < slot(index).film.planes().size(); ++plane)
         parts.emplace_back([=] {
@@ -86,31 +87,31 @@ CRESCENT_EXPORT(meters)(int index)->void {
         });
     parts.emplace_back([=] {
         (*out)["hash"] = hash->text();
-        say(*out);
+        respond(*out);
     });
     begin(std::move(parts));
 }
 
 /// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: how heavy the tail of the arm's samples is in a box.
 CRESCENT_EXPORT(tail)()->void {
-    const ordered_json asked = request();
-    const Box box = asked_box(asked);
-    const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
+    const ordered_json query = request();
+    const Box box = requested_box(query);
+    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
     const TailPlan plan = tail_plan(box);
     const auto largest = std::make_shared<std::vector<float>>();
     Parts parts;
     if (plan.kept > 0)
         for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
             parts.emplace_back([=] { keep_largest(part, sampler, plan, *largest); });
-    parts.emplace_back([=] { say_tail(*largest); });
+    parts.emplace_back([=] { send_tail(*largest); });
     begin(std::move(parts));
 }
 
 /// {region, series: [{arm, points: [[n, rmse], ...]}]} -> RMSE against N as SVG, with N^(-1/2) from the first points.
 CRESCENT_EXPORT(ladder_chart)()->void {
-    const ordered_json asked = request();
+    const ordered_json query = request();
     std::vector<double> ns, values;
-    for (const auto& series : asked.at("series"))
+    for (const auto& series : query.at("series"))
         for (const auto& p : series.at("points")) ns.push_back(p.at(0)), values.push_back(p.at(1));
     Axis x = log_axis("N, samples per pixel", ns);
     x.ticks = ns;
@@ -118,12 +119,12 @@ CRESCENT_EXPORT(ladder_chart)()->void {
     x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
     const double last = *std::ranges::max_element(ns);
     x.high *= 2.2;  // room for names at the ends of lines
-    for (const auto& series : asked.at("series"))
+    for (const auto& series : query.at("series"))
         if (const auto& all = series.at("points"); !all.empty())
             values.push_back(all[0].at(1).get<double>() * std::sqrt(all[0].at(0).get<double>() / last));
-    const auto region = asked.at("region").get<std::string>();
+    const auto region = query.at("region").get<std::string>();
     Chart chart(420, 330, x, log_axis("RMSE of " + region, values), "RMSE against N in region " + region);
-    for (const auto& series : asked.at("series")) {
+    for (const auto& series : query.at("series")) {
         std::vector<Point> points;
         for (const auto& p : series.at("points")) points.push_back({p.at(0), p.at(1)});
         if (points.empty()) continue;
@@ -134,7 +135,7 @@ CRESCENT_EXPORT(ladder_chart)()->void {
         chart.dots(points, class_of(arm));
         chart.name(points.back(), arm, class_of(arm));
     }
-    say(chart.str());
+    respond(chart.str());
 }
 
 }  // namespace crescent::web

@@ -1,5 +1,6 @@
-// The sites of a rectangle of pixels, in the CPU's arrays and as the array texture that src/gl/shaders/site.glsl reads:
-// one texel a pixel, six layers and two more a disk light, five more any other light. The numbers are the same floats.
+// The shading points of a rectangle of pixels, in the CPU's arrays and as the array texture that src/gl/shaders/shading
+// point.glsl reads: one texel a pixel, six layers and two more a disk light, five more any other light. The numbers are
+// the same floats.
 #pragma once
 
 #include <array>
@@ -19,13 +20,13 @@ struct LobePixels {
     int x0 = 0, x1 = 0;                 // columns outside have none
 };
 
-/// Shading points in groups of one lobe, as sites_of() makes them, tile by tile.
-class SiteTexture {
+/// Shading points in groups of one lobe, as shading_points_of() makes them, tile by tile.
+class PointTexture {
 public:
-    SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
-    ~SiteTexture();
-    SiteTexture(const SiteTexture&) = delete;
-    SiteTexture& operator=(const SiteTexture&) = delete;
+    PointTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
+    ~PointTexture();
+    PointTexture(const PointTexture&) = delete;
+    PointTexture& operator=(const PointTexture&) = delete;
 
     const TileBox& box() const { return box_; }
     int width() const { return box_.x1 - box_.x0; }
@@ -34,14 +35,14 @@ public:
     /// Lobes, their places in the list or -1, that some pixel here has.
     std::vector<int> lobes() const;
     LobePixels pixels_of(int lobe) const;
-    /// Where site i of a group stands in the rectangle, row by row.
+    /// Where shading point i of a group stands in the rectangle, row by row.
     std::size_t texel(const ShadingPoints& group, std::size_t i) const;
 
     /// Binds the texture to unit 0.
     void bind() const;
 
 private:
-    void fill_site(std::vector<float>& layers, const ShadingPoints& group, std::size_t i) const;
+    void fill_point(std::vector<float>& layers, const ShadingPoints& group, std::size_t i) const;
     void upload(const std::vector<float>& layers, std::size_t layer_count);
 
     const Context& context_;
@@ -59,7 +60,7 @@ struct LightCounts {
 LightCounts count_lights(const Scene& scene);
 
 /// Texture layers for so many lights.
-constexpr std::size_t site_layers(const LightCounts& lights) { return 6 + 2 * lights.disks + 5 * lights.others; }
+constexpr std::size_t point_layers(const LightCounts& lights) { return 6 + 2 * lights.disks + 5 * lights.others; }
 
 /// The image in rectangles whose textures stay under about 256 MiB and the driver's largest texture.
 std::vector<TileBox> rectangles_of(int width, int height, const LightCounts& lights, int largest_texture);

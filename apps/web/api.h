@@ -1,11 +1,11 @@
 // The C interface between crescent's core, compiled to WebAssembly, and the page. One bench an instance: the experiment
 // that was opened last.
 //
-// A call that answers in words takes its request as JSON in room(size) and leaves its answer, JSON or text, at
-// said_at(), said_size(). A call that answers in numbers leaves planes of 4 bytes a pixel at the address it returns;
-// they stand until the next call. Boxes are [x0, x1) x [y0, y1) in pixels from the bottom-left.
+// A call that answers in words takes its request as JSON in request_buffer(size) and leaves its answer, JSON or text,
+// at response_data(), response_size(). A call that answers in numbers leaves planes of 4 bytes a pixel at the address
+// it returns; they stand until the next call. Boxes are [x0, x1) x [y0, y1) in pixels from the bottom-left.
 //
-// There are no exceptions in WebAssembly as Debian's libraries have it: what throws calls `door.failed` of the page
+// There are no exceptions in WebAssembly as Debian's libraries have it: what throws calls `api.failed` of the page
 // with its kind and its message, and never returns. The page drops such an instance and makes another one.
 #pragma once
 
@@ -24,10 +24,10 @@ namespace crescent::web {
 
 using nlohmann::ordered_json;
 
-/// The request in room(), and the answer.
+/// The request in request_buffer(), and the answer.
 ordered_json request();
-void say(std::string text);
-void say(const ordered_json& answer);
+void respond(std::string text);
+void respond(const ordered_json& answer);
 
 /// Bytes for the page, kept until the next call.
 template <class T> std::vector<T>& scratch() {
@@ -35,7 +35,7 @@ template <class T> std::vector<T>& scratch() {
     return all;
 }
 
-/// A rung that is being filled in, tile by tile.
+/// A sample count that is being filled in, tile by tile.
 struct Slot {
     RunKey key;
     Film film;
@@ -47,11 +47,11 @@ struct Bench {
     Scene scene;
     ShapeMap shapes;
     std::vector<Slot> slots;
-    /// What primary rays met, by box, for the arms and rungs that follow; and of the last box that there was no room
-    /// for.
-    std::map<std::array<int, 4>, std::vector<ShadingPoints>> sites;
-    std::size_t sites_kept = 0;
-    std::array<int, 4> sites_last{};
+    /// What primary rays met, by box, for the arms and sample counts that follow; and of the last box that there was no
+    /// room for.
+    std::map<std::array<int, 4>, std::vector<ShadingPoints>> shading_points;
+    std::size_t points_kept = 0;
+    std::array<int, 4> points_last{};
     std::vector<ShadingPoints> last;
     ReferenceFilm reference;
     std::unique_ptr<PixelQuadrature> quadrature;
@@ -65,7 +65,7 @@ Bench& bench();
 Slot& slot(int index);
 
 /// NaN and infinities have no JSON: they are told by name, as in metrics.json.
-ordered_json told(double x);
+ordered_json json_number(double x);
 /// The arm `name` of the experiment; throws InputError where there is none.
 const ArmPlan& arm_of(const std::string& name);
 
