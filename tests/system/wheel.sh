@@ -46,9 +46,9 @@ twice = crescent.Sampler(sample, lambda wo, wi: 2 * pdf(wo, wi))
 PY
 cp "$tiny" "$root/tiny.toml"
 for seed in 1 2 3 4 5 6; do
-    folder=$([ $seed -le 3 ] && echo old || echo new)
+    side=$([ $seed -le 3 ] && echo old || echo new)
     "$CRESCENT" run "$tiny" --quiet --only films --set seed=$seed --out run >log 2>&1 || die "$(cat log)"
-    mkdir -p "$root/$folder" && cp run/films/cosine.exr "$root/$folder/$seed.exr"
+    mkdir -p "$root/$side" && cp run/films/cosine.exr "$root/$side/$seed.exr"
 done
 
 # says CODE WORDS COMMAND: its exit code, and that it says so.
@@ -66,7 +66,7 @@ for python in "${pythons[@]}"; do
     grep -q "^crescent $(cat printed) " version || die "the package has the version $(cat printed)"
 
     expect 0 inside "crescent run tiny.toml --quiet --out out"
-    rm -rf out && expect 0 "$CRESCENT" run "$tiny" --quiet --out out
+    rm -rf out && cp "$tiny" . && expect 0 "$CRESCENT" run tiny.toml --quiet --out out  # plates state the command
     cmp out/metrics.csv "$root/out/metrics.csv" || die "$python: other numbers than here"
     for plate in out/plates/*.png; do cmp "$plate" "$root/$plate" || die "$python: another plate than here"; done
     [ -s "$root/out/report.html" ] || die "$python: no report"
