@@ -62,3 +62,4 @@ expect 0 inside "$entry run gallery --seeds 1 --only metrics --quiet --out /gall
 
 # What the image leaves out ends in a sentence.
 expect 3 inside "$entry run /tiny.toml --quiet --instrument gl --out /gl"
+grep -q 'install the packages' said || die "what --instrument gl needs is not named: $(cat said)"
