@@ -1,7 +1,8 @@
-// Whether tests run under AddressSanitizer, which makes them about ten times slower.
+// How much a test may cost: under AddressSanitizer everything is about ten times slower, and ./test --matrix tries all.
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 
 namespace crescent::test {
 
@@ -19,5 +20,8 @@ inline constexpr bool sanitized = false;
 
 /// Of many cases that are alike each `every`-th is tried: sanitizers look at the code, which is the same in all.
 inline constexpr std::size_t every = sanitized ? 3 : 1;
+
+/// Whether every case is tried where ./test tries a sample.
+inline bool whole_matrix() { return std::getenv("CRESCENT_TEST_MATRIX") != nullptr; }
 
 }  // namespace crescent::test

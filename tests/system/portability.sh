@@ -1,9 +1,10 @@
 #!/bin/bash
-# Another machine's code makes the same bits: ARM with its vectors under qemu, WebAssembly with its vectors in node.
-# Small images and few samples, since both run slowly. $FILM_HASHES_AARCH64 and $FILM_HASHES_WASM are tests/portability, built.
+# Another compiler's and another machine's code makes the same bits: g++, clang without optimisation, ARM with its
+# vectors under qemu, WebAssembly with its vectors in node. Small images and few samples, since most run slowly.
+# $FILM_HASHES_ROOT-gxx, -unoptimised, -aarch64 and -wasm32 are tests/portability, built.
 . "$(dirname "$0")/common.sh"
-[ -x "${FILM_HASHES_AARCH64:-}" ] || [ -f "${FILM_HASHES_WASM:-}" ] ||
-    skip "no core built for another machine (./test builds them)"
+core=${FILM_HASHES_ROOT:?the build folder without its ending}
+ls "$core"-*/film_hashes* >/dev/null 2>&1 || skip "no core built for another machine or compiler (./test builds them)"
 
 # Every built-in sampler over the small scene, and scenes with other shapes, lobes and lights.
 {
@@ -14,7 +15,7 @@
     printf 'edge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'
 } >every-arm.toml
 experiments=(every-arm.toml)
-for name in three-glosses two-lamps; do
+for name in three-glosses two-lamps empty-room; do
     file=$CRESCENT_SOURCE/experiments/$name.toml
     [ -f "$file" ] && experiments+=("$file")
 done
@@ -25,6 +26,9 @@ mv printed plain
 hashes() { awk '/ quadrature |^function /{ print; next } { $2 = ""; print }' "$1" | sort -u; }
 expect 0 "$FILM_HASHES" <plain
 hashes printed >here
+grep -v -e ' quadrature ' -e '^function ' printed | awk '{ $2 = ""; print }' | sort | uniq -c |
+    awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
+    die "films differ between instruction sets"
 [ "$(wc -l <here)" -gt 40 ] || die "too few films: $(cat here)"
 
 # same NAME SET COMMAND...: the hashes of another machine, which has SET beside scalar code.
@@ -37,12 +41,20 @@ same() {
     diff here there >difference || die "films differ on $name: $(head -n 12 difference)"
 }
 tried=0
-if [ -x "${FILM_HASHES_AARCH64:-}" ] && command -v qemu-aarch64-static >/dev/null; then
-    same "ARM" neon qemu-aarch64-static "$FILM_HASHES_AARCH64"
+if [ -x "$core-gxx/film_hashes" ]; then
+    same "g++" avx2 "$core-gxx/film_hashes"
     tried=1
 fi
-if [ -f "${FILM_HASHES_WASM:-}" ] && command -v node >/dev/null; then
-    same "WebAssembly" wasm128 node --no-warnings "$CRESCENT_SOURCE/tests/portability/run.mjs" "$FILM_HASHES_WASM"
+if [ -x "$core-unoptimised/film_hashes" ]; then
+    same "clang without optimisation" scalar "$core-unoptimised/film_hashes"
+    tried=1
+fi
+if [ -x "$core-aarch64/film_hashes" ] && command -v qemu-aarch64-static >/dev/null; then
+    same "ARM" neon qemu-aarch64-static "$core-aarch64/film_hashes"
+    tried=1
+fi
+if [ -f "$core-wasm32/film_hashes.wasm" ] && command -v node >/dev/null; then
+    same "WebAssembly" wasm128 node --no-warnings "$CRESCENT_SOURCE/tests/portability/run.mjs" "$core-wasm32/film_hashes.wasm"
     tried=1
 fi
 [ "$tried" -eq 1 ] || skip "neither qemu-aarch64-static nor node"
