@@ -13,7 +13,7 @@ namespace {
 
 enum class Picture { photograph, heat, signed_map };
 
-const Srgb8 background{20, 21, 23};  // where an back end has nothing to say
+const Srgb8 background{20, 21, 23};  // where a back end has nothing to say
 
 /// Two hues that stand for two arms, each fading to the ground: t in [-1, 1].
 Srgb8 two_hues(double t) {

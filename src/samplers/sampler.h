@@ -30,7 +30,7 @@ template <class F> struct Drawn {
 };
 
 /// A direction that was drawn towards a light. Whether it meets that light is known from the draw; a test of the
-/// rounded direction may fail: float directions are 1e-7 apart, and so a area light of 1e-6 m at 3 m is three of them
+/// rounded direction may fail: float directions are 1e-7 apart, and so an area light of 1e-6 m at 3 m is three of them
 /// across.
 template <class F> struct DrawnToDisk : Drawn<F> {
     F disk;         // the index of that light, disks first

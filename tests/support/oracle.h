@@ -98,7 +98,7 @@ public:
     Direction draw(std::size_t technique) {
         if (technique == 1 && !(surface_.rho_s > 0)) return {};
         const Vec3d wi = technique == 0 ? cosine() : technique == 1 ? lobe() : on_light(technique - 2);
-        const bool aimed_at =  // a area light's back is not
+        const bool aimed_at =  // an area light's back is not
             technique < 2 || lit(scene_.lights()[technique - 2], frame_.to_world(wi)).t < 1e300;
         return aimed_at ? at(wi) : Direction{};
     }
