@@ -1,11 +1,11 @@
 #!/bin/bash
-# The last stage of the Dockerfile, its own lines run in a bare root of Debian 12 that debootstrap makes: what the
-# recipe installs is all that the program needs to start and to make a run. The program is the one built here; where the
-# recipe copies it from the stage `build`, `cmake --install` has put it. Packages come from where this machine's do.
+# The last stage of the Dockerfile, its own lines run in a bare root of Debian 12 made by debootstrap: what the recipe
+# installs is sufficient for the program to start and to make a run. The program is the one built here; instead of the
+# recipe's copy from the stage `build`, `cmake --install` installs it. Packages come from this machine's mirror.
 . "$(dirname "$0")/common.sh"
 
 recipe="$CRESCENT_SOURCE/Dockerfile"
-# What the first stage builds is what ./run builds: it installs no packages of its own.
+# The first stage builds what ./run builds: it installs no packages of its own.
 joined() { sed -e ':next' -e '/\\$/{N;s/\\\n/ /;b next' -e '}' -e '/^#/d' "$recipe" | sed 's/  */ /g'; }
 build=$(joined | sed -n '/ AS build$/,/^FROM [^ ]*$/p' | sed -n 's/^RUN //p')
 prefix=$(sed -nE 's/.*cmake --install build --prefix ([^ ]+).*/\1/p' <<<"$build")
@@ -22,7 +22,7 @@ from=$(last_stage | sed -n 's/^FROM debian:\([0-9]*\).*/\1/p')
 command -v debootstrap >/dev/null || skip "no debootstrap here"
 unshare -m true 2>/dev/null || skip "no mount namespaces here"
 
-# Own namespaces: what is mounted, and every process, ends with the script.
+# Own namespaces: mounts and processes end with the script.
 if [ -z "${IN_OWN_NAMESPACE:-}" ]; then
     IN_OWN_NAMESPACE=1 unshare -mpf --kill-child bash "$here/image.sh"
     exit
@@ -82,5 +82,5 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --out out
 [ -s "$root/out/report.html" ] && ls "$root"/out/plates/*.png >/dev/null || die "no report or no plates"
 cmp out/metrics.csv "$root/out/metrics.csv" || die "other numbers in the image"
 
-# What the image leaves out ends in a sentence.
+# What the image omits is reported in a sentence.
 expect 3 inside "$entry run /tiny.toml --quiet --instrument gl --out /gl"
