@@ -110,7 +110,7 @@ def geometry(shape):
         return {"type": "rectangle", "to_world": facing(shape["point"], shape["normal"], 100)}
     if kind == "disk":
         return {"type": "disk", "to_world": facing(shape["center"], shape["normal"], shape["radius"])}
-    # A panel's recess is cut into the wall; here its back lies just before the wall, which costs the same rays.
+    # A panel's recess is cut into the wall; here its back is directly before the wall, which costs the same rays.
     corner = shape["corner"] if kind == "quad" else [c + o for c, o in zip(shape["corner"], [0, 0, 1e-3])]
     return parallelogram(corner, shape["edge_u"], shape["edge_v"])
 

@@ -69,7 +69,7 @@ def moved(page, turns=20, whole=3):
             time.sleep(0.4)
         for turn in range(whole):
             move(driver, 300 + 10 * turn)
-            time.sleep(3)  # asking it would keep a core busy
+            time.sleep(3)  # polling it would keep a core busy
             browser.wait(driver, "document.documentElement.dataset.took")
             films.append(int(driver.execute_script("return document.documentElement.dataset.films")))
         return statistics.median(first), max(first), min(films)

@@ -89,7 +89,7 @@ def table(repeats):
         "| | draws | million draws per second of processor time | time relative to `sample` |",
         "|---|---|---|---|",
     ]
-    alone = None  # s of processor time a draw
+    alone = None  # s of processor time per draw
     for what, draws, work in (
         ("`sample` alone, in NumPy", BATCHES * 32768, numpy_alone()),
         ("drawn by crescent and discarded", BATCHES * 32768, lambda: _crescent.draw(cases, BATCHES)),

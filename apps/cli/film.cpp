@@ -1,4 +1,4 @@
-// crescent film: an experiment file -> an explainer of what its run measures.
+// crescent film: makes an explainer video of an experiment's measurements.
 #include "commands.h"
 #include "crescent/crescent.h"
 #include "progress.h"

@@ -37,7 +37,7 @@ CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     return against;
 }
 
-/// --expect and --allow-inconclusive; gives the former.
+/// Adds --expect and --allow-inconclusive; returns the former.
 CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
     c.add_flag("--allow-inconclusive", f.allow_inconclusive, "exit 0 where it would be 4");
     return c
@@ -53,7 +53,7 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
         ->allow_extra_args(false);
 }
 
-/// The files that a call writes.
+/// The output files of a call.
 void outputs(CLI::App& c, CheckFlags& f) {
     for (CLI::Option* file :
         {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
@@ -63,7 +63,7 @@ void outputs(CLI::App& c, CheckFlags& f) {
         file->type_name("FILE")->check(not_empty);
 }
 
-/// A sampler of the caller's own.
+/// A sampler given by the caller.
 struct Own {
     CLI::Option *exec, *plugin, *samples;
 };

@@ -1,5 +1,5 @@
-// Every shot of the film, on a small run: what is set can be read, nothing is cut off or runs into its neighbour, no
-// digit is typed, captions keep their rules, and frames are the same however they are drawn.
+// Every shot of the video, on a small run: text is readable, nothing is cut off or overlaps its neighbour, no digit is
+// hard-coded, captions follow their rules, and frames do not depend on the drawing order.
 #include <gtest/gtest.h>
 
 #include <oneapi/tbb/global_control.h>
@@ -25,7 +25,7 @@ const Timeline& timeline() {
     return made;
 }
 
-/// Frames to look at: the still of every shot, and one in each second and a half.
+/// Returns the tested frames: the still of every shot, and one every 1.5 seconds.
 std::vector<int> looked_at(std::size_t shot) {
     std::vector<int> frames{timeline().still(shot)};
     for (int f = timeline().begin(shot); f < timeline().begin(shot + 1); f += 45) frames.push_back(f);
@@ -65,7 +65,7 @@ TEST(Film, OnNoStillDoTextsRunIntoEachOther) {
     }
 }
 
-/// WCAG 2.1 relative luminance of 8-bit sRGB or of an ink.
+/// Returns WCAG 2.1 relative luminance of 8-bit sRGB or of a colour.
 double luminance_of(double r, double g, double b) {
     return 0.2126 * srgb_decode(r) + 0.7152 * srgb_decode(g) + 0.0722 * srgb_decode(b);
 }
@@ -102,8 +102,7 @@ TEST(Film, NoDigitIsTyped) {
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         for (const int frame : looked_at(k)) {
             painter.draw(frame);
-            // What stands on the canvas went through Words, and every part of it that holds a digit says where it was
-            // read.
+            // All text on the canvas went through Words, and every part of it with a digit states its source.
             std::multiset<std::string> texts;
             for (const Words& words : painter.frame().texts()) {
                 texts.insert(words.markup());

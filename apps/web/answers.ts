@@ -1,5 +1,5 @@
-// The answer of a lesson: what the core measures now, in several workers, and what the core says that it comes to.
-// Nothing is looked up, and nothing is computed here.
+// The answer of a lesson: the core measures it now, in several workers, and words the conclusion. Nothing is looked up,
+// and nothing is computed here.
 import { Opening } from "./jobs";
 import { Answer, Lesson, Measured } from "./lessons";
 import { Box } from "./api";

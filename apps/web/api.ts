@@ -1,4 +1,4 @@
-// One instance of the WebAssembly module, as apps/web/api.h describes it. Everything that is computed is computed there.
+// One instance of the WebAssembly module, as apps/web/api.h describes it. All computation happens in the module.
 
 /** What the core returns instead of an answer: "input" is the reader's mistake, "memory" and "bug" are not. */
 export class DoorError extends Error {
@@ -43,12 +43,12 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
 }
 
-const unwinding = 1, rewinding = 2; // what asyncify_get_state() says
+const unwinding = 1, rewinding = 2; // returned by asyncify_get_state()
 
 export class Api {
   private readonly calls: Record<string, Call>;
   private readonly memory: WebAssembly.Memory;
-  private paused: (() => number) | undefined; // goes on with a call that left the module, apps/web/pause.h
+  private paused: (() => number) | undefined; // continues a call that left the module, apps/web/pause.h
   private room = 0; // where that call keeps its locals
 
   constructor(module: WebAssembly.Module) {

@@ -1,4 +1,4 @@
-// A question that is answered by a box: drawn on the reference's picture, or its corners typed.
+// A question that is answered by a box: drawn on the reference's picture, or entered as corners.
 import { Asker } from "./answers";
 import { el } from "./dom";
 import { Drawn, Frame } from "./frame";

@@ -1,12 +1,12 @@
-// Sliders and fields for what may be changed, made from the knobs that the core names. A value goes into the state as
-// text that --set takes; a value that is the experiment's own leaves it.
+// Sliders and fields for changeable values, made from the knobs that the core names. A value is stored in the state as
+// text for --set; a value equal to the experiment's own is removed.
 import { el } from "./dom";
 import { Described, Knob, Region } from "./model";
 
 type Change = (path: string, value: string | undefined) => void;
 
 const steps = 1000;
-const short = (x: number): string => String(Number(x.toPrecision(4))); // what a slider gives
+const short = (x: number): string => String(Number(x.toPrecision(4))); // a slider's value
 const typed = (x: number): string => String(Number(x.toPrecision(12)));
 
 /** Where a value lies on a slider, and back. */
@@ -53,7 +53,7 @@ function pair(label: string, knob: Knob, value: number, taken: (x: number) => vo
 
 /** Three fields, and a slider that scales all of them. */
 function colourRow(knob: Knob, own: number[], change: Change): HTMLElement[] {
-  const hue = [...own]; // stands where the slider makes it black
+  const hue = [...own]; // used when the slider makes it black
   const tell = (all: number[]): undefined => void change(knob.path, `[${all.map(typed).join(", ")}]`);
   const fields = own.map((c, k) => field(`${knob.label} ${["red", "green", "blue"][k]}`, c, (x) => { hue[k] = x; return tell(hue); }));
   if (!(Math.max(...own) > 0)) return fields;

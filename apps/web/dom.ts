@@ -1,4 +1,4 @@
-// Elements in short.
+// Short functions that make elements.
 type Child = Node | string | undefined;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void) | undefined>;
 

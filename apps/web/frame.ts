@@ -1,5 +1,5 @@
-// A picture that can be pointed at: a canvas of a size in pixels, boxes drawn over it, a pixel to choose by pointer, a
-// region to draw by dragging. Boxes are [x0, y0, x1, y1], both ends inside, from the bottom-left.
+// A picture with pointer input: a canvas of a size in pixels, boxes drawn over it, a pixel to choose by pointer, a
+// region to draw by dragging. Boxes are [x0, y0, x1, y1], both ends inclusive, from the bottom-left.
 import { el } from "./dom";
 
 export type Drawn = [number, number, number, number];
@@ -109,7 +109,7 @@ export class Frame {
       if (grip) take(pulled(e));
     };
     const x = `${(100 * (kx === 0 ? box[0] : box[2] + 1)) / width}%`, y = `${(100 * (height - (ky === 1 ? box[1] : box[3] + 1))) / height}%`;
-    const within = (before: boolean, at: string): string => // of the picture, and beside the corner beyond however near that is
+    const within = (before: boolean, at: string): string => // inside the picture, and next to the corner at any zoom
       before ? `clamp(0px, calc(${at} - 24px), calc(100% - 48px))` : `clamp(24px, ${at}, calc(100% - 24px))`;
     made.style.left = within(kx === 0, x);
     made.style.top = within(ky === 3, y);

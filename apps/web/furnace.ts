@@ -1,4 +1,4 @@
-// Furnaces to play with: other exponents, other numbers of samples, read anew.
+// Furnaces with changeable exponents and numbers of samples, recomputed.
 import { Asker } from "./answers";
 import { choice } from "./controls";
 import { el, minus } from "./dom";

@@ -1,5 +1,5 @@
 // The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
-// running mean, the largest sample taken apart.
+// running mean, the factors of the largest sample.
 import { choice } from "./controls";
 import { DoorError } from "./api";
 import { el, made } from "./dom";
@@ -109,7 +109,7 @@ export async function openPixel(root: HTMLElement, model: Model, state: State, l
   const inside = el("div"), arms = state.arms.map((arm, k): [string, string] => [String(k), arm]);
   const whose = choice("whose", "draws of", arms, String(state.arm), (value) => { state.arm = Number(value); again(); });
   const s = model.shown[state.arm] ?? model.shown[0]!;
-  const show = (): void => { // what stood there stands until this one has its words
+  const show = (): void => { // the old contents stay until this one has its text
     if (inside.isConnected) return;
     const held = document.activeElement?.id === "whose";
     root.replaceChildren(whose, inside);

@@ -1,4 +1,4 @@
-// What a worker can be asked, and how any instance answers: the same code in a worker and on the page's own thread.
+// The jobs of a worker, and their execution in any instance: the same code in a worker and on the page's own thread.
 import { Box, Api, DoorError, pixelsOf } from "./api";
 
 export interface Opening { file: string; text: string; set: string[]; published: string }
@@ -8,7 +8,7 @@ export type Job =
   | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
   | { kind: "photograph"; box: Box; opening: Opening } // of the reference
-  | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: asked of another experiment
+  | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: for another experiment
 
 export type Answer = { bytes?: ArrayBuffer[]; response?: unknown };
 export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string }; size?: number }; // size: of its instance
@@ -43,8 +43,8 @@ export class Answering {
   private api: Api;
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the api
-  private ready = false; // to compute its reference
-  private steps: (() => Answer)[] = []; // of the job that was begun: the last one answers it
+  private ready = false; // ready to compute its reference
+  private steps: (() => Answer)[] = []; // of the current job: the last step returns its answer
   private goes = false; // the first of them has parts left
   worked = 0; // the work of the last part, in samples, and of the largest so far
   most = 0;

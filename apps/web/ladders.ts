@@ -1,4 +1,4 @@
-// RMSE against N, one chart a region, as the core draws it.
+// RMSE against N, one chart per region, drawn by the core.
 import { el, made } from "./dom";
 import { Model } from "./model";
 

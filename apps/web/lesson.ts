@@ -1,5 +1,5 @@
-// A lesson on the page: it asks, measures, shows the guess beside what was measured, and lets play. The sheet for
-// teachers is made of the same data and of numbers that are measured when it is opened.
+// A lesson on the page: it asks, measures, shows the guess next to the measurement, and lets the user experiment. The
+// sheet for teachers is made of the same data and of numbers that are measured when it is opened.
 import { Asker, Found } from "./answers";
 import { boxQuestion } from "./box";
 import { checkPanel, samplerPictures } from "./check";
@@ -13,7 +13,7 @@ export interface Lessons {
   model: Model;
   asker(): Asker;
   answered(lesson: Lesson, answer: string): void;
-  open(pixel: [number, number]): void; // its hemisphere, where none is open
+  open(pixel: [number, number]): void; // its hemisphere, if none is open
   go(lesson: string): void;
   say(line: string): void;
 }

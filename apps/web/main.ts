@@ -1,4 +1,4 @@
-// Unpacks the module and starts the page; a browser that cannot run it gets a message.
+// Unpacks the module and starts the page; a browser that cannot run it shows a message.
 import { byId, el } from "./dom";
 import { Data, Page } from "./page";
 

@@ -1,5 +1,5 @@
-// The bench behind the pictures: an experiment as it is set, its films growing from one sample count to the next, its reference, its metrics.
-// One instance of the module on the page's own thread puts the tiles together; workers compute them.
+// The state behind the pictures: the experiment with its settings, its films at growing sample counts, its reference,
+// its metrics. One instance of the module on the page's own thread assembles the tiles; workers compute them.
 import { Box, Api, DoorError, pixelsOf } from "./api";
 import { Opening } from "./jobs";
 import { Pool } from "./pool";
@@ -37,7 +37,7 @@ export interface Viewer {
 }
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
-const referenceAfter = 64; // sample counts up to here come before it
+const referenceAfter = 64; // sample counts up to this one are computed before it
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
@@ -49,11 +49,11 @@ export class Model {
   startedAt = 0;
   took = 0; // ms to the last metric, and to the last film
   filmsTook = 0;
-  private readonly most: number; // samples of one part, and what a pixel counts: of the reference; of a film, its samples apart
+  private readonly most: number; // samples of one part, and the cost of a pixel: of the reference; of a film, without its samples
   private readonly referenceCost: number;
   private readonly filmCost: number;
   private era = 0;
-  private asking: Promise<unknown> = Promise.resolve(); // what is asked in parts, one after another
+  private asking: Promise<unknown> = Promise.resolve(); // requests in parts, one after another
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
   /** `api`: an instance of the module for the page's own thread. */
@@ -104,7 +104,7 @@ export class Model {
         this.api.number("begin", index, s.arm, sampleCounts[0]!);
       }
     } catch (error) {
-      this.api = new Api(this.module); // a call that failed leaves its instance as it was in the midst of it
+      this.api = new Api(this.module); // a failed call leaves its instance in an intermediate state
       throw error;
     }
     this.viewer.opened(this.described, this.shown);
@@ -264,7 +264,7 @@ export class Model {
   async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
     await this.pool.ready;
     for (const box of this.boxes(this.referenceCost + this.filmCost, size).reverse()) // and its colours
-      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question stands without it
+      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
   }
 
   /** RGBA of a box, rows from the top. */

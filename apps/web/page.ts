@@ -26,16 +26,16 @@ export class Page implements Viewer {
   private top = 1;
   private timer = 0;
   private openedAt = 0;
-  private seen: Described | undefined; // what the pictures are of; the model may have opened another
-  private painting = 0; // counts pictures that are painted anew, and pixels that are opened: the last one goes on
+  private seen: Described | undefined; // shown in the pictures; the model may have opened another
+  private painting = 0; // counts repaints of the pictures, and opened pixels: only the last one continues
   private opening = 0;
-  private movedAt = 0; // when a hand changed what is not yet open
-  private awaited = 0; // and what is not yet painted
-  private good: Opened | undefined; // what was opened last
-  private refused = false; // what was set since cannot be
-  private response: string[] = []; // of the address, until something is opened
-  private idle = true; // nothing is computed for a bench that is not seen
-  private asRead = false; // an answered lesson that the address shows with settings of its own
+  private movedAt = 0; // time of the last change that is not open yet
+  private awaited = 0; // and not painted yet
+  private good: Opened | undefined; // the last one that opened
+  private refused = false; // the settings since then are invalid
+  private response: string[] = []; // from the address, until something is opened
+  private idle = true; // nothing is computed while the bench is hidden
+  private asRead = false; // an answered lesson that the address shows with its own settings
   private known: Asker | undefined;
   private readonly speaker = new Speaker(byId("status"));
 
@@ -132,7 +132,7 @@ export class Page implements Viewer {
     };
     const same = this.pictures.length === shown.length + 1 && this.pictures[0]?.canvas.width === d.width && this.pictures[0].canvas.height === d.height;
     this.pictures = [...shown.map((_, index) => new Picture(index, d, picking)), new Picture(-1, d, picking)].map((picture, k) => {
-      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stands until it is painted over
+      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stays until it is painted over
       return picture;
     });
     for (const picture of this.pictures) {
@@ -282,7 +282,7 @@ export class Page implements Viewer {
           this.state.answers[lesson.id] = answer;
           this.turn();
         }
-        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
+        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it uses samplers, not pictures
         if (!kept) Object.assign(this.state, { experiment: Object.keys(this.data.sources)[0]!, arms: [...lesson.arms], n: lesson.n, view: lesson.view ?? "photograph", arm: 0 });
         byId("bench").hidden = false;
         this.open();

@@ -81,7 +81,7 @@ export class Picture {
     const m = last?.metrics, rows: HTMLTableRowElement[] = [], waiting: Metric = { value: 0, text: "…" };
     const row = (name: string, metric: Metric | undefined = last ? undefined : waiting, note = ""): void => {
       if (!metric) return;
-      const room = this.d.source !== "" && !note; // for what was published, where anything was
+      const room = this.d.source !== "" && !note; // for published values, if there are any
       const published = metric.published || room ? el("small", {}, metric.published ? `published ${minus(metric.published)}` : "\u00a0") : undefined;
       rows.push(el("tr", {}, el("th", { scope: "row" }, name),
         el("td", { class: "n" }, minus(metric.text), published)));

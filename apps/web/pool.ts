@@ -1,5 +1,5 @@
-// Jobs -> answers, in workers or, where a browser has none, in slices on the page's own thread. A new opening cancels
-// all that was asked before it: what is under way is dropped when it comes.
+// Runs jobs in workers or, if a browser has none, in slices on the page's own thread. A new opening cancels all earlier
+// requests: results under way are dropped.
 import { Box, DoorError } from "./api";
 import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
 import { Turns } from "./turns";
@@ -7,14 +7,14 @@ import { Turns } from "./turns";
 type Done = (answer: Answer) => void;
 type Failed = (error: DoorError) => void;
 interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
-type Kept = Map<string, Hand>; // who keeps what the primary rays of a box met
+type Kept = Map<string, Hand>; // which worker keeps the hits of a box
 const boxOf = ({ job }: Waiting): string => (job.kind === "tile" ? Object.values(job.box).join() : "");
 
-const underWay = 2; // jobs that a worker holds, so that it never waits for the page
+const underWay = 2; // jobs queued per worker, so that it never waits for the page
 const side = 64; // of a tile, in pixels
 
 class Hand {
-  size = 0; // bytes that its instance has taken
+  size = 0; // bytes allocated by its instance
   private readonly held = new Map<number, Waiting>();
   private next = 0;
   constructor(private readonly worker: Worker, private readonly free: () => void) {
@@ -64,14 +64,14 @@ class Lane {
 
 export class Pool {
   private hands: Hand[] = [];
-  private alone: { lasting: Lane; passing: Lane } | undefined; // what is opened meanwhile breaks no lasting question
+  private alone: { lasting: Lane; passing: Lane } | undefined; // an opening in between does not break a lasting request
   private queue: Waiting[] = [];
   private kept: Kept = new Map();
   private opened: Opening | undefined;
   private era = 0;
   private slicing = false;
   private settled = false;
-  readonly ready: Promise<void>; // once it is known whether there are workers: what is asked waits for that
+  readonly ready: Promise<void>; // resolved once it is known whether there are workers: requests wait for it
 
   /** `source`: the worker's script. */
   constructor(module: WebAssembly.Module, source: string, count: number, private readonly turns: Turns) {
@@ -124,11 +124,11 @@ export class Pool {
   open(opening: Opening): void {
     this.cancel();
     this.opened = opening;
-    if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that asks it
+    if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that needs it
     this.kept.clear();
     for (const hand of this.hands) this.openIn(hand, opening);
   }
-  private openIn(hand: Hand, opening: Opening): void { // what they refuse is refused on the page's own thread too
+  private openIn(hand: Hand, opening: Opening): void { // what they reject is rejected on the page's own thread too
     hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 

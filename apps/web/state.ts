@@ -1,5 +1,5 @@
-// What the address says, and the command line that makes the same numbers. The address is data: what is wrong in it
-// gives its default, and a line that says so.
+// The state in the address, and the command line that gives the same numbers. The address is data: an invalid part is
+// replaced by its default, with a message.
 import { Lesson, lessons } from "./lessons";
 import { ladder, Region } from "./model";
 
@@ -15,7 +15,7 @@ export interface State {
   arms: string[];
   n: number;
   view: "photograph" | "heat" | "signed";
-  set: Record<string, string>; // path -> value, as --set takes it
+  set: Record<string, string>; // path -> value, as --set accepts it
   pixel: [number, number] | undefined;
   arm: number; // whose draws the hemisphere shows
   part: Part;
@@ -24,7 +24,7 @@ export interface State {
 }
 
 const path = /^(?!__)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){0,3}$/;
-const own = /^(n|arms\.[^.]+\.n|reference\.kind)$/; // what the page sets itself
+const own = /^(n|arms\.[^.]+\.n|reference\.kind)$/; // set by the page itself
 const keys = ["experiment", "arms", "n", "view", "set", "pixel", "arm", "part", "lesson", "answer"];
 const number = "-?(\\d+\\.?\\d*|\\.\\d+)([eE][-+]?\\d{1,3})?";
 const value = new RegExp(`^(${number}|\\[ *${number}( *, *${number}){0,7} *\\]|"[a-z-]{1,40}")$`);
@@ -141,6 +141,6 @@ export function overrides(state: State, source: Source): string[] {
 export const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
 
 export function command(state: State, source: Source): string {
-  const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, whatever the file says
+  const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, for any file
   return ["./run", source.file, ...[...overrides(state, source), ...measured].flatMap((word) => ["--set", quoted(word)])].join(" ");
 }

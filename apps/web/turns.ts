@@ -1,7 +1,7 @@
-// Turns of the page's own thread: what it does between two looks at its reader. A turn ends after so much work, which the
-// core counts in samples (apps/web/parts.h), or so many milliseconds, whichever comes first.
+// Turns of the page's own thread: the work between two checks for input. A turn ends after a limit of work, which the
+// core counts in samples (apps/web/parts.h), or of milliseconds, whichever comes first.
 
-const mostMs = 4; // what a turn began last ends within the 10 that a reader may wait
+const mostMs = 4; // the last task of a turn ends within the 10 that a user may wait
 const mostParts = 4; // of apps/web/parts.h
 const bins = 64; // ms
 
@@ -10,11 +10,11 @@ export class Turns {
   /** How many turns took so many ms; the last bin has what took longer. */
   private readonly took = new Array<number>(bins).fill(0);
   private work = 0;
-  private promised = 0; // to those whom pass() let go on in this turn, who have not counted yet: a part each
+  private promised = 0; // to those whom pass() released in this turn, who have not counted yet: a part each
   private since = 0;
   private open = false;
   private readonly waiting: (() => void)[] = [];
-  private readonly channel = new MessageChannel(); // setTimeout waits for 4 ms where it is asked again and again
+  private readonly channel = new MessageChannel(); // setTimeout waits for 4 ms when called repeatedly
 
   /** `part`: the most that one part does, in samples. */
   constructor(private readonly part: number) {

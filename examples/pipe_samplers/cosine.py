@@ -23,7 +23,7 @@ def answer(words):
 
 
 rest = ""
-while chunk := os.read(0, 1 << 16):  # many requests stand ready at once: answer them all with one write
+while chunk := os.read(0, 1 << 16):  # many requests may be pending: respond to all of them with one write
     *lines, rest = (rest + chunk.decode()).split("\n")
     out = "".join(answer(line.split()) + "\n" for line in lines).encode()
     while out:

@@ -62,7 +62,7 @@ sys.stdin.buffer.readline()  # hello 2
 print("hello 2 sky.py domain=sphere wo=none block=f64", flush=True)
 while True:
     what, count = read(4), int.from_bytes(read(4), "little")
-    width = 5 if what == b"smpl" else 6  # w_o, which is not looked at, and u or wi
+    width = 5 if what == b"smpl" else 6  # w_o, which is not used, and u or wi
     rows = np.frombuffer(read(8 * count * width)).reshape(count, width)
     if what == b"smpl":
         answer = sample(rows[:, 3], rows[:, 4])

@@ -21,7 +21,7 @@ def as_numpy(value: Any, what: str) -> NDArray[Any]:
     """The array behind `value`, on the host; ValueError where it is none, with the first row that does not fit."""
     if isinstance(value, np.ndarray):
         return value
-    if hasattr(value, "detach"):  # a tensor that autograd follows, or that lies on a device
+    if hasattr(value, "detach"):  # a tensor that autograd tracks, or that is on a device
         value = value.detach().cpu()
     if is_drjit(value):
         return of_drjit(value)
@@ -29,7 +29,7 @@ def as_numpy(value: Any, what: str) -> NDArray[Any]:
         try:
             return np.from_dlpack(value)
         except (BufferError, RuntimeError, TypeError, ValueError):
-            pass  # another device, or a scalar: NumPy's protocol brings it here
+            pass  # another device, or a scalar: NumPy's protocol converts it
     try:
         return np.asarray(value)
     except ValueError:

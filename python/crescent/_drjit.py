@@ -71,7 +71,7 @@ class DrJit(Library):
 
     def into(self, rows: Array) -> Any:
         own = super().into(rows)
-        return type(own)(own)  # shares the memory; what a callable writes into is a copy
+        return type(own)(own)  # shares the memory; an array that a callable writes into is a copy
 
     def _cut(self, answer: Any, n: int) -> Any:
         if isinstance(answer, Mapping):

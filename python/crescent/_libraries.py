@@ -34,14 +34,14 @@ class Library:
         if isinstance(module, str) or self.name == "jax":
             module = importlib.import_module("jax.numpy" if self.name == "jax" else name)
         self._module, self._device, self._dtype = module, device, dtype
-        self._keeps = self.name in ("torch", "jax")  # what a callable writes into is known of these
+        self._keeps = self.name in ("torch", "jax")  # for these, it is known whether a callable writes into an array
         self._of_thread: dict[int, list[tuple[Array, Any, int]]] = {}  # a threading.local ends with each call
 
     def _made(self, rows: Array) -> Any:
         if self.name == "torch":
             kind = self._dtype or self._module.get_default_dtype()
             return self._module.from_numpy(rows).to(device=self._device or "cpu", dtype=kind)
-        if self.name == "jax":  # filled up to a power of two, so that few shapes are compiled
+        if self.name == "jax":  # padded to a power of two, so that few shapes are compiled
             count = 1 << max(len(rows) - 1, 63).bit_length()
             rows = np.concatenate([rows, np.broadcast_to(rows[-1:], (count - len(rows), rows.shape[1]))])
             made = self._module.asarray(rows, self._dtype or self._module.float32)
@@ -67,7 +67,7 @@ class Library:
             if host.shape != rows.shape or not np.array_equal(host[:1], rows[:1]) or not np.array_equal(host, rows):
                 continue
             kept.insert(0, kept.pop(i))
-            if getattr(own, "_version", 0) == version:  # PyTorch counts what is written into a tensor
+            if getattr(own, "_version", 0) == version:  # PyTorch counts writes into a tensor
                 return own
             del kept[0]
             break
@@ -102,7 +102,7 @@ class Library:
             parts = self._cut(whole, n)
             named = isinstance(parts, Mapping)
             if not (named and "wi" in parts) and not (isinstance(parts, tuple) and len(parts) > 1):
-                return parts  # told by what looks at shapes
+                return parts  # reported by code that checks shapes
             wi = _arrays.directions(parts["wi"] if named else parts[0], n, f"{name}: sample's wi")
             self._keep(wi, whole["wi"] if named else whole[0])
             return {**parts, "wi": wi} if named else (wi, *parts[1:])
@@ -141,7 +141,7 @@ def _taken(call: Call, name: str, rows: tuple[Array, ...]) -> Library | None:
 
 def library_named(module: Any, device: Any, call: Call, rows: tuple[Array, ...]) -> Library:
     """The library of that name, or of that module; of Dr.Jit in the form that `call` takes."""
-    from ._drjit import drjit_for  # which stands on this file
+    from ._drjit import drjit_for  # which depends on this file
 
     name = module if isinstance(module, str) else module.__name__
     if KNOWN.get(name.partition(".")[0]) == "drjit":

@@ -1,4 +1,4 @@
-// Samplers and their result, for crescent/_check.py: samplers in, a CheckResult out.
+// Samplers and the results of their checks, for crescent/_check.py.
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -15,10 +15,10 @@ namespace {
 
 using Adapter = std::shared_ptr<const SamplerAdapter>;
 
-/// CheckCases over w_o, and who is asked in them.
+/// CheckCases over w_o, and the sampler in them.
 struct CheckCases {
     std::vector<CheckCase> all;
-    Adapter adapter;  // null: an arm of the list
+    Adapter adapter;  // null: a built-in sampler
     std::size_t size() const {
         std::size_t checked = 0;
         for (const CheckCase& t : all) checked += !t.baseline;
@@ -111,7 +111,7 @@ CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::
     return out;
 }
 
-/// What distribution the draws have: as text and as JSON.
+/// Describes the distribution of the draws, as text and as JSON.
 std::pair<std::string, std::string> described(
     CheckCases& check_cases, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
     check::DescribeSettings settings;
@@ -135,7 +135,7 @@ std::pair<std::string, std::string> described(
     return {text, check::description_json(all).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
 }
 
-/// The cases of an arm of the list where `a` was checked.
+/// Returns the cases of a built-in sampler on which `a` was checked.
 CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
     if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
         const std::string near = nearest(arm, names);

@@ -1,4 +1,4 @@
-// What a process may use is read from its control groups, v1 and v2, the tightest of all that it is in.
+// The limits of a process are read from its control groups, v1 and v2; the smallest applies.
 #include "base/machine.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// How other programs are started, ended and listened to, tried on shell commands.
+// Starting, ending and reading other programs, tested with shell commands.
 #include "base/process.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// What a shell command prints to stdout, and how it ended.
+/// Returns what a shell command prints to stdout, and how it ended.
 std::pair<std::string, std::string> run(const std::string& command) {
     Process process({.argv = {"/bin/sh", "-c", command}, .stdin_file = "/dev/null", .label = "sh"});
     std::string out;
@@ -54,7 +54,7 @@ TEST(Processes, InheritNoSignalMaskHandlerOrDescriptor) {
     EXPECT_EQ(files, "0\n1\n2\n3\n");  // 3: the folder that ls reads
 }
 
-/// Whether a process runs; one that was killed and waits to be reaped does not.
+/// Returns whether a process runs; a killed process that waits to be reaped does not.
 bool runs(const std::string& id) {
     std::ifstream file("/proc/" + id + "/stat");
     std::string text;
@@ -93,7 +93,7 @@ TEST(Processes, ThatLeaveAChildWithTheirPipesEndAllTheSame) {
     EXPECT_EQ(end->code, 4);
 }
 
-/// What arrives on our own stderr of what a command prints to it.
+/// Returns what arrives on our own stderr of a command's stderr.
 std::string passed_on(const std::string& command) {
     ::testing::internal::CaptureStderr();
     {

@@ -1,5 +1,4 @@
-// What goes wrong with contexts, framebuffers and shaders is an OutputError (exit 3) that says why, in the driver's
-// words.
+// Failures of contexts, framebuffers and shaders are OutputErrors (exit 3) that contain the driver's message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +63,7 @@ TEST(Framebuffers, LargerThanTheDriverTakesAreRefusedWithItsLog) {
     test::context().gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     EXPECT_THAT(what_of<OutputError>([&] { Framebuffer(test::context(), largest + 1, 4, 1); }),
         AllOf(HasSubstr("GL_INVALID_VALUE"), HasSubstr("of a framebuffer")));
-    EXPECT_NO_THROW(Framebuffer(test::context(), 16, 16, 1));  // and the context is well afterwards
+    EXPECT_NO_THROW(Framebuffer(test::context(), 16, 16, 1));  // the context still works afterwards
 }
 
 TEST(LostContext, EndsTheFilmWithAnErrorThatSaysSo) {
@@ -106,9 +105,9 @@ TEST(Pacer, NeverAsksForMoreThanTheLastDrawsSpeedAllowsAndGrowsSlowly) {
     EXPECT_TRUE(pacer.untried());
     const std::uint64_t first = pacer.budget();
     pacer.took(first, 1e-6);
-    EXPECT_EQ(pacer.budget(), 4 * first);  // however fast it was
+    EXPECT_EQ(pacer.budget(), 4 * first);  // at any speed
     pacer.took(1'000'000, 2 * Pacer::aim_s);
-    EXPECT_LE(pacer.budget(), 500'000u);  // a slow one is taken over at once
+    EXPECT_LE(pacer.budget(), 500'000u);  // a slower draw takes effect at once
     EXPECT_DOUBLE_EQ(pacer.longest_s(), 2 * Pacer::aim_s);
 }
 

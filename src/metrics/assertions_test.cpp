@@ -1,4 +1,4 @@
-// Checks against made-up measurements whose right answers are plain.
+// Assertions on synthetic measurements with known answers.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>

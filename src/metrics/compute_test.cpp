@@ -1,4 +1,4 @@
-// On films of a few pixels whose metrics are worked out by hand, and on tails whose index is known.
+// Films of a few pixels whose metrics are computed by hand, and tails with a known index.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,7 +14,7 @@
 namespace crescent::inline metrics {
 namespace {
 
-/// The tail of n Pareto samples u^-k.
+/// Returns the tail of n Pareto samples u^-k.
 std::optional<Tail> pareto_tail(double k, std::uint32_t seed, std::uint64_t n = 20000) {
     std::vector<double> x;
     for (std::uint64_t j = 0; j < n; ++j) x.push_back(std::pow(static_cast<double>(draw(seed, 0, j).x), -k));
@@ -56,7 +56,7 @@ TEST(TailIndex, OfPooledSamplesLooksPastTheStepToTheLitOnes) {
         std::sort(x->begin(), x->end(), std::greater<>());
         x->resize(tail_length(500'000) + 1);
     }
-    EXPECT_TRUE(fit_tail(std::span<const float>(mixed))->heavy());  // what the customary threshold makes of it
+    EXPECT_TRUE(fit_tail(std::span<const float>(mixed))->heavy());  // the fit at the usual threshold
     EXPECT_FALSE(fit_pooled_tail(mixed)->heavy());
     EXPECT_TRUE(fit_pooled_tail(heavy)->heavy());
 }
@@ -67,7 +67,7 @@ TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
     EXPECT_EQ(tail_length(10000), 300u);
 }
 
-/// A film of 4 x 2 pixels, one of them a miss, with known numbers in it.
+/// A film of 4 x 2 pixels, one of them without geometry, with known numbers.
 struct Known {
     Film film{4, 2, 10};
     ReferenceFilm reference{4, 2, 32};
@@ -76,7 +76,7 @@ struct Known {
     Known() {
         experiment.regions = {{"left", {0, 0, 1, 1}, {}}};
         for (std::size_t at = 0; at < 7; ++at) film.y[at] = reference.y[at] = 1;
-        film.y[0] = 3;    // residual 2: no firefly at k = 4
+        film.y[0] = 3;    // residual 2: not a firefly at k = 4
         film.y[2] = 5.5;  // residual 4.5: a firefly
         film.var[0] = 0.8f;
         film.horizon[3] = 7;
@@ -115,7 +115,7 @@ TEST(Metrics, DoNotDependOnTheOrderOfShapesAndLights) {
     std::swap(other.disks[0], other.disks[1]);
     for (const std::string& arm : test::all_arms()) {
         if (arm.starts_with("light-") || arm.starts_with("mis-"))
-            other.disks = e.disks;  // u chooses among them in order
+            other.disks = e.disks;  // u selects among them in order
         const RunMetrics a = measured(e, arm), b = measured(other, arm);
         EXPECT_NEAR(a.y_mean / b.y_mean, 1, 1e-6) << arm;
         EXPECT_NEAR(a.rmse_frame / b.rmse_frame, 1, 1e-5) << arm;
@@ -142,7 +142,7 @@ TEST(Metrics, ANaNInTheFilmShowsInTheNumber) {
         std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
 }
 
-/// One arm with three sample counts; seed k's RMSE falls as N^slopes[k].
+/// Returns one arm with three sample counts; seed k's RMSE falls as N^slopes[k].
 std::vector<Ladder> ladders_falling_as(
     const std::vector<double>& slopes, const std::vector<std::uint64_t>& sample_counts = {4, 16, 64}) {
     Experiment e;

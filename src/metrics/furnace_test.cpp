@@ -1,4 +1,4 @@
-// What the kernels make of points in a white furnace, where the answer is known.
+// The kernels' results for points in a white furnace, against known values.
 #include "metrics/furnace.h"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 namespace crescent::inline metrics {
 namespace {
 
-/// Standard errors between the two references, over the whole image.
+/// Returns the standard errors between the two references, over the whole image.
 double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
@@ -49,7 +49,7 @@ TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     EXPECT_GT(darker, 100);
 }
 
-/// Correlation of what two films are off by, over the pixels that see a shape.
+/// Returns the correlation of the errors of two films, over the pixels that see a shape.
 double correlation(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& truth) {
     double aa = 0, bb = 0, ab = 0;
     for (std::size_t at = 0; at < truth.size(); ++at) {

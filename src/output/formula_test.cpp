@@ -1,5 +1,5 @@
-// Both ways to set a formula against markup written out by hand; that what is not in the list is a Bug, and is known
-// for one where it is compiled; that every word of the list can be set.
+// Both ways to set a formula against markup written out by hand; a formula outside the list is a Bug, also at compile
+// time; every word of the list can be set.
 #include "output/formula.h"
 
 #include <gtest/gtest.h>

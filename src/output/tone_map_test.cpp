@@ -1,5 +1,5 @@
-// sRGB against values of the standard, bytes against the rounded encoding; Neutral against values worked out from its
-// specification, and that greys rise and hues stay; photographs of NaN, infinite and negative radiance.
+// sRGB against values of the standard, bytes against the rounded encoding; Neutral against values computed from its
+// specification, monotonic greys and constant hues; photographs of NaN, infinite and negative radiance.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>

@@ -1,4 +1,4 @@
-// Films are compared by their hashes, on a scene of 67 x 45 pixels: no whole number of packs or tiles.
+// Films are compared by their hashes, on a scene of 67 x 45 pixels, which is not a multiple of the pack or tile size.
 #include "render/estimator.h"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,8 @@ TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
         EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", monitor)[0]), hash(film)) << "n = " << film.n;
 }
 
-/// Samples of every shading point of the test scene beside the moments that the kernel made of them.
+/// The samples of every shading point of the test scene are compared with the moments that the kernel computed from
+/// them.
 TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
     const Scene scene(test::small_scene());
     constexpr std::uint64_t n = 65536;
@@ -134,7 +135,7 @@ TEST(Estimator, StopsWhenAsked) {
     EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", monitor), Interrupted);
 }
 
-/// Asks to stop a little after the work has begun, from another thread, as a signal does.
+/// Requests a stop from another thread shortly after the work has begun, as a signal does.
 TEST(Estimator, StopsInMidWorkWithinATile) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;

@@ -1,5 +1,4 @@
-// The page: well-formed whatever it is given, sections that need data they do not have left out, sentences that follow
-// the numbers.
+// The page: well-formed for any input, without sections that lack data, and with sentences that follow the numbers.
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -218,7 +217,7 @@ TEST(ReportHtml, OverlappingBandsAreNotRanked) {
     EXPECT_THAT(s.html(), HasSubstr("bands overlap, so the two are not ranked"));
 }
 
-// Of six values of equal arms, three and three, all of one are above all of the other's in one run of ten.
+// With six values of equal arms, three each, all values of one arm are above all of the other's in one run of ten.
 TEST(ReportHtml, ArmsOfThreeSeedsAreNotRanked) {
     EXPECT_THAT(Sample().html(), HasSubstr("With 3 seeds the bands of equal arms lie apart in 10 % of all runs"));
     EXPECT_DOUBLE_EQ(chance_of_parted_bands(3), 0.1);

@@ -1,4 +1,4 @@
-// What every built-in arm states is complete, and can be set.
+// The description of every built-in sampler is complete, and its formulas can be set.
 #include "samplers/info.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(ArmInfos, TellTheLightThatTheyMissWhereTheoryExpectsThatOfTheirSupport) {
     }
 }
 
-/// What every arm needs, but for the density of a direction: it gives a bare number.
+/// Everything a sampler needs, except that its density is a plain number.
 template <class F> struct WithoutUnits {
     static constexpr std::string_view name = "without-units";
     static constexpr SamplerDoc manual = {.label = name};
@@ -49,7 +49,7 @@ template <class F> struct WithoutUnits {
     Drawn<F> sample(Vec3<F>, Vec2<F>) const { return {}; }
     F pdf(Vec3<F>, Vec3<F>) const { return {}; }
 };
-/// Two techniques of which one has no weight.
+/// Two techniques, one of them without a weight.
 template <class F> struct WithoutWeight : Cosine<F> {
     static constexpr int techniques = 2;
     using Cosine<F>::Cosine;

@@ -33,7 +33,7 @@ TEST(Jobs, AddTheExponentControlWhereAPassHasItNotAlready) {
     ASSERT_EQ(all.size(), 7u);
     EXPECT_EQ(all[5], "phong n=64 s=8");
     EXPECT_EQ(all[6], "phong n=64 s=128");
-    e.exponent->n = 16;  // a sample count that the arm has not
+    e.exponent->n = 16;  // a sample count that the arm does not have
     all = describe(e);
     ASSERT_EQ(all.size(), 8u);
     EXPECT_EQ(all[6], "phong n=16 s=24");

@@ -1,4 +1,4 @@
-// A run that the machine cannot hold is refused before it begins, in words that say what would fit.
+// A run that exceeds the machine's memory is rejected before it begins, with a size that would fit.
 #include "run/resources.h"
 
 #include <gmock/gmock.h>

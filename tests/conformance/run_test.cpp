@@ -1,4 +1,4 @@
-// The steps of a run: each alone, in any order of jobs, stopped by a flag, and nothing of the process changed by them.
+// The steps of a run: each alone, in any order of jobs, stopped by a flag, without changes to the process.
 #include "run/run.h"
 
 #include <OpenEXR/ImfThreading.h>
@@ -93,7 +93,7 @@ struct Process {
     bool operator==(const Process&) const = default;
 };
 
-/// Looks at the process whenever work is done, from whichever thread does it.
+/// Checks the process whenever work is done, on the thread that does it.
 struct Looker : ProgressMonitor {
     Process before;
     std::atomic<int> changed{0};
@@ -113,7 +113,7 @@ TEST(RunSteps, ChangeNothingThatBelongsToTheProcess) {
 }
 
 TEST(RunPlans, TakeAPartOfTheSeriesOfSeeds) {
-    const Experiment e = tiny({"seeds=9"});  // the last --set holds: tiny() asks for 2
+    const Experiment e = tiny({"seeds=9"});  // the last --set applies: tiny() sets 2
     EXPECT_EQ(plan(e).seeds.size(), 2u);
     Experiment five = e;
     five.seeds = 5;

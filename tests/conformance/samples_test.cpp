@@ -1,4 +1,4 @@
-// Samplers that are known from files alone: a table that tells p at points says less beyond its last row.
+// Samplers known only from files: a table of p at points is less informative beyond its last row.
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>

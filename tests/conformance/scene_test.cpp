@@ -150,7 +150,7 @@ TEST(Origin, LiesWhereTheCameraSees) {
     EXPECT_NEAR(origin.z, 0, 1e-12);
     EXPECT_LT(length(origin), 4);
     const Scene empty(wall({"camera.target=[0, 0, 8]"}));
-    EXPECT_EQ(empty.origin().z, 4);  // nothing is seen: the eye
+    EXPECT_EQ(empty.origin().z, 4);  // nothing is visible: the eye
 }
 
 }  // namespace

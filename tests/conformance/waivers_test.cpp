@@ -1,5 +1,5 @@
-// Expectations of the caller: what is waived does not count, an expectation that nothing meets does, and a word that is
-// not known is told with its place and the nearest that is.
+// Expectations of the caller: a waived verdict does not count, an unmatched expectation does, and an unknown word is
+// reported with its place and the nearest known one.
 #include <fstream>
 #include <gtest/gtest.h>
 

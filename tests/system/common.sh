@@ -1,5 +1,5 @@
-# What the scripts of this folder share. They get the program as $CRESCENT and the repository as $CRESCENT_SOURCE; each
-# works in a folder of its own, and ends with the first thing that is not so.
+# Shared by the scripts of this folder. They get the program as $CRESCENT and the repository as $CRESCENT_SOURCE; each
+# works in a folder of its own, and ends at the first failure.
 set -u
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tiny="$here/tiny.toml"
@@ -18,7 +18,7 @@ skip() {
     exit 77
 }
 
-# expect CODE COMMAND...: runs it, keeping what it says in `said` and `printed`; another exit code ends the script.
+# expect CODE COMMAND...: runs it, storing stderr in `said` and stdout in `printed`; another exit code ends the script.
 expect() {
     local code=$1 got=0
     shift
@@ -37,7 +37,7 @@ build_example() {
     expect 0 cmake --build "$1/build"
 }
 
-# same_outputs A B: equal but for what varies from run to run.
+# same_outputs A B: equal except for what varies from run to run.
 same_outputs() { diff -r -x timing.json "$1" "$2" >difference || die "$1 and $2 differ: $(head -n 5 difference)"; }
 
 # own_namespace: the rest of the script runs in namespaces of its own; what it mounts and every process ends with it.

@@ -60,6 +60,6 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --out out
 cmp out/metrics.csv "$root/out/metrics.csv" || die "other numbers in the image"
 expect 0 inside "$entry run gallery --seeds 1 --only metrics --quiet --out /gallery"
 
-# What the image leaves out ends in a sentence.
+# What the image omits is reported in a sentence.
 expect 3 inside "$entry run /tiny.toml --quiet --instrument gl --out /gl"
 grep -q 'install the packages' said || die "what --instrument gl needs is not named: $(cat said)"

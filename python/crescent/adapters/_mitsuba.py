@@ -84,7 +84,7 @@ class _Bsdf:
         wi, p, weight = _rows(bs.wo, n), _column(bs.pdf, n).copy(), _rows(weighs, n)
         delta = (_column(bs.sampled_type, n).astype(np.int64) & int(self.mi.BSDFFlags.Delta)) != 0
         lost = np.flatnonzero((p != 0) & ~delta & (weight == 0).all(axis=1))
-        if len(lost):  # a weight of 0 that pdf(w) and f do not bear out: Mitsuba's way to say that nothing was drawn
+        if len(lost):  # a weight of 0 that pdf(w) and f contradict: Mitsuba uses it for draws that return no sample
             same = np.isclose(self.pdf(wo[lost], wi[lost]), p[lost], rtol=1e-2)
             p[lost] = np.where(same & (self.f(wo[lost], wi[lost]) == 0).all(axis=1), p[lost], 0)
         return wi, p, weight, delta
@@ -150,7 +150,7 @@ class _Emitter:
         numbers = [self.mi.Float(np.ascontiguousarray(u[:, k], np.float32)) for k in range(2)]
         with self.one_by_one():
             ds, weight = self.scene.sample_emitter_direction(self.at(len(u)), self.mi.Point2f(*numbers), True, True)
-        lit = (_rows(weight, len(u)) != 0).any(axis=1)  # else hidden, or on a side that does not shine: nothing drawn
+        lit = (_rows(weight, len(u)) != 0).any(axis=1)  # else hidden, or on a side that does not emit: nothing drawn
         return _rows(ds.d, len(u)), np.where(lit, _column(ds.pdf, len(u)), 0)
 
     def pdf(self, wi: Array) -> Array:

@@ -101,7 +101,8 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
         print(f"{it.title()}: {result.state} {result.broken()}", file=sys.stderr, flush=True)
         told = "; ".join(f"{f.verdicts[0].name}: {f.kind()}" for f in found)
         table.append(f"| `{it.title()}` | {result.state} | {told or '-'} |")
-        # One section an explanation, at the plugin where it is first met, by a verdict that a script shows; bugs each.
+        # One section per explanation, at the plugin where it is first found, by a verdict that a script shows; one per
+        # bug.
         for f in sorted(found, key=lambda f: f.verdicts[0].name == "identity"):
             sections.setdefault(f.note.because if f.note else f"{it.title()} {f.verdicts[0].name}", f)
     yield f"## What ships in Mitsuba {mi.__version__}"

@@ -1,5 +1,5 @@
-// Floats against the C library in double or long double, over every argument or a fine comb of them; the bounds are
-// those that math.h states.
+// Floats against the C library in double or long double, over every argument or a fine subset; the bounds are those
+// that math.h states.
 #include "math/simd/math.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-// The one list of metrics: what is read off a film, of every region or of the frame. A new one is one file beside this
-// one and one line here; the list feeds what a run measures and keeps, metrics.json and metrics.csv, the quantities
-// that a check can name, the spread over seeds, `crescent list metrics`, the report and the tests.
+// The list of metrics, computed from a film for every region or for the frame. To add one, add a file in this folder
+// and a line here. The list determines what a run measures and stores, metrics.json and metrics.csv, the quantities
+// that an assertion can name, the spread over seeds, `crescent list metrics`, the report and the tests.
 //
 // metric(name, type)
 #pragma once

@@ -1,4 +1,4 @@
-// Against sums of 160 000 points on a disk or a million directions with no cleverness, and against closed forms.
+// Against sums over 160 000 points of a disk or a million directions, and against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
     return false;
 }
 
-/// The same integral by a million points, with no cleverness at all.
+/// Returns the same integral as a sum over a million points.
 DiskIntegral brute_force(const Scene& scene, const lights::Disk& disk, const Hit& hit, const Surface& surface) {
     const Frame<double> light = frame_about(disk.normal), local = frame_about(hit.n);
     constexpr int rings = 400, spokes = 400;
@@ -86,8 +86,8 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
     EXPECT_GT(dark, 50);
 }
 
-/// A area light of half-angle `half` right above a point that is seen from above, through a body that hides half of it
-/// or not.
+/// Returns an area light of half-angle `half` directly above a point that is seen from above; with `hidden`, a body
+/// hides half of it.
 Experiment area_light_above(double half, bool hidden) {
     Experiment e = test::small_scene();
     e.shapes.resize(2);

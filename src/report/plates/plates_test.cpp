@@ -1,5 +1,5 @@
-// Every kind of plate, on experiments and films made up for it: nothing cut off, small or overlapping, equal bytes on
-// any thread, no measured number on photographs, faults of runs said, printed numbers those of the films.
+// Every kind of plate, on synthetic experiments and films: nothing cut off, too small or overlapping, equal bytes on
+// any thread, no measured number on photographs, faults of runs stated, printed numbers equal to those of the films.
 #include "report/plates/plates.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ double luminance_of(const plates::Colour& c) {
     return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
 }
 
-// WCAG 2.2: text and lines that tell something at 4.5:1.
+// WCAG 2.2: text and lines that carry information at 4.5:1.
 TEST(Plates, InksOfTheLightThemeStandOutFromItsGround) {
     using namespace plates;
     const double paper = luminance_of(themed(ground, Theme::light));

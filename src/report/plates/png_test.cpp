@@ -1,4 +1,4 @@
-// encode_png() read back by libpng: size, pixels, provenance in Latin-1 and beyond it, no date.
+// encode_png() read back by libpng: size, pixels, provenance in Latin-1 and other text, no date.
 #include <gtest/gtest.h>
 #include <png.h>
 

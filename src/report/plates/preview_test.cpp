@@ -1,4 +1,4 @@
-// The preview: every box of the experiment is listed as it is typed, marked where it lies, and nothing runs off the
+// The preview: every box of the experiment is listed as it is written, marked at its place, and nothing exceeds the
 // sheet.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Blocks against photograph() of single pixels and of averages worked out by hand: whole-number enlargement, rows
-// top-down, areas in linear light, constants at any ratio, one NaN at any size; and what fit() and inside() give.
+// Blocks against photograph() of single pixels and of averages computed by hand: whole-number enlargement, rows
+// top-down, areas in linear light, constants at any ratio, one NaN at any size; and the results of fit() and inside().
 #include "report/plates/raster.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Labels, numbers and formulas of plates against markup written out by hand, on an experiment made up for it.
+// Labels, numbers and formulas of plates against markup written out by hand, on a synthetic experiment.
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -152,7 +152,7 @@ def the_link_back(driver):
         with tempfile.TemporaryDirectory() as out:
             command = shlex.split(words)[1:] + ["--seeds", "1", "--only", "metrics", "--quiet", "--out", out]
             subprocess.run([os.environ["CRESCENT"], "run", *command], cwd=os.environ["CRESCENT_SOURCE"],
-                           stdout=subprocess.DEVNULL)  # exit 1 where an assertion of the experiment fails at this N
+                           stdout=subprocess.DEVNULL)  # exit 1 if an assertion of the experiment fails at this N
             metrics = json.loads((pathlib.Path(out) / "metrics.json").read_text())
         for film in films:
             assert film in metrics["films"].values(), f"{words}: {film} is none of {metrics['films']}"
@@ -173,7 +173,7 @@ def a_lesson_is_confirmed(driver):
     source = pathlib.Path(os.environ["CRESCENT_SOURCE"])
     with tempfile.TemporaryDirectory() as out:
         file = next(word for word in shlex.split(words) if word.endswith(".toml"))
-        parts = re.split(r"(?m)^(?=\[)", (source / file).read_text())  # without what no number of the lesson needs
+        parts = re.split(r"(?m)^(?=\[)", (source / file).read_text())  # without parts that the lesson does not need
         kept = [part for part in parts if not re.match(r"\[+(exponent|furnaces|plates|assertions)", part)]
         scene = pathlib.Path(out) / "scene.toml"
         scene.write_text(re.sub(r"(?m)^(published|monte_carlo|n = \[).*$", "", "".join(kept)))
@@ -203,7 +203,7 @@ def two_hundred_settings(driver):
     names = ["uniform", "cosine", "phong", "mixture", "ggx-vndf", "mis-balance"]
     settings = []
     for turn in range(200):
-        fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference now and then
+        fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference from time to time
         settings.append(f"experiment=three-glosses&n=4&arms={','.join(draw.sample(names, 3))}"
                         f"&set=seed={draw.randrange(2**32)}{fill}")
     run = """
@@ -233,7 +233,8 @@ def two_hundred_settings(driver):
           f"{max(workers[1]) / 1e6:.2f}; scripts {first / 1e6:.2f} MB, then {second / 1e6:.2f}; "
           f"{nodes} nodes, then {nodes_after}")
     assert len(sizes) == 200 and max(own[1]) <= max(own[0]), f"the page's module grew: {own[0][::20]}, {own[1][::20]}"
-    # Which worker gets which tile is chance, and so is when it takes the most. 2.5 kB a setting hold no picture.
+    # Which worker gets which tile is random, and so is when it uses the most memory. 2.5 kB per setting contain no
+    # picture.
     assert max(workers[1]) <= max(workers[0]) + 2**20, f"the workers grew: {workers[0][::20]}, {workers[1][::20]}"
     assert second <= first + 2**18 and nodes_after <= 1.2 * nodes, f"the scripts kept {scripts}"
     assert settings[-1].split("arms=")[1].split("&")[0] in driver.execute_script("return location.hash")
@@ -258,7 +259,7 @@ try:
             said, asked = browser.console(driver), browser.requests(driver)
             assert said == [], f"the console has lines: {said}"
             assert asked == [], f"the page asked for {asked}"
-        except Exception as error:  # the others are still worth knowing
+        except Exception as error:  # the others are still useful
             failed += 1
             print(f"{law.__name__}: {law.__doc__}\n{type(error).__name__}: {error}", file=sys.stderr)
         print(f"{law.__name__}: {law.__doc__} {time.monotonic() - start:.1f} s")

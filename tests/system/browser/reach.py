@@ -10,7 +10,7 @@ from selenium.webdriver.common.keys import Keys
 import browser
 
 small = "#experiment=three-glosses&n=4"
-PLAY = {  # what each lesson leaves to play with
+PLAY = {  # the samplers that each lesson offers at its end
     "sparkle": ["sphere.s", "seed"], "four-times": ["n", "seed"], "four-times-phong": ["n", "sphere.s", "seed"],
     "firefly": ["sphere.s", "firefly_k"], "sharper": ["sphere.s"], "furnace": ["furnace-s", "furnace-n"],
     "mixture": ["sphere.s", "sphere.rho_d", "sphere.rho_s"], "seeds": ["seed"],
@@ -62,7 +62,7 @@ def tests(page, folder):
         browser.keys(driver, Keys.ENTER)
         ids = [e.get_attribute("data-lesson") for e in driver.find_elements(By.CSS_SELECTOR, "[data-lesson]")]
         assert len(ids) == 12, ids
-        browser.wait(driver, "document.getElementById('status').textContent === ''")  # a number would answer a question
+        browser.wait(driver, "document.getElementById('status').textContent === ''")  # a number answers a question
         browser.tab_to(driver, "[data-lesson]")
         browser.keys(driver, Keys.ENTER)
         for lesson in ids:
@@ -221,7 +221,7 @@ def tests(page, folder):
         x0, y0, x1, y1 = driver.execute_script("return " + box)
         browser.tab_to(driver, "[aria-label='region mine right']")
         browser.keys(driver, Keys.CONTROL, "a")
-        browser.keys(driver, "3", Keys.TAB)  # left of its left end: it stops beside it
+        browser.keys(driver, "3", Keys.TAB)  # left of its left end: it stops next to it
         browser.wait(driver, f"({box}).join() === '{x0},{y0},{x0 + 1},{y1}' && {browser.FINISHED}")
         assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
         corners_are_moved(driver, box, (x0, y0, x0 + 1, y1))

@@ -22,7 +22,7 @@ def wait(script, seconds=120):
         try:
             if value := driver.execute_script("return " + script):
                 return value
-        except WebDriverException:  # asked while one page makes way for the next
+        except WebDriverException:  # called while one page replaces another
             pass
         time.sleep(0.2)
     raise SystemExit(f"after {seconds} s still not: {script}; "

@@ -88,7 +88,7 @@ def _block(page: Path, lines: list[str], opening: int, closing: int) -> Block:
     text = "".join(line[indent:] + "\n" for line in lines[opening + 1 : closing])
     out = Block(page, opening + 1, language, text)
     beside = [_paragraph(lines, closing + 1, 1)]
-    if not _follows_a_block(lines, opening):  # else what is above belongs to that block
+    if not _follows_a_block(lines, opening):  # else the text above belongs to that block
         beside.append(_paragraph(lines, opening - 1, -1))
     for paragraph in beside:
         if mark := MARK.search(paragraph):

@@ -27,7 +27,7 @@ def run(request: dict, names: dict) -> dict:
 
 def main() -> None:
     answers = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what libraries print is no answer
+    os.dup2(2, 1)  # library output must not become part of a response
     sys.path.insert(0, os.getcwd())
     names = {"__name__": "__main__"}
     for line in sys.stdin:
