@@ -1,4 +1,4 @@
-"""A user's sampler: its callables with what is known of it, looked over as it is made."""
+"""A user's sampler: its callables and properties, validated when it is created."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SIDES = ("upper", "both", "none")
 
 
 def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
-    """A whole number of a range; TypeError or ValueError."""
+    """Returns an integer in a range; else raises TypeError or ValueError."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -32,7 +32,7 @@ def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
 
 @dataclass(frozen=True)
 class Sampler:
-    """A sampler's callables with what is known of it.
+    """A sampler's callables and properties.
 
     Local frame, n = +z; wo is given, wi drawn, both leave the surface; pdf in 1/sr; f in 1/sr without the cosine.
     """
@@ -73,12 +73,12 @@ class Sampler:
                 raise ValueError(f"eta is {self.eta!r}: expected a number above 0, or three of them")
 
     def title(self) -> str:
-        """Its name, or that of the function which draws."""
+        """Its name, or that of the function that draws."""
         return self.name or getattr(self.sample, "__name__", type(self.sample).__name__)
 
 
 class Known(TypedDict, total=False):
-    """What check takes as keywords of a sampler of callables: the fields of Sampler."""
+    """The keywords of check for a sampler of callables: the fields of Sampler."""
 
     name: str
     u: int
@@ -96,6 +96,6 @@ class Known(TypedDict, total=False):
 
 
 def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:
-    """A few rows to look at a sampler with: w_o and u."""
+    """Returns a few rows for testing a sampler's form: w_o and u."""
     wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
     return wo, (np.arange(n)[:, None] + 0.5) / n * np.ones((1, numbers)) * np.linspace(1, 0.6, numbers)
