@@ -20,7 +20,7 @@ from ._arrays import Array
 
 Call = Callable[..., Any]
 
-#: The module of an array's type, and the library that its callables take; these tell by their errors that they want it.
+#: The module of an array's type, and the library that its callables take; they reject others with an error.
 KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy", "drjit": "drjit", "mitsuba": "drjit"}
 _KEPT = 4  # arrays a thread: w_o, the numbers, directions that were drawn, directions that were asked for
 

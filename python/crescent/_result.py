@@ -22,11 +22,11 @@ class Verdict:
     case: str  #: w_o and parameters: "w_o 60 deg az 250"
     name: str  #: valid, support, normalised, density, identity, physics, tail, mean or efficiency
     state: State
-    say: str  #: one sentence for the reader
-    cause: str = ""  #: what explains it, where something does
-    settle: str = ""  #: what would settle it, where it is inconclusive
-    expected: bool = True  #: False: the list of built-in arms expects another state
-    evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers behind it
+    say: str  #: the message
+    cause: str = ""  #: the cause, if one is found
+    settle: str = ""  #: the next step, if it is inconclusive
+    expected: bool = True  #: False: another state was expected of a built-in sampler
+    evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers of the test
     seconds: float = field(default=0.0, compare=False, repr=False)
 
 

@@ -41,19 +41,19 @@ class Sampler:
     pdf: Callable[..., Any] | None = None  #: pdf(wo[n,3], wi[n,3]) -> [n]
     f: Callable[..., Any] | None = None  #: f(wo[n,3], wi[n,3]) -> [n] or [n,3]
     name: str = ""
-    u: int = 2  #: random numbers a sample takes, 1 to 8
-    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 under the surface whatever the callables say there
-    wo: Asked = "upper"  #: the w_o that it answers for; "none": sample(u) and pdf(wi), as of an environment light
-    channels: int | None = None  #: 1 or 3; None: as f and the weights have
-    delta: bool | None = None  #: some draws are of delta parts; None: where sample gives four parts
+    u: int = 2  #: random numbers per sample, 1 to 8
+    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 below the surface, for any result of the callables there
+    wo: Asked = "upper"  #: the w_o that it supports; "none": sample(u) and pdf(wi), as for an environment light
+    channels: int | None = None  #: 1 or 3; None: the number of f and the weights
+    delta: bool | None = None  #: some draws are delta parts; None: if sample returns four parts
     eta: float | Sequence[float] | None = None  #: index of refraction below over above
-    importance: bool = False  #: f is scaled as importance is, not as radiance
+    importance: bool = False  #: f is scaled for importance, not for radiance
     reciprocal: bool = True  #: False: f is known not to be reciprocal
-    own_random: bool = False  #: it draws random numbers of its own: the same u may give another answer
-    serial: bool = False  #: its callables want one thread, the caller's own
-    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
+    own_random: bool = False  #: it draws random numbers of its own: the same u may give another result
+    serial: bool = False  #: its callables require the caller's thread
+    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: the arrays that they return
     array_module: Any = None
-    device: Any = None  #: where these arrays lie, as that library says it
+    device: Any = None  #: the device of these arrays, in that library's notation
 
     def __post_init__(self) -> None:
         for what, taken in (("sample", "wo, u"), ("pdf", "wo, wi"), ("f", "wo, wi")):

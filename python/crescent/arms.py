@@ -94,7 +94,7 @@ class Tail:
 
     k: float
     se: float  #: standard error of k
-    exceedances: int  #: how many of the largest it was fitted to
+    exceedances: int  #: number of the largest weights that were fitted
 
     @property
     def heavy(self) -> bool:

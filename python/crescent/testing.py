@@ -19,7 +19,7 @@ from ._files import names_a_file, sampler_at
 from ._result import CheckResult
 from ._sampler import Sampler
 
-ALPHA = 1e-3  #: of a whole session
+ALPHA = 1e-3  #: for a whole session
 
 
 @dataclass
@@ -29,10 +29,10 @@ class Session:
     alpha: float = ALPHA
     tests: int = 1
     checked: int = 0
-    spent: float = 0.0  #: of alpha, so far
+    spent: float = 0.0  #: share of alpha used so far
     calls: dict[str, int] = field(default_factory=dict)
     test: str = ""  #: that is running
-    root: Path | None = None  #: where files of samplers are looked for; None: the current folder
+    root: Path | None = None  #: where files of samplers are searched; None: the current folder
 
     def share(self) -> float:
         """Returns the alpha of the next call; the shares of all calls sum to at most `alpha` (Sidak over tests)."""

@@ -18,9 +18,9 @@ class Fault:
 
     name: str  #: a few words
     project: str
-    source: str  #: where the project or its users tell of it
+    source: str  #: the report by the project or its users
     says: str  #: what was wrong, in a sentence
-    caught_by: tuple[str, ...]  #: verdicts that accuse it
+    caught_by: tuple[str, ...]  #: verdicts that detect it
     sampler: Sampler
     fixed: Sampler
 
@@ -29,7 +29,7 @@ class Fault:
         return check(self.fixed if fixed else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
 
 
-W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: where each is looked at, in degrees
+W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: w_o of each check, in degrees
 
 
 def faults_in(folder: str | Path) -> list[Fault]:

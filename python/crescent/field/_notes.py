@@ -15,10 +15,10 @@ class Note:
 
     plugins: str  #: a regular expression over the plugin and its parameters
     verdicts: str  #: over the verdict's name
-    says: str  #: over its sentence
+    says: str  #: over its message
     kind: str  #: "bug", "no picture changes", "corner", "approximation", "single precision", "the model"
     because: str
-    script: str = ""  #: that shows it, in place of one made for the verdict
+    script: str = ""  #: that shows it, instead of one made for the verdict
 
     def covers(self, title: str, verdict: Verdict) -> bool:
         """Returns whether it explains this verdict of this plugin."""

@@ -32,7 +32,7 @@ class Shipped:
     kind: str  #: "bsdf" or "emitter"
     plugin: dict[str, Any]
     known: dict[str, Any] = field(default_factory=dict)  #: of crescent.Sampler
-    label: str = ""  #: in place of the parameters
+    label: str = ""  #: instead of the parameters
 
     def title(self) -> str:
         """The plugin and its parameters, except nested ones."""

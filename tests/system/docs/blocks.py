@@ -32,10 +32,10 @@ class Block:
     line: int
     language: str
     text: str
-    needs: str = ""  #: what it is not run for the lack of, as its mark says
-    prints: Block | None = None  #: what stands directly below it as its output
-    of: Block | None = field(default=None, repr=False)  #: whose output it is
-    above: str = field(default="", repr=False)  #: the line above it that is not blank
+    needs: str = ""  #: what is missing to run it, from its mark
+    prints: Block | None = None  #: the block directly below with its output
+    of: Block | None = field(default=None, repr=False)  #: the block whose output it is
+    above: str = field(default="", repr=False)  #: the last non-blank line above it
 
     @property
     def place(self) -> str:

@@ -22,7 +22,7 @@ from pathlib import Path
 from blocks import Block, Mistake, blocks_of, matches
 from runners import RUNNERS, Absent, Page, Setting
 
-#: The tests of which page, its blocks included, are a script's.
+#: Pages whose blocks are tested by a script.
 COVERED = {"docs/extending.md": "tests/system/extending.sh"}
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from blocks import Block, Mistake
 
-#: Libraries that the package works with and does without.
+#: Optional libraries of the package.
 OPTIONAL = ("mitsuba", "drjit", "jax", "torch", "cupy", "xarray", "matplotlib")
 EXIT = re.compile(r"\s#.*?\bexit (\d+)\b")
 
@@ -31,8 +31,8 @@ class Setting:
     source: Path  #: the repository
     build: Path  #: its release build
     compiler: str
-    python: str  #: an interpreter that has the module and what it needs; empty: none here
-    prefix: Path  #: where the build is installed
+    python: str  #: an interpreter that has the module and its requirements; empty: none
+    prefix: Path  #: the prefix of the installed build
 
 
 @dataclass
@@ -43,7 +43,7 @@ class Page:
     folder: Path
     blocks: list[Block]
     worker: subprocess.Popen[str] | None = None
-    cmake: list[Block] = field(default_factory=list)  #: fragments that wait for their source
+    cmake: list[Block] = field(default_factory=list)  #: fragments without their source so far
 
     def environment(self) -> dict[str, str]:
         s = self.setting
