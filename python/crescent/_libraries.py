@@ -22,7 +22,7 @@ Call = Callable[..., Any]
 
 #: The module of an array's type, and the library that its callables take; they reject others with an error.
 KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy", "drjit": "drjit", "mitsuba": "drjit"}
-_KEPT = 4  # arrays a thread: w_o, the numbers, directions that were drawn, directions that were asked for
+_KEPT = 4  # arrays per thread: w_o, the numbers, drawn directions, queried directions
 
 
 class Library:

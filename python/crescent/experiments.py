@@ -266,7 +266,7 @@ class Measured:
         return Measured, (self._core,)
 
     def records(self) -> list[dict[str, Any]]:
-        """One row per number: arm, n, s, seed, meter, region, value; suitable for a data frame.
+        """One row per number: arm, n, s, seed, `meter`, region, value; suitable for a data frame.
 
         Counts are int, other numbers float, None if there is none; region is "" for the whole frame. Each changed key
         has a column, whose values are those of the file.
