@@ -2,7 +2,7 @@
 //
 //   load, parse       an experiment file or text -> Experiment; InputError names every mistake with its place
 //   Scene             an Experiment -> what a pixel sees: surface point, normal, BRDF, lights, what blocks them
-//   Arms              the built-in samplers as a list of types; for_each_sampler visits each
+//   Samplers          the built-in samplers as a list of types; for_each_sampler visits each
 //   estimate_films    Scene + sampler -> films: per pixel the moments of n samples, one film per sample count
 //   OpenPixel         one pixel of a scene -> the parts of each of its samples: direction, density, f, L, cosine, X
 //   check_sampler     a sampler -> ordered verdicts with their evidence; crescent/gtest.h has the matchers
