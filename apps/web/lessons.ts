@@ -11,7 +11,7 @@ export type Ask =
 
 /** How the core answers: from measurements, from one sample, from a furnace, or from the verdicts of samplers. */
 export type Answer =
-  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // beside: reported only
+  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // `beside`: reported only
   | { by: "firefly"; arm: string; n: number; region: "H" | "S" }
   | { by: "furnace"; name: string; n: number }
   | { by: "support" | "chi-square" | "t-test" | "which"; samplers: readonly string[]; theta: number; surface?: string };
