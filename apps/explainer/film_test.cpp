@@ -37,7 +37,7 @@ std::string what(std::size_t shot, int frame, const plates::Setting& s) {
         std::to_string(s.extents.x) + ", " + std::to_string(s.extents.y);
 }
 
-TEST(Film, EveryTextIsWholeAndLargeEnoughToReadOnAPhone) {
+TEST(Film, EveryTextIsUncutAndLargeEnough) {
     Painter painter(timeline(), small_height);
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         for (const int frame : looked_at(k)) {
@@ -70,7 +70,7 @@ double luminance_of(double r, double g, double b) {
     return 0.2126 * srgb_decode(r) + 0.7152 * srgb_decode(g) + 0.0722 * srgb_decode(b);
 }
 
-TEST(Film, OnEveryStillTextStandsOutFromWhatIsBehindIt) {
+TEST(Film, StillsHaveEnoughTextContrast) {
     Painter painter(timeline(), small_height);
     painter.canvas().hide_text(true);
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
@@ -174,7 +174,7 @@ std::vector<std::uint64_t> hashes(int first, int last, int threads) {
     return out;
 }
 
-TEST(Film, AFrameIsTheSameAloneInTheFilmAndOnAnyNumberOfThreads) {
+TEST(Film, FramesDoNotDependOnThreadsOrOrder) {
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         const int first = timeline().begin(k) + 60, last = std::min(first + 36, timeline().begin(k + 1));
         const std::vector<std::uint64_t> one = hashes(first, last, 1);
@@ -185,7 +185,7 @@ TEST(Film, AFrameIsTheSameAloneInTheFilmAndOnAnyNumberOfThreads) {
     }
 }
 
-TEST(Film, AFrameThatIsTakenForUnchangedWouldBeDrawnTheSame) {
+TEST(Film, UnchangedFramesWouldBeDrawnTheSame) {
     Painter running(timeline(), small_height);
     int taken = 0;
     for (int frame = 0; frame < timeline().frames(); frame += 11) {

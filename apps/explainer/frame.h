@@ -42,7 +42,7 @@ public:
     /// Returns 0 .. n: how many of n equal steps from `from` to `to` are complete.
     int steps(double from, double to, int n) { return static_cast<int>(ask({Kind::steps, from, to, n})); }
 
-    /// Sets words in a box; `alpha` 0 draws nothing. Returns their extents.
+    /// Sets words in a box; For `alpha` 0 nothing is drawn. Returns their extents.
     Rect text(const Rect& box, const Words& words, Text how, double alpha = 1);
     Rect measure(const Words& words, const Text& how) { return canvas_.measure(words.markup(), how); }
     /// Paints a block of pixels enlarged `times` times, its corner at whole units, with a hairline around it.

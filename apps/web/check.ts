@@ -18,7 +18,7 @@ function table(one: Checked["cases"][number]): HTMLElement {
   return el("table", { class: "verdicts" }, el("caption", {}, one.case), el("tbody", {}, ...rows));
 }
 
-/** A sampler and a w_o to choose, and what `check` says of them. */
+/** A sampler and a w_o to choose, and the verdicts of `check` on them. */
 export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
   const { samplers, theta } = lesson.check!, answer = lesson.answer as { samplers: readonly string[]; theta: number };
   let sampler = answer.samplers[0]!, at = answer.theta, asked = 0;
@@ -43,7 +43,7 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
       el("button", { type: "button", id: "check", onclick: () => void check() }, "Check")), out);
 }
 
-/** Paints a sampler's density and its draws when there is room for it; what is no longer on the page is left out. */
+/** Paints a sampler's density and its draws when there is room for it; skipped if it is no longer on the page. */
 async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
   const wanted = (): boolean => canvas.isConnected;
   const density = await model.disk(wanted, "density_disk", { sampler: value, theta }, size);

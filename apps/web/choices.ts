@@ -25,7 +25,7 @@ function armChoice(k: number, { state, sources, samplers, open }: Choosing): HTM
   });
 }
 
-/** Makes the choices anew; the one that has the focus keeps it. */
+/** Creates the choices again; the focused one keeps the focus. */
 export function showChoices(root: HTMLElement, given: Choosing): void {
   const { state, sources, only } = given, held = document.activeElement?.id;
   const all: [string, () => HTMLElement][] = [

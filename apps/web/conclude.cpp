@@ -191,8 +191,8 @@ Found concluded(const ordered_json& query) {
 
 }  // namespace
 
-/// {by, options, surface, of: [results of measure or checked], beside: [other results of measure]} -> {answer, kind,
-/// lines}.
+/// `{by, options, surface, of: [results of measure or checked], beside: [other results of measure]}` ->
+/// {answer, kind, lines}.
 CRESCENT_EXPORT(concluded)()->void {
     const Found found = concluded(request());
     respond(ordered_json{{"answer", found.answer}, {"kind", found.kind}, {"lines", found.lines}});

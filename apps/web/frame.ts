@@ -3,14 +3,14 @@
 import { el } from "./dom";
 
 export type Drawn = [number, number, number, number];
-/** A box with its name. move: its corners can be moved, the new box is passed on; reached: also by the tabulator. */
+/** A box with its name. move: its corners can be moved, the new box is passed on; reached: also by the tab key. */
 export interface Outlined { name: string; box: readonly number[]; move?: ((box: Drawn) => void) | undefined; reached?: boolean | undefined }
 export interface Picking {
   pixel?(i: number, j: number): void;
   region(box: Drawn): void;
 }
 
-/** What an arrow key moves by, in pixels: one, ten with shift. Other keys are left alone. */
+/** The step of an arrow key, in pixels: one, ten with shift. Other keys are ignored. */
 export function byKey(event: KeyboardEvent): [number, number] | undefined {
   const step = event.shiftKey ? 10 : 1;
   const by: Record<string, [number, number]> = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
@@ -70,7 +70,8 @@ export class Frame {
     return made;
   }
 
-  /** One corner of a box as a button outside it; x is box[kx], y is box[ky]. It stops one pixel before the corner beyond. */
+  /** One corner of a box as a button outside it; x is box[kx], y is box[ky]. It stops one pixel before the opposite
+   *  corner. */
   private corner(of: Outlined, kx: 0 | 2, ky: 1 | 3): HTMLElement {
     const box = of.box as Drawn, { width, height } = this.size;
     const to = (x: number, y: number): Drawn => {
@@ -116,7 +117,7 @@ export class Frame {
     return made;
   }
 
-  /** Boxes with their names, and a pixel where one is chosen. A corner that has the focus keeps it. */
+  /** Boxes with their names, and a pixel if one is selected. A focused corner keeps the focus. */
   outlines(boxes: readonly Outlined[], pixel?: [number, number]): void {
     const held = this.over.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset["corner"] : undefined;
     this.last = boxes;

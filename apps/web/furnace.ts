@@ -4,7 +4,7 @@ import { choice } from "./controls";
 import { el, minus } from "./dom";
 import { Lesson } from "./lessons";
 
-/** An s and an N to choose, and what each furnace reads with them. */
+/** An s and an N to choose, and the result of each furnace for them. */
 export function furnacePanel(asker: Asker, lesson: Lesson): HTMLElement {
   const { s: sharpness, n: numbers } = lesson.furnace!, answer = lesson.answer as { n: number };
   let s = lesson.furnace!.own, n = answer.n, asked = 0;

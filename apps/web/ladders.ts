@@ -2,7 +2,7 @@
 import { el, made } from "./dom";
 import { Model } from "./model";
 
-/** The charts of what the model has measured, unless it opens something else meanwhile. */
+/** The charts of the model's measurements, unless it opens something else meanwhile. */
 export async function showLadders(root: HTMLElement, model: Model): Promise<void> {
   const { described, shown } = model;
   await model.turns.pass();

@@ -58,10 +58,10 @@ function question(lesson: Lesson, asker: Asker, given: string | undefined, take:
 
 const unsaid = "The lines above say what was found; it is not what this lesson has words for.";
 
-/** Words with formulas, as the core sets them. */
+/** Words with formulas, formatted by the core. */
 const set = (model: Model, words: string): DocumentFragment => made(model.api.say("html", words));
 
-/** An answer as the question words it. */
+/** An answer in the words of the question. */
 function worded({ ask }: Lesson, value: string): string {
   if (ask.kind === "slider") return `${value} ${ask.unit}`;
   if (ask.kind === "choice") return ask.options.find((o) => o.value === value)?.words ?? (value === "overlap" ? "none: the intervals of the seeds overlap" : value);

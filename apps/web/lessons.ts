@@ -1,7 +1,7 @@
 // Lessons: the question, the measurement that answers it, and the values that may be changed. No number is hard-coded:
 // the core measures and names the result, which selects a sentence of `says`. Formulas are between dollar signs.
 
-/** An arm over a region at one N on several seeds; `as`: its name where that is not the arm's. */
+/** An arm over a region at one N on several seeds; `as`: its name if that is not the arm's. */
 export interface Measured { arm: string; n: number; region: "H" | "S"; seeds: number; set?: readonly string[]; as?: string }
 
 export type Ask =
@@ -11,7 +11,7 @@ export type Ask =
 
 /** How the core answers: from measurements, from one sample, from a furnace, or from the verdicts of samplers. */
 export type Answer =
-  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // beside: reported only
+  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // `beside`: reported only
   | { by: "firefly"; arm: string; n: number; region: "H" | "S" }
   | { by: "furnace"; name: string; n: number }
   | { by: "support" | "chi-square" | "t-test" | "which"; samplers: readonly string[]; theta: number; surface?: string };
@@ -24,7 +24,7 @@ export interface Lesson {
   furnace?: { s: readonly number[]; n: readonly number[]; own: number }; // or these; own: the experiment's s
 }
 
-/** Whether it plays with the bench below it. */
+/** Whether it uses the bench below it. */
 export const onBench = (lesson: Lesson): boolean => !lesson.check && !lesson.furnace;
 
 const names = (words: readonly string[]): readonly { value: string; words: string }[] =>

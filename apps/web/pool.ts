@@ -35,7 +35,7 @@ class Hand {
   }
 }
 
-/** A queue that has no worker: jobs in parts, one after another, each in an instance that no other job touches meanwhile. */
+/** A queue without a worker: jobs in parts, one after another, each in an instance that no other job uses meanwhile. */
 class Lane {
   readonly answering: Answering;
   queue: Waiting[] = [];
@@ -45,7 +45,7 @@ class Lane {
   get busy(): boolean { return this.current !== undefined || this.queue.length > 0; }
   drop(): void { this.queue = []; this.current = undefined; }
 
-  /** Does one part of a job. Returns how much work it was, in samples. */
+  /** Does one part of a job. Returns its work, in samples. */
   part(): number {
     const fresh = this.current === undefined, waiting = (this.current ??= this.queue.shift()!);
     try {
@@ -106,21 +106,21 @@ export class Pool {
     });
   }
 
-  /** Workers at work; 0: slices of the page's own thread. */
+  /** The number of workers; 0: slices of the page's own thread. */
   get workers(): number { return this.hands.length; }
 
-  /** Drops every question that was asked, but for lasting ones. */
+  /** Drops all requests except lasting ones. */
   cancel(): void {
     ++this.era;
     this.queue = this.queue.filter((waiting) => waiting.lasting);
     this.alone?.passing.drop();
   }
 
-  /** Bytes that the instances of all workers have taken; the largest part that was done without them, in samples. */
+  /** Bytes allocated by the instances of all workers; the largest part done without workers, in samples. */
   get size(): number { return this.hands.reduce((sum, hand) => sum + hand.size, 0); }
   get most(): number { return Math.max(this.alone?.lasting.answering.most ?? 0, this.alone?.passing.answering.most ?? 0); }
 
-  /** Every instance opens this experiment; questions that were asked before are dropped. */
+  /** Every instance opens this experiment; earlier requests are dropped. */
   open(opening: Opening): void {
     this.cancel();
     this.opened = opening;
@@ -132,7 +132,7 @@ export class Pool {
     hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 
-  /** `lasting`: the question is answered whatever is opened meanwhile, and before all others. */
+  /** `lasting`: the request survives other openings, and comes before all others. */
   async ask(job: Job, lasting = false): Promise<Answer> {
     const era = this.era;
     if (!this.settled) await this.ready;
@@ -146,8 +146,8 @@ export class Pool {
     });
   }
 
-  /** The picture cut into boxes, one a job. `cost`: samples a pixel. A job has at most `most` samples, or in a worker twenty
-      times as many, because a new setting has to wait for the jobs that are under way. */
+  /** The picture cut into boxes, one per job. `cost`: samples per pixel. A job has at most `most` samples, or in a worker
+   *  twenty times as many, because a new setting has to wait for running jobs. */
   tiles(width: number, height: number, cost: number, most: number): Box[] {
     const pixels = Math.max(1, Math.floor((this.alone ? most : 20 * most) / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
@@ -166,7 +166,8 @@ export class Pool {
     }
     for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.nextFor(hand));
   }
-  /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another worker. */
+  /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another
+   *  worker. */
   private nextFor(hand: Hand): Waiting {
     const good = (waiting: Waiting): boolean => [hand, undefined].includes(this.kept.get(boxOf(waiting)));
     const [waiting] = this.queue.splice(Math.max(0, this.queue.findIndex(good)), 1);
@@ -175,7 +176,7 @@ export class Pool {
   }
   private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
 
-  /** Parts of jobs, as many in each turn as it has room for. */
+  /** Runs parts of jobs, as many in each turn as it has room for. */
   private async slices(): Promise<void> {
     if (this.slicing) return;
     this.slicing = true;

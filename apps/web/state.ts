@@ -37,7 +37,7 @@ export function fresh(experiment: string, source: Source): State {
   };
 }
 
-/** Whether a lesson can be answered so. */
+/** Whether this is a valid answer of a lesson. */
 function answers({ ask }: Lesson, to: string, size: readonly [number, number]): boolean {
   if (ask.kind === "choice") return ask.options.some(({ value }) => value === to);
   if (ask.kind === "slider") return to !== "" && Number(to) >= ask.low && Number(to) <= ask.high;
@@ -60,7 +60,7 @@ function readLessons(asked: URLSearchParams, state: State, size: readonly [numbe
   }
 }
 
-/** Reads an address; `response` receives a line for everything that was not understood. */
+/** Reads an address; `response` receives a line for everything that is invalid. */
 export function read(hash: string, sources: Record<string, Source>, samplers: string[], response: string[]): State {
   const asked = new URLSearchParams(hash.replace(/^#/, ""));
   const first = Object.keys(sources)[0]!;
@@ -119,25 +119,26 @@ export function write(state: State): string {
   return `#${out.toString().replaceAll("%2C", ",").replaceAll("%3D", "=").replaceAll("%3A", ":").replaceAll("%2F", "/")}`;
 }
 
-/** Rungs that an arm of the experiment does not have, as --set takes them; "" where there are none. */
+/** Sample counts that an arm of the experiment does not have, in the form for --set; "" if there are none. */
 function sampleCounts(arm: string, state: State, source: Source): string {
   if (source.arms[arm]?.includes(state.n)) return "";
   const most = Math.max(state.n, 64);
   return `arms.${arm}.n=[${ladder.filter((n) => n <= most && (n > 1 || state.n === 1)).join(", ")}]`;
 }
 
-/** The program's hash of a film that the page has too, where the settings are the experiment's; regions and k change none. */
+/** The program's hash of a film that the page has too, if the settings are the experiment's; regions and k do not
+ *  change it. */
 export function nativeHash(state: State, source: Source, key: string): string | undefined {
   return Object.keys(state.set).every((path) => /^(regions\.|firefly_k$)/.test(path)) ? source.films[key] : undefined;
 }
 
-/** What was set, and what the arms that are looked at need beside it. */
+/** The changed settings, and those that the displayed arms also need. */
 export function overrides(state: State, source: Source): string[] {
   const set = Object.entries(state.set).map(([key, to]) => `${key}=${to}`);
   return [...set, ...state.arms.map((arm) => sampleCounts(arm, state, source)).filter((word) => word !== "")];
 }
 
-/** A word as a shell takes it. */
+/** A word quoted for a shell. */
 export const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
 
 export function command(state: State, source: Source): string {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A sampler for `crescent check --exec 'python3 cosine.py'`: the cosine-weighted hemisphere and a Lambert BRDF of 0.5.
 
-One request a line, one answer a line, in order; n = +z; end of input ends it."""
+One request per line, one response per line, in order; n = +z; end of input ends it."""
 import math
 import os
 

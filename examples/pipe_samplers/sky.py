@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """An environment light for `crescent check --exec 'python3 sky.py [ROWS COLUMNS]'`, by blocks of doubles.
 
-2048 x 4096 texels in theta x phi with a sun of 0.27 degrees; a row by its CDF, a column by that row's. The chance of a
-texel is its radiance times the sine at its middle, and p is constant in theta x phi within it: p = chance / (d theta
-d phi sin theta). It depends on no w_o and has no BRDF."""
+2048 x 4096 texels in theta x phi with a sun of 0.27 degrees; a row by its CDF, a column by that row's. The probability
+of a texel is its radiance times the sine at its middle, and p is constant in theta x phi within it: p = probability /
+(d theta d phi sin theta). It depends on no w_o and has no BRDF."""
 import sys
 
 import numpy as np

@@ -53,7 +53,7 @@ ListedArm arm_of(const std::string& name, const std::string& lobe, double s, dou
     return out;
 }
 
-/// Calls ask(sampler, i) row by row; a sampler is made again when w_o changes.
+/// Calls ask(sampler, i) row by row; a sampler is created again when w_o changes.
 template <class Ask> void each_row(const ListedArm& arm, const In& wo, Ask&& ask) {
     std::shared_ptr<const SamplerAdapter> adapter;
     Vec3d aimed{};

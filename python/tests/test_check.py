@@ -1,4 +1,4 @@
-"""check: right samplers are right, faults are found, and what does not fit is told with its first bad row."""
+"""check: correct samplers pass, faults are found, and errors name the first bad row."""
 
 import copy
 import dataclasses

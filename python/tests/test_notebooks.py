@@ -16,7 +16,7 @@ def test_there_are_three():
 
 
 def run_cell(source, names):
-    """As a notebook does: the value of a last expression is shown."""
+    """Runs a cell like a notebook: the value of a last expression is shown."""
     tree = ast.parse(source)
     last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, "cell", "exec"), names)

@@ -9,7 +9,7 @@ from crescent import Sampler, check
 from crescent.testing import Session, assert_sampler, mutants, who_notices
 
 pytest_plugins = ["pytester"]
-#: An installed package's plugin is loaded by itself.
+#: An installed package's plugin is loaded automatically.
 LOAD = () if entry_points(group="pytest11", name="crescent") else ("-p", "crescent.pytest_plugin")
 MINE = Sampler(cosine, cosine_pdf, lambert, name="mine")
 

@@ -114,7 +114,7 @@ std::string name_of(const testing::TestParamInfo<Way>& info) {
 INSTANTIATE_TEST_SUITE_P(
     Each, Publishing, testing::Values(Way::exchange, Way::two_renames, Way::one_by_one, Way::current_folder), name_of);
 
-TEST_P(Publishing, KilledBeforeAnyChangeLosesNothingAndTheNextRunLeavesNothingBehind) {
+TEST_P(Publishing, KillBeforeAnyChangeLosesNothing) {
     start_over(new_run);
     const Files clean = all();
     ASSERT_EQ(users_files_seen(), users.size());
@@ -196,7 +196,7 @@ TEST_F(Publishing, ForTheFirstTimeShowsAllOrNothing) {
     }
 }
 
-TEST_F(Publishing, KeepsTheFoldersRightsAndWorksThroughALink) {
+TEST_F(Publishing, KeepsPermissionsAndFollowsALink) {
     fs::create_directories(top_ / "real/out");
     fs::permissions(top_ / "real/out", fs::perms(0750));
     fs::create_directory_symlink("real/out", out_);

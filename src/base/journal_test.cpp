@@ -53,7 +53,7 @@ TEST_F(Journals, GiveRecordsBackInOrder) {
     EXPECT_EQ(read(), (Texts{"first", "second", ""}));
 }
 
-TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
+TEST_F(Journals, TornRecordIsDroppedAndWritingContinues) {
     write({{"one"}, {"two"}, {"three"}});
     std::ifstream whole(path_, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(whole), {}};

@@ -24,7 +24,7 @@ protected:
     }
 };
 
-TEST_F(Machines, WithGroupsOfVersion2GrantTheTightestOfThem) {
+TEST_F(Machines, CgroupV2GrantsTheSmallestLimit) {
     put("own", "0::/jobs/mine\n");
     EXPECT_EQ(granted_processors(root_, own_), 0);
     EXPECT_EQ(granted_memory(root_, own_), ~std::uint64_t{0});

@@ -86,7 +86,7 @@ TEST(Processes, OfAThreadLiveOnWithoutIt) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
-TEST(Processes, ThatLeaveAChildWithTheirPipesEndAllTheSame) {
+TEST(Processes, EndWhileAChildHoldsTheirPipes) {
     Process process({.argv = {"/bin/sh", "-c", "sleep 300 & exit 4"}, .stdin_file = "/dev/null"});
     const std::optional<ProcessEnd> end = process.ended(5000);
     ASSERT_TRUE(end);
@@ -110,7 +110,7 @@ TEST(Processes, HaveTheirStderrPassedOnInLines) {
     EXPECT_EQ(passed_on("true"), "");
 }
 
-TEST(Processes, HaveLongLinesPassedOnInPiecesOfWholeCharacters) {
+TEST(Processes, LongLinesAreSplitBetweenCharacters) {
     const std::string text = passed_on("for k in $(seq 5001); do printf '\\342\\202\\254'; done >&2");  // €
     std::istringstream lines(text);
     std::string all;

@@ -67,7 +67,7 @@ TEST(WhatIfs, AreOneLineEach) {
     EXPECT_THAT(gallery({"arms.second={sampler=\"cosine\", n=9}"}).find_arm("second")->n, ElementsAre(9u));
 }
 
-TEST(WhatIfs, OfTheExponentMoveEverySurfaceAndEveryRunThatNamesNone) {
+TEST(WhatIfs, ExponentAppliesToAllThatNameNone) {
     const Experiment e = gallery({"sphere.s=64"});
     EXPECT_EQ(e.s(), 64);
     for (const Shape& shape : e.shapes) EXPECT_EQ(shape.material.s, 64) << shape.name;
@@ -104,7 +104,7 @@ TEST(WhatIfs, MeetTheChecksOfTheFile) {
         testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
 }
 
-TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
+TEST(AnotherS, ChangesTheShapeAndAllThatInheritIt) {
     const Experiment e = load(folder + "three-glosses.toml").with_s(7);
     EXPECT_EQ(e.s(), 7);
     EXPECT_EQ(e.find_shape("gloss")->material.s, 7);

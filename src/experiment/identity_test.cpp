@@ -156,7 +156,7 @@ std::size_t keys_of(const Section& section) {
     return all;
 }
 
-TEST(Identity, SeesTheColourOfALobeAndTakesAGreyOneForItsNumber) {
+TEST(Identity, GreyColourEqualsItsNumber) {
     const auto text_of = [](const char* value) {
         return canonical_text(parse(room, "a.toml", {std::string("ball.rho_s=") + value, "ball.s=9"}));
     };

@@ -261,12 +261,12 @@ TEST(Mistakes, ANameGivenTwiceDoesNotHideTheRest) {
     }
 }
 
-TEST(Mistakes, AFileThatIsNotThereOrAFolderIsTheReadersMistake) {
+TEST(Mistakes, MissingFileAndFolderAreInputErrors) {
     EXPECT_THROW((void)load("/nowhere/at/all.toml"), InputError);
     EXPECT_THROW((void)load("/"), InputError);
 }
 
-TEST(Mistakes, MoreDiskLightsThanKernelsHoldAreRefusedWhereTheFirstOfThemStands) {
+TEST(Mistakes, TooManyDiskLightsAreRejected) {
     std::string text = good;
     for (int k = 0; k < 64; ++k)
         text += fmt::format(

@@ -26,7 +26,7 @@ TEST(Shaders, EveryArmHasItsFileAndCompilesOnEveryLobe) {
                 << arm << " on lobe " << lobe;
 }
 
-TEST(Shaders, OneThatDoesNotCompileIsToldWithTheDriversLogAndTheFile) {
+TEST(Shaders, CompileErrorHasDriverLogAndFile) {
     ShaderSource source;
     source.include("random.glsl");
     source.add("planted.glsl",
@@ -54,11 +54,11 @@ TEST(Framebuffers, AreCompleteRgba32fWithoutSrgbAndMsaa) {
     }
 }
 
-TEST(Framebuffers, WithMoreBuffersThanTheDriverHasAreRefused) {
+TEST(Framebuffers, TooManyBuffersAreRejected) {
     EXPECT_THAT(what_of<OutputError>([] { Framebuffer(test::context(), 16, 16, 1000); }), HasSubstr("1000 are needed"));
 }
 
-TEST(Framebuffers, LargerThanTheDriverTakesAreRefusedWithItsLog) {
+TEST(Framebuffers, TooLargeIsRejectedWithTheDriverLog) {
     GLint largest = 0;
     test::context().gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     EXPECT_THAT(what_of<OutputError>([&] { Framebuffer(test::context(), largest + 1, 4, 1); }),
@@ -77,7 +77,7 @@ TEST(LostContext, EndsTheFilmWithAnErrorThatSaysSo) {
         what_of<OutputError>([&] { gl.films(scene, "cosine", {4}, 1, monitor); }), HasSubstr("context was lost"));
 }
 
-TEST(Contexts, AWrongChoiceIsTheReadersMistakeAndNamesWhatIsThere) {
+TEST(Contexts, WrongChoiceIsAnInputErrorWithChoices) {
     EXPECT_THAT(what_of<InputError>([] { open_context({"glx", -1}); }), HasSubstr("expected egl or osmesa"));
     EXPECT_THAT(what_of<InputError>([] { open_context({"osmesa", 0}); }), HasSubstr("OSMesa has no devices"));
     EXPECT_THAT(what_of<InputError>([] { open_context({"egl", 999}); }), HasSubstr("crescent list devices"));
@@ -100,7 +100,7 @@ TEST(GlBackend, IsRegisteredByItsWordAndSaysWhatItRunsOn) {
     EXPECT_EQ(find_backend("telescope"), nullptr);
 }
 
-TEST(Pacer, NeverAsksForMoreThanTheLastDrawsSpeedAllowsAndGrowsSlowly) {
+TEST(Pacer, BudgetFollowsSpeedAndGrowsSlowly) {
     Pacer pacer;
     EXPECT_TRUE(pacer.untried());
     const std::uint64_t first = pacer.budget();

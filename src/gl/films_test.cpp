@@ -31,7 +31,7 @@ void expect_within(const Difference& d, const GlTolerance& tolerance, std::uint6
 
 class FilmAgreement : public testing::TestWithParam<std::string> {};
 
-TEST_P(FilmAgreement, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
+TEST_P(FilmAgreement, SamplesAreTheCpusExceptNearEdges) {
     const Scene scene(test::small_scene());
     Estimator gl(test::context());
     const bool software = test::context().software();
@@ -79,13 +79,13 @@ TEST_P(FilmAgreement, LightsThatAreNoDisksAreTheCpus) {
         expect_within(differences(with_other_lights(false), gl, GetParam(), 16, 12), tolerance, 16, software);
 }
 
-TEST(FilmAgreement, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
+TEST(FilmAgreement, ToleranceIsStatedForShadersOnly) {
     for (const SamplerInfo& arm : sampler_infos())
         EXPECT_EQ(arm.gl.relative > 0, shader_text("arms/" + glsl_word(std::string(arm.name)) + ".glsl") != nullptr)
             << arm.name;
 }
 
-TEST(FilmAgreement, NoticesALobeThatIsOneInATenThousandSharper) {
+TEST(FilmAgreement, DetectsALobeSharperByOneInTenThousand) {
     const Scene scene(test::small_scene()), other(test::small_scene({"shapes.phong.s=24.0024"}));
     const ShapeMap shapes = shape_map(scene);
     ProgressMonitor monitor;
@@ -124,7 +124,7 @@ TEST(Films, EveryPlaneIsTheCpus) {
     }
 }
 
-TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
+TEST(Films, SmallVariancesAreTheCpus) {
     const Scene scene(test::small_scene(
         {"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
     ProgressMonitor monitor;

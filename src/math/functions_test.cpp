@@ -132,7 +132,7 @@ struct Pair {
     std::vector<std::array<std::pair<double, double>, 2>> ranges;
 };
 
-TEST(Functions, OfTwoArgumentsStayWithinTheErrorOfTheirTable) {
+TEST(Functions, TwoArgumentErrorsAreWithinTheTable) {
     const std::pair<double, double> any = {-infinity, infinity}, positive = {0, infinity};
     double (*length)(double, double) = hypot;
     const std::vector<Pair> table = {

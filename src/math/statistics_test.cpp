@@ -59,7 +59,7 @@ TEST(Distributions, QuantilesAndIntervalsAreThoseOfBoost) {
 
 namespace {
 
-TEST(ExactTests, FisherIsTheHypergeometricProbabilityOfNoLikelierSplits) {
+TEST(ExactTests, FisherSumsNoLikelierSplits) {
     EXPECT_NEAR(fisher_exact(4, 4, 0, 4), 2.0 / 70, 1e-15);
     EXPECT_NEAR(fisher_exact(3, 4, 1, 4), 0.48571428571428565, 1e-12);
     EXPECT_NEAR(fisher_exact(1, 24, 0, 24), 1, 1e-12);

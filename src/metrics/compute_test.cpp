@@ -23,7 +23,7 @@ std::optional<Tail> pareto_tail(double k, std::uint32_t seed, std::uint64_t n = 
     return fit_tail(std::span<const double>(x));
 }
 
-TEST(TailIndex, RecoversTheExponentOfAParetoWithinItsStandardError) {
+TEST(TailIndex, RecoversTheExponentOfAPareto) {
     for (double k : {0.2, 0.5, 0.778, 0.939}) {
         int outside = 0;
         for (std::uint32_t seed = 0; seed < 40; ++seed) {
@@ -34,7 +34,7 @@ TEST(TailIndex, RecoversTheExponentOfAParetoWithinItsStandardError) {
     }
 }
 
-TEST(TailIndex, CallsABoundedDistributionLightAndAConstantNoTailAtAll) {
+TEST(TailIndex, BoundedIsLightAndConstantHasNoTail) {
     std::vector<float> x;
     for (std::uint64_t j = 0; j < 20000; ++j) x.push_back(draw(1, 0, j).x);
     std::sort(x.begin(), x.end(), std::greater<>());
@@ -45,7 +45,7 @@ TEST(TailIndex, CallsABoundedDistributionLightAndAConstantNoTailAtAll) {
     EXPECT_FALSE(fit_tail(std::span<const float>(std::vector<float>(3, 3.0f))).has_value());
 }
 
-TEST(TailIndex, OfPooledSamplesLooksPastTheStepToTheLitOnes) {
+TEST(TailIndex, PooledFitIgnoresTheStepToLitSamples) {
     std::vector<float> mixed, heavy;
     for (std::uint64_t j = 0; j < 500'000; ++j) {
         const Vec2<float> u = draw(2, 0, j);
@@ -95,7 +95,7 @@ TEST(Metrics, ReadEveryNumberOffTheFloatFilm) {
     EXPECT_DOUBLE_EQ(run.rmse_frame, std::sqrt((4 + 4.5 * 4.5) / 8));
 }
 
-TEST(Metrics, ShareTheHorizonAmongTheDirectionsThatWereDrawn) {
+TEST(Metrics, HorizonShareIsOfAllDrawnDirections) {
     Known k;
     k.film.directions = 2;
     EXPECT_DOUBLE_EQ(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).horizon_frac, 7.0 / 140);
@@ -166,7 +166,7 @@ TEST(Ladders, FitTheSlopeOfAPowerLaw) {
     EXPECT_NEAR(ladder.high - ladder.low, 0, 1e-6);
 }
 
-TEST(Ladders, HaveTheSlopeOfTheSeedTheyStandBesideAndTheBandOfAll) {
+TEST(Ladders, SlopeIsOfTheFirstSeedAndBandOfAll) {
     const Ladder ladder = ladders_falling_as({-0.2, -0.5, -0.6})[0];
     EXPECT_NEAR(ladder.slope, -0.2, 1e-12);
     EXPECT_NEAR(ladder.low, -0.59, 1e-12);

@@ -27,11 +27,9 @@ double references_apart(const Experiment& experiment) {
     return std::fabs(difference) / std::sqrt(variance);
 }
 
-TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
-    EXPECT_LT(references_apart(test::small_scene()), 4);
-}
+TEST(Estimator, ArticleReferenceMatchesTheQuadrature) { EXPECT_LT(references_apart(test::small_scene()), 4); }
 
-TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
+TEST(Estimator, DiskBehindAnotherIsHiddenFromBoth) {
     Experiment experiment = test::small_scene();
     DiskLight& near = experiment.disks[0];
     DiskLight& far = experiment.disks[1];
@@ -59,7 +57,7 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, con
     return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
-TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
+TEST(Estimator, ArticleReferenceSharesNoRandomStream) {
     Experiment experiment = test::small_scene();
     experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
     const Scene scene(experiment);

@@ -24,7 +24,7 @@ std::vector<std::string> hashes(const std::vector<Film>& films) {
     return out;
 }
 
-TEST(SameBits, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
+TEST(SameBits, EveryArmOnEveryInstructionSet) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     for (const std::string& arm : all_arms()) {
@@ -34,7 +34,7 @@ TEST(SameBits, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
     }
 }
 
-TEST(SameBits, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
+TEST(SameBits, EveryLobeOnEveryInstructionSet) {
     ProgressMonitor monitor;
     for (const LobeInfo& lobe : lobe_infos()) {
         const Scene scene(
@@ -75,7 +75,7 @@ TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
 
 /// The samples of every shading point of the test scene are compared with the moments that the kernel computed from
 /// them.
-TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
+TEST(Moments, MatchTheSamplesAtManySamples) {
     const Scene scene(test::small_scene());
     constexpr std::uint64_t n = 65536;
     for (ShadingPoints shading_points : shading_points_of(scene, {30, 20, 34, 23}, nullptr)) {
@@ -115,7 +115,7 @@ TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
     EXPECT_GT(above_n, 0u);  // a pair of directions may meet a light twice
 }
 
-TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
+TEST(Films, VarianceIsNaNForNaNAndZeroForZeros) {
     const Scene scene(test::small_scene());
     const ShadingPoints shading_points = shading_points_of(scene, {30, 20, 34, 23}, nullptr).front();
     Moments moments;
@@ -150,7 +150,7 @@ TEST(Estimator, StopsInMidWorkWithinATile) {
     other.join();
 }
 
-TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
+TEST(LargestSamples, MatchTheSamplesInDescendingOrder) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     constexpr std::uint64_t n = 40;
@@ -170,7 +170,7 @@ TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     EXPECT_EQ(largest, all);
 }
 
-TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {
+TEST(InstructionSets, UnknownNameSuggestsTheNearest) {
     try {
         kernels_for("avx3");
         FAIL();

@@ -57,7 +57,7 @@ template <class Call> void for_each_body(Call&& f) {
     [&]<class... Kind>(KindList<Kind...>) { (f.template operator()<Kind>(), ...); }(Bodies{});
 }
 
-TEST(EveryBody, HidesOfAnEdgeWhatACamerasRaysMeetItBefore) {
+TEST(EveryBody, HiddenEdgePartsMatchCameraRays) {
     for_each_body([]<class Kind>() {
         Drawn draw(3);
         int hidden = 0, seen = 0, off = 0;
@@ -78,7 +78,7 @@ TEST(EveryBody, HidesOfAnEdgeWhatACamerasRaysMeetItBefore) {
     });
 }
 
-TEST(EveryBody, BlocksInKernelsWhatACamerasRaysMeetItBefore) {
+TEST(EveryBody, KernelShadowsMatchCameraRays) {
     for_each_body([]<class Kind>() {
         Drawn draw(4);
         int hidden = 0, seen = 0, off = 0;
@@ -101,7 +101,7 @@ TEST(EveryBody, BlocksInKernelsWhatACamerasRaysMeetItBefore) {
     });
 }
 
-TEST(EveryBody, HasItsPointsWithinItsExtentAndItsAzimuths) {
+TEST(EveryBody, PointsAreWithinExtentAndAzimuths) {
     for_each_body([]<class Kind>() {
         Drawn draw(5);
         int met = 0;

@@ -81,7 +81,7 @@ TEST_F(Exr, AFilmReadBackIsTheFilm) {
     expect_plane(second.r, channel<float>(path, 1, "R", Imf::FLOAT), "second part");
 }
 
-TEST_F(Exr, HasTheChannelsPartsAndAttributesThatItsHeaderStates) {
+TEST_F(Exr, HasTheDocumentedChannelsAndAttributes) {
     const Film film = counting_film();
     write_exr(path, {{"n16", &film}, {"n64", &film}}, {{"crescent.experiment", "0123456789abcdef"}});
     const Imf::MultiPartInputFile file(path.c_str());

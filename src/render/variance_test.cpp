@@ -37,7 +37,7 @@ void expect_two_pass(const ShadingPoints& shading_points, const std::string& arm
     }
 }
 
-TEST(VarianceConformance, EveryArmHasTheTwoPassVarianceOfItsSamples) {
+TEST(VarianceConformance, EveryArmHasItsTwoPassVariance) {
     for (const double radius : {0.3, 1e-2, 1e-3, 1e-4, 1e-5}) {
         const Scene scene = scene_with_area_lights(radius);
         for (const TileBox& box : boxes)

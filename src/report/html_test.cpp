@@ -112,7 +112,7 @@ TEST(ReportHtml, SentencesTurnRoundWithTheOrder) {
     EXPECT_FALSE(has_section(s.html(), "failure-a")) << "a heading claims what was not measured";
 }
 
-TEST(ReportHtml, TellsOfTwoTechniquesAndOfLightThatAnArmCannotReach) {
+TEST(ReportHtml, StatesTwoTechniquesAndUnreachableLight) {
     Sample s;
     EXPECT_THAT(s.html(), Not(HasSubstr("counts pairs")));
     EXPECT_THAT(s.html(), Not(HasSubstr("is biased in this scene")));
@@ -131,7 +131,7 @@ TEST(ReportHtml, NamesTheExponentWhereItSaysSomething) {
     EXPECT_THAT(s.html(), Not(HasSubstr("cosine, <i>N</i> = 64, <i>s</i>")));
 }
 
-TEST(ReportHtml, WarnsOfASurfaceThatReflectsMoreThanItReceives) {
+TEST(ReportHtml, WarnsOfASurfaceThatCreatesEnergy) {
     Sample s;
     EXPECT_THAT(s.html(), Not(HasSubstr("reflects more than it receives")));
     s.experiment.shapes[0].material.rho_d = {0.2, 0.95, 0.2};
@@ -200,7 +200,7 @@ TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
     for (const char* label : {"Phong", "GGX"}) EXPECT_NE(html.find(label, lobes), std::string::npos) << label;
 }
 
-TEST(ReportHtml, MarksAssertionsThatCannotFailAndThoseThatWereSkipped) {
+TEST(ReportHtml, MarksUnfailingAndSkippedAssertions) {
     Sample s;
     s.metrics.assertions[0].cannot_fail = true;
     s.metrics.assertions[1].pass = false, s.metrics.assertions[1].skipped = "no plates were drawn";
@@ -246,7 +246,7 @@ TEST(ReportHtml, NumbersThatAreNoneDoNotBreakThePage) {
     EXPECT_THAT(html, Not(HasSubstr("d=\"Mnan")));
 }
 
-TEST(ReportHtml, KeepsUnderItsWeightByLinkingTheLargestPlates) {
+TEST(ReportHtml, LinksTheLargestPlatesToStaySmall) {
     Sample s;
     s.plates["hero"] = std::vector<unsigned char>(12'000'000);
     s.plates["small"] = {1, 2, 3};

@@ -97,7 +97,7 @@ TEST(MetricsJson, HasNoRunsWithNothingMeasured) {
     keep("nothing-measured", parsed(s), true);
 }
 
-TEST(MetricsJson, AnInstrumentsOwnWordsStandInTheProvenanceAndTheCpuHasNone) {
+TEST(MetricsJson, ProvenanceHasTheBackEndDetails) {
     Sample s;
     EXPECT_FALSE(parsed(s)["provenance"].contains("instrument_details"));
     s.provenance.backend_details = {{"GL_VERSION", "4.5 (Core Profile)"}, {"context", "OSMesa"}};
@@ -157,7 +157,7 @@ TEST(MetricsCsv, QuotesNamesAsRfc4180Says) {
     EXPECT_NE(csv.find(",tail_k,S,0.1\r\n"), std::string::npos);
 }
 
-TEST(MetricsCsv, HasAColumnForEachKeyThatWasSetAndNoTwoOfOneName) {
+TEST(MetricsCsv, HasOneUniqueColumnForEachSetKey) {
     Sample s;
     s.metrics.runs.resize(1);
     s.experiment.overrides = {"seed=9", "n=64", "fill.radiance=[1, 1, 1]", "exposure=2", "seeds=3", "exposure=4"};

@@ -23,7 +23,7 @@ TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
     EXPECT_EQ(find_arm_info("no such arm"), nullptr);
 }
 
-TEST(ArmInfos, SayInOneLineWhatTheyAimAtAndHaveFormulasThatCanBeSet) {
+TEST(ArmInfos, HaveSummariesAndValidFormulas) {
     for (const SamplerInfo& arm : sampler_infos()) {
         EXPECT_FALSE(arm.summary.empty()) << arm.name;
         EXPECT_LE(arm.summary.size(), 100u) << arm.name;
@@ -34,7 +34,7 @@ TEST(ArmInfos, SayInOneLineWhatTheyAimAtAndHaveFormulasThatCanBeSet) {
     }
 }
 
-TEST(ArmInfos, TellTheLightThatTheyMissWhereTheoryExpectsThatOfTheirSupport) {
+TEST(ArmInfos, StateMissedLightAsTheoryExpects) {
     for (const SamplerInfo& arm : sampler_infos()) {
         const bool support = arm.theory && arm.theory({.rho_d = 0.5, .fill = 1}).wrong == "support";
         EXPECT_EQ(!arm.misses.empty(), support) << arm.name;
@@ -57,7 +57,7 @@ template <class F> struct WithoutWeight : Cosine<F> {
     template <int> PerSr<F> pdf_technique(Vec3<F> wo, Vec3<F> wi) const { return this->pdf(wo, wi); }
 };
 
-TEST(Samplers, AreHeldToWhatAnArmMustHaveInEveryArithmetic) {
+TEST(Samplers, SatisfyTheConceptInEveryArithmetic) {
     for_each_sampler(Samplers{}, []<template <class> class A>() { static_assert(Sampler<A<double>, double>); });
     static_assert(!Sampler<WithoutUnits<float>, float>);
     static_assert(!Sampler<WithoutWeight<float>, float>);

@@ -131,7 +131,7 @@ template <class Visit> void for_each_ray(ShapeKind kind, Visit&& visit) {
     }
 }
 
-TEST(IntersectConformance, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
+TEST(IntersectConformance, NearestPointIsOnTheSurfaceWithItsNormal) {
     for (const ShapeKind kind : kinds) {
         int hits = 0;
         for_each_ray(kind, [&](const Sample& q, Vec3d x, Vec3d d) {
@@ -198,7 +198,7 @@ TEST(IntersectConformance, FromInsideABodyTheFarWallIsMet) {
     }
 }
 
-TEST(IntersectConformance, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
+TEST(IntersectConformance, PanelsAreEnteredOnlyFromTheFront) {
     PrimarySample next(5);
     int reveals = 0;
     for (int k = 0; k < 20'000; ++k) {

@@ -135,7 +135,7 @@ template <class Sampler> void expect(const Sampler& sampler, crescent::State sta
     EXPECT_EQ(j.state, state) << crescent::what_is_wrong(j);
 }
 
-TEST(Adapters, AClassOfPbrtsShapeIsJudgedWithItsDeltaPart) {
+TEST(Adapters, PbrtClassIsCheckedWithItsDeltaPart) {
     expect(crescent::adapters::Pbrt(PbrtLike{}), crescent::State::right);
     expect(crescent::adapters::Pbrt(PbrtLike{1.03f}), crescent::State::wrong);
     expect(crescent::adapters::Pbrt(FlaggedPbrtLike{}), crescent::State::right);
@@ -153,7 +153,7 @@ TEST(Adapters, AClassOfNorisShapeIsJudged) {
     expect(crescent::adapters::Nori(NoriLike{1.03f}), crescent::State::wrong);
 }
 
-TEST(Adapters, FunctionsOfOpenPbrsShapeAreJudgedInColour) {
+TEST(Adapters, OpenPbrFunctionsAreCheckedInColour) {
     const auto of = [](float off) {
         return crescent::adapters::OpenPbr<Vec>([off](Vec wo) { return openpbr_like::Prepared{wo, off}; });
     };

@@ -41,7 +41,7 @@ TEST(Against, ItselfNothingIsToldApart) {
     }
 }
 
-TEST(Against, AnotherSamplerOfTheSameDistributionIsNotToldApart) {
+TEST(Against, EqualDistributionsAreNotDistinguished) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45);
     SyntheticSampler r{"cosine by rejection", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
@@ -93,7 +93,7 @@ SyntheticSampler part_mirror(double mirrored) {
     return r;
 }
 
-TEST(Against, ARightVerdictStatesWhatWouldHaveBeenFound) {
+TEST(Against, PassStatesTheDetectableDifference) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45);
     const Verdict v = named(against(a, sampler_named_against("cosine", a)), "same_distribution");
     const double part = v.evidence["would_have_found"]["part"].get<double>(),
@@ -115,7 +115,7 @@ TEST(Against, ARightVerdictStatesWhatWouldHaveBeenFound) {
 }
 
 /// Samplers with only delta parts are distinguished by them.
-TEST(Against, DeltaPartsThatAreDrawnMoreOftenAreAnotherDistribution) {
+TEST(Against, DifferentDeltaProbabilitiesAreFound) {
     const std::vector<CheckCase> a = {make_user_case(make_adapter(part_mirror(0.5)), 45, 130)};
     const auto against_one = [&](double mirrored) {
         return against(a, sampler_against(make_adapter(part_mirror(mirrored)), a), true);
@@ -218,7 +218,7 @@ std::shared_ptr<const SamplerAdapter> lambert(double albedo, double describe = 1
     return make_adapter(r);
 }
 
-TEST(Against, AnotherFIsToldAndIsWrongWhereNoneIsExpected) {
+TEST(Against, DifferentFIsReportedAndCanFail) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45), b = sampler_against(lambert(0.505), a);
     const CheckResult describe = against(a, b), expected = against(a, b, true);
     EXPECT_EQ(describe.state, State::right) << against_text(describe);
@@ -299,7 +299,7 @@ std::shared_ptr<const SamplerAdapter> coated(double mirror_reflects) {
     return make_adapter(r);
 }
 
-TEST(Against, DeltaPartsOfAnotherPowerAreToldAndNotRanked) {
+TEST(Against, DifferentDeltaPowersAreNotRanked) {
     const std::vector<CheckCase> a = {make_user_case(coated(0.2), 45, 0)};
     const CheckResult alike = against(a, sampler_against(coated(0.2), a)),
                       other = against(a, sampler_against(coated(0.25), a));

@@ -37,7 +37,7 @@ std::shared_ptr<const SamplerAdapter> power(double k, Gives gives) {
     return make_adapter(r);
 }
 
-TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
+TEST(AgainstWithoutAPdf, OnlyDifferentDrawsAreDistinguished) {
     for (const auto& [one, other] : {std::pair(Gives::pdf, Gives::weight), {Gives::weight, Gives::pdf},
              {Gives::weight, Gives::weight}, {Gives::nothing, Gives::pdf}}) {
         const std::vector<CheckCase> a = {make_user_case(power(1.5, one), 45, 130)};
@@ -50,7 +50,7 @@ TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
 }
 
 /// Under constant light Var X depends on cos^k: weights returned with the draws give the same value as p.
-TEST(AgainstWithoutAPdf, VariancesAreRankedByTheWeightsThatComeWithTheDraws) {
+TEST(AgainstWithoutAPdf, VariancesAreRankedByReturnedWeights) {
     const std::vector<CheckCase> a = {make_user_case(power(0.5, Gives::weight), 45, 130)};
     const CheckResult j = against(a, sampler_against(power(0.8, Gives::pdf), a));
     const Verdict& v = named(j, "variance");

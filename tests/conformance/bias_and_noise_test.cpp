@@ -44,7 +44,7 @@ TEST(CompareJudges, RareBrightEventsAreRarelyTakenForABias) {
 }
 
 // Two versions of a renderer have the same noise: events that no render met are missing on both sides.
-TEST(CompareJudges, ArmsWithTheSameRareEventsAreRarelyToldApart) {
+TEST(CompareJudges, EqualRareEventsAreRarelyDistinguished) {
     for (const SyntheticNoise& noise :
         {SyntheticNoise{Kind::events, 1e-3}, {Kind::events, 1e-4}, {Kind::pareto, 1.5}, {Kind::sparks, 2e-3}}) {
         SCOPED_TRACE(to_string(noise));
@@ -54,7 +54,7 @@ TEST(CompareJudges, ArmsWithTheSameRareEventsAreRarelyToldApart) {
 
 // Renders that met none of an arm's events look like those of a darker arm. This is reported with the difference; if a
 // bound on the pixel value allows for such events, no difference is reported.
-TEST(CompareJudges, EventsThatNoRenderMetAreSaidAndABoundAllowsForThem) {
+TEST(CompareJudges, UnseenEventsAreReportedAndBounded) {
     const SyntheticScene w{{Kind::events, 1e-4, 0}, fine, 4, 24};
     const CompareFlag same{{"expect"}, "same", false, ""}, bound{{"brightest"}, "10000", true, ""};
     int missed = 0;
@@ -167,7 +167,7 @@ TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
     EXPECT_GE(numbered, 5);  // where the mean of squares has one, the number of renders from which an interval is given
 }
 
-TEST(CompareJudges, SameIsSaidOnlyWhereADifferenceWouldHaveBeenSeen) {
+TEST(CompareJudges, SameRequiresEnoughPower) {
     const std::vector<CompareFlag> same{{{"expect"}, "same", false, ""}};
     EXPECT_EQ(compare_synthetic(world(3, 0), 3, same).state, State::inconclusive);
     std::vector<CompareFlag> large = same;

@@ -120,7 +120,7 @@ TEST(Estimates, OfFAloneOrOfPdfAloneAreTold) {
     }
 }
 
-TEST(Estimates, WithADeterministicFAndPdfAndRandomWeightsAreRight) {
+TEST(Estimates, RandomWeightsAloneAreRight) {
     const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
     adapter->of_pdf = adapter->of_f = false;
     const CheckResult j = checked(adapter);

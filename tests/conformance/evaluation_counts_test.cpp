@@ -81,7 +81,7 @@ std::vector<CheckCase> at(const SyntheticSampler& recipe, std::initializer_list<
 constexpr std::uint64_t promised = 500000, in_process = 1500000;
 
 /// From the denser side, beyond the angle of total reflection, a number selects at only a few points.
-TEST(Programs, OfRightGlassAreConclusiveWithinWhatTheyAreAsked) {
+TEST(Programs, CorrectGlassIsConclusiveInQuickMode) {
     const RoughGlass sharp{0.05, 1.5}, broad{0.5, 1.5};
     for (const SyntheticSampler& r : {recipe_of(sharp), recipe_of(broad)}) {
         const Seen seen = checked(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
@@ -93,7 +93,7 @@ TEST(Programs, OfRightGlassAreConclusiveWithinWhatTheyAreAsked) {
     }
 }
 
-TEST(Programs, OfCoatsLayersAndAnisotropicLobesAreConclusiveWithinWhatTheyAreAsked) {
+TEST(Programs, CorrectLayersAreConclusiveInQuickMode) {
     Layers layers;
     layers.alpha = 0.1;
     for (const SyntheticSampler& r : {recipe_of(SmoothCoat{}), recipe_of(layers), ggx_visible_at(0.05, 0.5)}) {
@@ -256,7 +256,7 @@ TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
 }
 INSTANTIATE_TEST_SUITE_P(Quarter, FaultsOfPrograms, testing::Values(0u, 1u, 2u, 3u));
 
-TEST(CachingAdapter, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
+TEST(CachingAdapter, QueriesOnlyWhatIsNotCached) {
     const auto program = std::make_shared<Counted>(make_adapter(ggx_visible_at(0.3, 0.3)));
     const auto kept = cached(program);
     const Vec3d wo = tilt(30), a = tilt(20, 10), b = tilt(50, 200), c = tilt(70, 300);

@@ -25,7 +25,7 @@ TEST(Jobs, AreEachArmAtTheExperimentsOwnExponent) {
             "uniform n=64 s=24", "cosine n=4 s=24", "cosine n=64 s=24", "phong n=4 s=24", "phong n=64 s=24"}));
 }
 
-TEST(Jobs, AddTheExponentControlWhereAPassHasItNotAlready) {
+TEST(Jobs, AddOnlyMissingExponentControlRuns) {
     Experiment e = test::small_scene();
     e.exponent.emplace();
     e.exponent->arm = "phong", e.exponent->shape = "ball", e.exponent->n = 64, e.exponent->s = {8, 24, 128};

@@ -164,7 +164,7 @@ TEST(Doors, PointersFunctionsAndLambdasAreTaken) {
     EXPECT_FALSE(UserSampler("told", sampler_of(sample, doubled, f, {.reciprocal = false})).traits().reciprocal);
 }
 
-TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
+TEST(Doors, ThrowIsAnErrorAtItsPlaceOnly) {
     const CheckResult j = check_sampler("throws", Throws{}, few());
     EXPECT_EQ(j.state, State::error);
     std::size_t errors = 0;

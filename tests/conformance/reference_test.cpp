@@ -62,7 +62,7 @@ test::RandomScene scene_drawn(std::uint32_t seed) { return test::RandomScene(see
 
 class ReferenceOfRandomScenes : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(ReferenceOfRandomScenes, IsTheTruthAndThatOfTheArmsWithinTheDoubts) {
+TEST_P(ReferenceOfRandomScenes, MatchesOracleAndArmsWithinErrors) {
     ProgressMonitor monitor;
     int known = 0, pixels = 0;
     const std::uint32_t first = 1000 * GetParam();

@@ -27,7 +27,7 @@ Experiment tiny(std::vector<std::string> overrides = {}) {
 
 std::string metrics_of(Measured measured) { return metrics_json(report_inputs(measured)); }
 
-TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
+TEST(RunSteps, AnyOrderOfJobsGivesTheSameNumbers) {
     ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny());
     Prepared prepared = prepare(plan, {.threads = 1}, monitor);
@@ -46,7 +46,7 @@ TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
     EXPECT_TRUE(stepwise.monte_carlo.empty());
 }
 
-TEST(RunSteps, ComputeTheNotesReferenceWhereTheExperimentAsksForIt) {
+TEST(RunSteps, ComputeTheArticleReferenceOnRequest) {
     ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny({"reference.monte_carlo=true", "seeds=1"}));
     const Prepared prepared = prepare(plan, {}, monitor);

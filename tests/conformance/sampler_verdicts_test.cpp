@@ -60,7 +60,7 @@ TEST_P(ArmsAtTheLimits, OfTheSchemaHaveTheVerdictsOfTheory) {
 
 INSTANTIATE_TEST_SUITE_P(Settings, ArmsAtTheLimits, testing::Range(0, 4));
 
-TEST(Programs, TooSlowAreInconclusiveAndSayWhatWasLeftOut) {
+TEST(Programs, TooSlowOnesAreInconclusive) {
     PipeLimits limits;
     limits.total_seconds = 0.5;
     const std::string slow =

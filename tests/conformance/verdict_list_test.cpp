@@ -20,7 +20,7 @@ TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
 }
 
 /// Every row is for a verdict of the list, in its order; `crescent list verdicts` also has those without a row.
-TEST(VerdictList, TheManualTellsItInItsOrderWithItsQuestions) {
+TEST(VerdictList, ManualListsVerdictsInOrder) {
     std::ifstream manual(std::string(CRESCENT_SOURCE_DIR) + "/docs/check.md");
     std::vector<std::string> rows;
     bool in_table = false;

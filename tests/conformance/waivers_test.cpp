@@ -37,7 +37,7 @@ std::string fault_of(const std::string& text) {
     return "";
 }
 
-TEST(Waivers, TakeWhatIsExpectedOutOfTheStateOfTheWhole) {
+TEST(Waivers, ExpectedFailureDoesNotChangeTheState) {
     CheckResult j = of({{"phong", "support", State::wrong}, {"phong", "valid", State::right}});
     EXPECT_EQ(waived(j, {}), State::wrong);
     EXPECT_EQ(waived(j, {"phong support=wrong: it never reaches the horizon"}), State::right);
@@ -47,7 +47,7 @@ TEST(Waivers, TakeWhatIsExpectedOutOfTheStateOfTheWhole) {
     EXPECT_NE(verdict_table(j).find("phong: wrong support as waived"), std::string::npos) << verdict_table(j);
 }
 
-TEST(Waivers, HoldForTheArmVerdictAndStateThatTheyNameAlone) {
+TEST(Waivers, ApplyOnlyToTheNamedArmAndVerdict) {
     const auto state = [](const char* text) {
         CheckResult j = of({{"my glass", "tail", State::inconclusive}, {"other", "tail", State::inconclusive}});
         return waived(j, {text});

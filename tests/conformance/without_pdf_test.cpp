@@ -88,7 +88,7 @@ SyntheticSampler resampled(bool by_root) {
     return r;
 }
 
-TEST(WithoutAPdf, DrawsThatGoElsewhereThanTheirWeightsSayAreFound) {
+TEST(WithoutAPdf, DrawsThatContradictWeightsAreFound) {
     const CheckResult right = checked(resampled(false)), wrong = checked(resampled(true));
     EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
     EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").message;
@@ -173,7 +173,7 @@ TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
     }
 }
 
-TEST(WithoutAPdf, ThePageHasOneMapAndATableAndTheTerminalALine) {
+TEST(WithoutAPdf, ReportHasOneMapAndATable) {
     const CheckResult j = pictured(power_lobe(20, false));
     const std::string page = verdict_html(j), text = verdict_table(j);
     EXPECT_EQ(page.find("<figcaption>expected"), std::string::npos) << "a copy of what was observed";

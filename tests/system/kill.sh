@@ -27,8 +27,8 @@ prepare() {
         mkdir -p "$(dirname "killed/$name")" && echo mine >"killed/$name"
     done
 }
-# judge HOW WHEN: checks after a kill, and after the next run. one_by_one: files may be of two runs in between.
-judge() {
+# check_outputs HOW WHEN: checks after a kill, and after the next run. one_by_one: files may be of two runs in between.
+check_outputs() {
     visible killed >of_killed
     if [ "$1" = whole ]; then
         cmp -s of_killed of_second && reached=1
@@ -49,7 +49,7 @@ kill_at() { # PERMILLE HOW [COMMAND...]: kills a run at that part of its time
     sleep "$(awk "BEGIN { print $length * $1 / 1000000 }")"
     kill -s KILL "$run" 2>/dev/null
     wait "$run" 2>/dev/null
-    judge "$2" "after $1/1000 of a run"
+    check_outputs "$2" "after $1/1000 of a run"
 }
 
 for part in 50 300 500 700 800 850 900 950 1000 1050; do
@@ -67,7 +67,7 @@ if command -v strace >/dev/null && strace -qq -o /dev/null true 2>/dev/null; the
         case $fault in
             *error*) visible killed | diff of_second - >difference || die "with $fault: $(cat difference)" ;;
         esac
-        reached=1 judge whole "by $fault"
+        reached=1 check_outputs whole "by $fault"
     done
 fi
 

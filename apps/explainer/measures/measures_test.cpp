@@ -41,7 +41,7 @@ TEST(Measures, TheOpenedPixelIsTheWorstOfItsRegion) {
             EXPECT_LE(error(std::size_t(j) * std::size_t(film.width) + std::size_t(i)), error(at(film, pixel)));
 }
 
-TEST(Measures, TheLargestSampleWeighedByTheOtherArmKeepsAllButItsDensity) {
+TEST(Measures, OtherArmChangesOnlyTheDensityOfASample) {
     const PixelStory& story = test::small_data().measures->story;
     const PixelSample &a = story.cosine.giant(), &b = story.by_phong;
     EXPECT_EQ(a.f, b.f);
@@ -79,7 +79,7 @@ TEST(WeightTail, FollowsTheParetoLawItStates) {
     }
 }
 
-TEST(Measures, WhatThePhongArmCannotReachIsNearItsTheory) {
+TEST(Measures, LostSupportOfPhongMatchesTheory) {
     const LostSupport& lost = test::small_data().measures->surround_lost;
     EXPECT_GT(lost.theta_R_deg, 10);
     EXPECT_NEAR(lost.measured, lost.theory, 4 * lost.se);

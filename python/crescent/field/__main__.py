@@ -1,4 +1,5 @@
-"""``python -m crescent.field``: checks what ships in Mitsuba 3 and the faults of tests/field, and writes docs/field.md.
+"""``python -m crescent.field``: checks the plugins of Mitsuba 3 and the faults of tests/field, and writes
+docs/field.md.
 
     python -m crescent.field [--faults FOLDER] [--out FILE] [--only PLUGIN ...]
 
@@ -41,7 +42,7 @@ class Finding:
 
 
 def checked(it: Shipped) -> crescent.CheckResult:
-    """One plugin over the field's w_o."""
+    """Checks one plugin over the field's w_o."""
     if it.kind == "emitter":
         return crescent.check(mitsuba_emitter(it.built(), **it.known))
     sampler = mitsuba(it.built(), **it.known)
@@ -49,7 +50,7 @@ def checked(it: Shipped) -> crescent.CheckResult:
 
 
 def findings(it: Shipped, result: crescent.CheckResult) -> list[Finding]:
-    """What is not right, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
+    """Returns the failures, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
     groups: dict[tuple[str, str], list[crescent.Verdict]] = {}
     notes: dict[tuple[str, str], Note | None] = {}
     for v in result:
@@ -129,7 +130,7 @@ def _faults_text(faults: list[Fault]) -> Iterator[str]:
 
 
 def _before_the_work(out: Path, only: list[str]) -> None:
-    """ImportError or ValueError of what would else be told after minutes."""
+    """Raises early the ImportError or ValueError that would otherwise come after minutes."""
     try:
         import mitsuba as mi
     except ImportError:

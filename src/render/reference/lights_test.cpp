@@ -180,7 +180,7 @@ const std::vector<std::string> reaching = {"uniform", "cosine", "mixture"};  // 
 
 class AreaLightAgreement : public testing::TestWithParam<double> {};
 
-TEST_P(AreaLightAgreement, EveryArmThatIsRightHasTheReferencesMeanWhereverTheSceneStands) {
+TEST_P(AreaLightAgreement, UnbiasedArmsMatchTheReferenceAnywhere) {
     const double radius = GetParam();
     for (const double offset : {0.0, 1e3, 1e5, 1e6}) {
         const std::string what = "radius " + std::to_string(radius) + " m, moved by " + std::to_string(offset) + " m";
@@ -218,7 +218,7 @@ TEST(AreaLights, SixtyFourAreAllCounted) {
     expect_means(e, aiming, 256, "64 lamps");
 }
 
-TEST(AreaLights, ScenesMayStandAnywhereForABodyInTheirLight) {
+TEST(AreaLights, ShadowsDoNotDependOnThePlace) {
     ProgressMonitor monitor;
     const auto film_at = [&](double offset) {
         return estimate_films(Scene(area_lights(0.2, offset)), "light-area", {16}, 3, "", monitor)[0];

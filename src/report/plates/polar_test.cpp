@@ -22,7 +22,7 @@ double integral(const Density& density) {
     return sum * 2 * pi / (rows * columns);
 }
 
-TEST(Density, OfEveryArmThatNeedsNoLightIsThereOnASurfaceWithoutAlpha) {
+TEST(Density, ExistsOnASurfaceWithoutAlpha) {
     const Experiment e = test::small_scene();
     for (const char* arm : {"uniform", "cosine", "phong", "mixture"})
         EXPECT_NEAR(integral(Density(e, arm, e.s(), 0.2)), 1, 0.02) << arm;
@@ -32,7 +32,7 @@ TEST(Density, OfEveryArmThatNeedsNoLightIsThereOnASurfaceWithoutAlpha) {
     }
 }
 
-TEST(Density, OfAnArmThatAimsAtLightsIsThatOfAPixelOnWhichOneShines) {
+TEST(Density, LightArmsAreEvaluatedAtALitPixel) {
     Experiment e = test::small_scene();
     for (const char* arm : {"light-area", "light-solid-angle"}) {
         const Density density(e, arm, e.s(), 0.5);
@@ -49,7 +49,7 @@ TEST(Density, OfAnArmThatAimsAtLightsIsThatOfAPixelOnWhichOneShines) {
     EXPECT_EQ(Density(e, "light-area", e.s(), 0.5).peak(), 0);
 }
 
-TEST(Density, IsOfTheShapeWhoseExponentIsTheExperiments) {
+TEST(Density, UsesTheShapeOfTheExperimentsExponent) {
     Experiment e = test::small_scene();
     Shape other = e.shapes[0];
     other.name = "other";

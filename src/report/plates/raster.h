@@ -16,7 +16,7 @@ struct View {
     int width = 0, height = 0;
     const float *r = nullptr, *g = nullptr, *b = nullptr, *y = nullptr;
 };
-/// A film or reference to draw; null draws nothing.
+/// A film or reference to draw; for null nothing is drawn.
 View view(const Film* film);
 View view(const ReferenceFilm* film);
 

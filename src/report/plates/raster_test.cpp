@@ -21,7 +21,7 @@ Srgb8 pixel(const Block& b, int x, int y) {
     return {p[0], p[1], p[2]};
 }
 
-TEST(Fit, EnlargesByWholeNumbersAndReducesToTheSlot) {
+TEST(Fit, EnlargesByIntegersAndReducesToTheSlot) {
     EXPECT_EQ(fit(100, 50, 350, 400).times, 3);
     EXPECT_EQ(fit(100, 50, 100, 50).times, 1);
     EXPECT_FALSE(fit(100, 50, 100, 50).reduced);

@@ -163,7 +163,7 @@ double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, c
     return line.y + (narrow ? 56 : 31);
 }
 
-/// Returns the largest density in the plane of incidence, or anywhere if the sampler draws nothing in that plane.
+/// Returns the largest density in the plane of incidence, or anywhere if the sampler returns no sample in that plane.
 double peak_in_plane(const Part& part) {
     double peak = 0;
     for (int i = -900; i <= 900; ++i) peak = std::max(peak, part.p.in_plane(i * 0.1 * radians_per_degree));

@@ -32,7 +32,7 @@ TEST(Words, NumbersAreSetWithTrueMinusAndPowers) {
     EXPECT_EQ(number(std::nan("")), "not a number");
 }
 
-TEST(Words, AnArmThatWasRenamedKeepsItsNameAndItsFormula) {
+TEST(Words, RenamedArmKeepsItsNameAndFormula) {
     World world(8, 8);
     world.add_arm("sharp", "phong");
     EXPECT_EQ(arm_name("phong", world.e), "phong");

@@ -1,4 +1,4 @@
-"""The page in a second engine, WebKit: opens, computes a film with the same hash, passes one lesson.
+"""The page in a second browser engine, WebKit: opens, computes a film with the same hash, completes one lesson.
 webkit.py PAGE HASH"""
 import pathlib
 import sys

@@ -1,6 +1,6 @@
-"""Runs the Python blocks of one page in one namespace: a request a line of stdin, an answer a line of stdout.
+"""Runs the Python blocks of one page in one namespace: one request per line of stdin, one response per line of stdout.
 
-A request is {"text", "page", "line", "file"}; the answer is {"printed", "error"}. Errors have the lines of the page.
+A request is {"text", "page", "line", "file"}; the response is {"printed", "error"}. Errors have the lines of the page.
 """
 
 import contextlib
