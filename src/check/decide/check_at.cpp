@@ -103,14 +103,15 @@ private:
     CheckAt out_;
     Stage first_;
     std::map<Family, Least> least_;  // of first_
+    double confirming_ = 0;          // evaluations of second stages
 
     double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
-    double left() const { return budget_.evaluations - static_cast<double>(source_.evaluations()); }
+    double left() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
 
     /// What this look has: a share of all that stage 1 may still evaluate, with what it has evaluated.
     Look next(int look) const {
-        const double all = left() - budget_.reserve() + first_.done.cost();
+        const double all = left() - budget_.cost_of_sizes() + first_.done.cost();
         const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
         Look last = look_of(all);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
@@ -158,40 +159,29 @@ private:
         if (!drawn) return {};  // delta parts alone, or nothing: no density that could hide a fault
         StreamKey key = key_;
         key.purpose = Purpose::pairs;
-        const Passing passing{level, levels_.second, first_.done, budget_.reserve() - budget_.cost_of_sizes()};
-        return sizes_of(source_, e, passing, budget_.of_sizes(), key);
+        return sizes_of(source_, e, level, budget_.of_sizes(), key);
     }
 
-    /// The same questions on fresh numbers, with what is left of the budget; after an early look with twice what that
-    /// had, so that the later ones lose little.
+    /// The same questions on as many fresh draws and points as they were first put to. After an early look on twice as
+    /// many: a clear fault is then explained by them.
     void confirm(const std::vector<Least>& suspects, int look) {
-        const auto count = [&](auto has) {
-            return std::ranges::count_if(suspects, [&](const Least& b) { return has(b.answer.family); });
-        };
-        const auto of_sets = count(by_replicates);
-        const Kinds kinds = of_sets == 0                              ? Kinds::independent
-            : of_sets == static_cast<std::ptrdiff_t>(suspects.size()) ? Kinds::scrambled
-                                                                      : Kinds::all;
-        const Answer& clearest = std::ranges::min_element(suspects, {}, &Least::p)->answer;
-        double most = left() - budget_.cost_of_sizes();
-        if (look < budget_.looks - 1) most = std::min(most, 2 * first_.done.cost());
-        const double draws_of_f = count(is_of_f) > 0 ? std::min<double>(budget_.of_f(), most / 8) : 0;
-        Look to = look_again(most, clearest.claimed, kinds);
-        if (draws_of_f > 0) to = look_again(most - Stage::of_f(source_, to, draws_of_f), clearest.claimed, kinds);
+        const Look to = look < budget_.looks - 1 ? first_.done.times(2) : first_.done;
+        const double before = static_cast<double>(source_.evaluations());
+        const bool of_f = std::ranges::any_of(suspects, [](const Least& b) { return is_of_f(b.answer.family); });
         Stage second;
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
         second.integrals.light.lost_in = first_.integrals.light.lost_in;
-        second.extend(source_, *out_.plan, to, static_cast<std::uint32_t>(draws_of_f), key, 0);
+        second.extend(source_, *out_.plan, to, of_f ? budget_.of_f() : 0, key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
-        e.least *= std::min(1.0, second.done.independent / static_cast<double>(first_.done.independent));
+        e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
             const Answer again = needs_no_second(b.answer.family) ? b.answer : put_again(e, b.answer);
             if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
-        if (!out_.findings.empty() && kinds == Kinds::all && second.done.cost() > first_.done.cost())
-            take(std::move(second));
+        confirming_ += static_cast<double>(source_.evaluations()) - before;
+        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) take(std::move(second));
     }
 
     void note_answers(const Evidence& e) { least_ = least_of(e); }

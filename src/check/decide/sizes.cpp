@@ -1,6 +1,7 @@
 // A fault of size e shifts a question's difference by e times its effect, and adds e times the variance of its draws.
-// It is found if the difference passes both stages; the size at which each is passed with probability
-// sqrt(stated_power) is stated.
+// It is found if the difference passes both stages. The second has as many draws and points as the first and asks for
+// a less extreme p-value of one member, so it is passed at least as often: the size at which the first is passed with
+// probability sqrt(stated_power) is stated.
 #include "check/decide/sizes.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double stage_quantile = 1.6322;  // P(Z < 1.6322) = sqrt(0.9)
+constexpr double power_of_each = 1.6322;  // standard errors: P(Z < 1.6322) = sqrt(0.9)
 
 /// The difference d for which Bennett's exponent is z2: Bernstein's bound, which is above it, and Newton's steps.
 double bennett_difference(double z2, double v, double b) {
@@ -28,71 +29,36 @@ double bennett_difference(double z2, double v, double b) {
     return x * v / b;
 }
 
-/// Variance of a question at the first stage: of its draws, and of its integrals.
+/// Variance of a question's difference: of its draws, and of its integrals.
 struct Variances {
     double drawn, claimed;
     double all() const { return drawn + claimed; }
-    /// At the second: independent draws have variances as 1 / n, stratified points as n^-2, and so have scrambled
-    /// draws, with what one draw more or less in a set counts for; where h and p have edges it is n^-1.5 (Owen 1997).
-    double again(const Passing& passing, bool by_sets) const {
-        const Look first = passing.first,
-                   second = look_again(
-                       passing.again, claimed / (all() + 1e-300), by_sets ? Kinds::scrambled : Kinds::independent);
-        const auto ratio = [](double a, double b) { return a / std::max(b, 1.0); };
-        const double points = std::max(1.0, ratio(first.points, second.points));
-        const double draws =
-            by_sets ? ratio(first.scrambled, second.scrambled) : ratio(first.independent, second.independent);
-        return drawn * draws * (by_sets ? draws : 1) + claimed * points * points;
-    }
-    /// How much larger one draw is there.
-    double draws_again(const Passing& passing, bool by_sets) const {
-        const Look second =
-            look_again(passing.again, claimed / (all() + 1e-300), by_sets ? Kinds::scrambled : Kinds::independent);
-        return by_sets ? passing.first.scrambled / std::max<double>(second.scrambled, 1)
-                       : passing.first.independent / std::max<double>(second.independent, 1);
-    }
 };
 
-/// One question: what its difference must be to be found at both stages.
+/// One question: what its difference must be to be found.
 class Needed {
 public:
     /// largest: of one term, for Bennett's inequality.
-    static Needed by_bennett(double floor, Variances v, double largest, double freedom, const Passing& passing) {
-        const auto exponent = [&](double level) {
-            const double z2 = -2 * math::log(level / 2) / freedom;
-            return z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300;
-        };
-        return {floor, v.all(), v.again(passing, false), v.draws_again(passing, false), largest,
-            exponent(passing.level), exponent(2 * passing.level_again)};
+    static Needed by_bennett(double floor, Variances v, double largest, double freedom, double level) {
+        const double z2 = -2 * math::log(level / 2) / freedom;
+        return {floor, v.all(), largest, z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300, 0};
     }
-    /// For many tests of one number of degrees of freedom: the quantiles of Student's t.
-    static std::pair<double, double> quantiles(double freedom, const Passing& passing) {
-        const double nu = std::clamp(freedom, 1.0, 1e6);
-        return {stats::student_two_sided_quantile(nu, passing.level),
-            stats::student_two_sided_quantile(nu, 2 * passing.level_again)};
+    /// The quantile of Student's t, for many tests of one number of degrees of freedom.
+    static double quantile(double freedom, double level) {
+        return stats::student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
     }
-    static Needed by_student(
-        double floor, Variances v, std::pair<double, double> t, double freedom, const Passing& passing) {
-        Needed out{floor, v.all(), v.again(passing, true), v.draws_again(passing, true), 0, t.first, t.second};
-        out.unknown_ = 1 / (2 * std::clamp(freedom, 1.0, 1e6));
-        return out;
+    static Needed by_student(double floor, Variances v, double quantile, double freedom) {
+        return {floor, v.all(), 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
     }
 
     /// `tested` is variance that the fault adds and the test takes from its draws; `beside` is not known to the test.
-    double difference(double tested = 0, double beside = 0, double quantile_of_stage = stage_quantile) const {
-        // What the fault adds is of independent draws, or has the variance of the others.
-        const double added_again = std::max(draws_again_, second_ / std::max(first_, 1e-300));
-        const auto stage = [&](double quantile, double largest, double before, double draws) {
-            const double v = before + tested * draws;
-            const double critical = largest > 0 ? bennett_difference(quantile, v, largest) : quantile * std::sqrt(v);
-            // A standard deviation of nu degrees of freedom is known to 1 / sqrt(2 nu) of itself: the one that is
-            // tested against, t times, and the one by which the size is stated, t + the quantile times.
-            const double more = largest > 0 ? 0 : unknown_ * (sqr(quantile) + sqr(quantile + quantile_of_stage));
-            return critical + quantile_of_stage * std::sqrt(v * (1 + more) + beside * draws);
-        };
-        return floor_ +
-            std::max(stage(at_first_, largest_, first_, 1),
-                stage(at_second_, largest_ * draws_again_, std::max(second_, 0.25 * first_), added_again));
+    double difference(double tested = 0, double beside = 0, double errors = power_of_each) const {
+        const double v = variance_ + tested;
+        const double critical = largest_ > 0 ? bennett_difference(critical_, v, largest_) : critical_ * std::sqrt(v);
+        // A standard deviation of nu degrees of freedom is known to 1 / sqrt(2 nu) of itself: the one that is tested
+        // against, t times, and the one by which the size is stated, t + the quantile times.
+        const double more = largest_ > 0 ? 0 : unknown_ * (sqr(critical_) + sqr(critical_ + errors));
+        return floor_ + critical + errors * std::sqrt(v * (1 + more) + beside);
     }
     /// The size of a fault of this effect and these variances of a share 1.
     double size(double effect, double tested = 0, double beside = 0) const {
@@ -103,17 +69,10 @@ public:
     }
 
 private:
-    double floor_, first_, second_, draws_again_, largest_, at_first_, at_second_;
-    double unknown_ = 0;  // relative variance of the standard deviation
-    Needed(double floor, double first, double second, double draws_again, double largest, double at_first,
-        double at_second)
-        : floor_(floor),
-          first_(first),
-          second_(second),
-          draws_again_(draws_again),
-          largest_(largest),
-          at_first_(at_first),
-          at_second_(at_second) {}
+    double floor_, variance_, largest_, critical_;
+    double unknown_;  // relative variance of the standard deviation
+    Needed(double floor, double variance, double largest, double critical, double unknown)
+        : floor_(floor), variance_(variance), largest_(largest), critical_(critical), unknown_(unknown) {}
 };
 
 struct SumTest {
@@ -123,27 +82,25 @@ struct SumTest {
 };
 
 /// The whole sums, by both kinds of draws.
-std::vector<SumTest> whole_sums(const Evidence& e, const Passing& of_family) {
+std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
     std::vector<SumTest> out;
     const double n = e.observations.independent;
     for (std::size_t q = 0; q < integrands; ++q) {
-        Passing passing = of_family;
-        passing.level /= q >= centre_x ? 3 : 1;
+        const double level = of_family / (q >= centre_x ? 3 : 1);
         const Estimate& claimed = e.integrals.sums[q];
         const double floor = floor_of_sum(e, static_cast<int>(q));
         const Variances v{drawn_variance(e, static_cast<int>(q)), claimed.variance};
         const double of_draws = freedom(v.all(), claimed.doubt);
         const bool vary = draws_vary(e, static_cast<int>(q));
         out.push_back({q,
-            vary ? Needed::by_bennett(floor, v, 1 / n, of_draws, passing)
-                 : Needed::by_student(floor, v, Needed::quantiles(of_draws, passing), of_draws, passing),
+            vary ? Needed::by_bennett(floor, v, 1 / n, of_draws, level)
+                 : Needed::by_student(floor, v, Needed::quantile(of_draws, level), of_draws),
             n});
         if (e.observations.scrambled == 0 || !vary) continue;
         const ReplicateMean<Replicates> sets = replicate_mean(e, static_cast<int>(q));
         const Variances w{sets.variance, claimed.variance};
         const double nu = freedom(w.all(), claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1));
-        out.push_back(
-            {q, Needed::by_student(floor, w, Needed::quantiles(nu, passing), nu, passing), e.observations.scrambled});
+        out.push_back({q, Needed::by_student(floor, w, Needed::quantile(nu, level), nu), e.observations.scrambled});
     }
     return out;
 }
@@ -157,17 +114,15 @@ struct NodeTest {
 };
 
 /// The nodes that are tested, by both kinds of draws.
-std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, const Passing& of_family) {
+std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, double level) {
     std::vector<Answer> asked;
     ask_nodes(e, [&](const Answer& a) {
         if (a.family == Family::node || a.family == Family::node_sets) asked.push_back(a);
     });
     const auto by_sets = static_cast<double>(
         std::ranges::count_if(asked, [](const Answer& a) { return a.family == Family::node_sets; }));
-    Passing one = of_family, of_sets = of_family;
-    one.level /= std::max(static_cast<double>(asked.size()) - by_sets, 1.0);
-    of_sets.level /= std::max(by_sets, 1.0);
-    const std::pair<double, double> t = Needed::quantiles(replicate_sets - 1, of_sets);
+    const double level_of_one = level / std::max(static_cast<double>(asked.size()) - by_sets, 1.0);
+    const double t = Needed::quantile(replicate_sets - 1, level / std::max(by_sets, 1.0));
     std::vector<NodeTest> out;
     out.reserve(asked.size());
     for (const Answer& a : asked) {
@@ -176,12 +131,12 @@ std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>&
         if (a.family == Family::node)
             out.push_back({i, s.share, s.one_draw,
                 Needed::by_bennett(s.floor, {s.variance - s.claim_variance, s.claim_variance}, sums[i].largest,
-                    freedom(s.variance, s.doubt), one),
+                    freedom(s.variance, s.doubt), level_of_one),
                 0});
         else
             out.push_back({i, s.share, s.one_draw,
                 Needed::by_student(
-                    s.floor, {a.sd * a.sd * (1 - a.claimed), a.sd * a.sd * a.claimed}, t, replicate_sets - 1, of_sets),
+                    s.floor, {a.sd * a.sd * (1 - a.claimed), a.sd * a.sd * a.claimed}, t, replicate_sets - 1),
                 e.observations.scrambled});
     }
     return out;
@@ -254,7 +209,7 @@ double noncentrality(double degrees, double level) {
 class Caps {
 public:
     Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests,
-        const Passing& passing)
+        double level)
         : e_(e),
           sums_(sums),
           parent_(sums.size(), -1),
@@ -276,11 +231,8 @@ public:
             ++degrees[static_cast<std::size_t>(nodes[t.node].depth)];
         }
         const auto depths = static_cast<double>(std::ranges::count_if(degrees, [](double d) { return d > 0; }));
-        const double again = look_again(passing.again, 0, Kinds::independent).independent;
         for (std::size_t d = 0; d < degrees.size(); ++d)
-            if (degrees[d] > 0)
-                least_shift_[d] = std::max(noncentrality(degrees[d], passing.level / depths),
-                    noncentrality(degrees[d], passing.level_again) * passing.first.independent / std::max(again, 1.0));
+            if (degrees[d] > 0) least_shift_[d] = noncentrality(degrees[d], level / depths);
         for (const Leaf& leaf : e.plan.tree.leaves()) {
             const NodeSums& s = sums[static_cast<std::size_t>(leaf.node)];
             if (!(s.claimed > 0)) continue;
@@ -357,10 +309,10 @@ private:
 /// The mass of a cap that is found half of the time at nine of ten centres: about some it is found at a fifth of that,
 /// so that over all centres nine of ten are found.
 std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes,
-    const Sample& sample, const Passing& passing) {
+    const Sample& sample, double level) {
     constexpr std::size_t centres = 256;
     if (sample.w.empty()) return {};
-    Caps caps(e, sums, nodes, passing);
+    Caps caps(e, sums, nodes, level);
     std::vector<double> sizes;
     for (std::size_t i = 0; i < std::min(centres, sample.w.size()); ++i)
         sizes.push_back(caps.mass_about(sample.w[i], sample.p[i]));
@@ -533,19 +485,19 @@ void by_exponent(const Evidence& e, const std::vector<SumTest>& whole, Sizes& ou
 
 }  // namespace
 
-Sizes sizes_of(Source& source, const Evidence& e, const Passing& passing, std::uint32_t draws, const StreamKey& key) {
+Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t draws, const StreamKey& key) {
     Sizes out;
     if (!e.source.has_density()) return out;
-    const std::vector<SumTest> whole = whole_sums(e, passing);
+    const std::vector<SumTest> whole = whole_sums(e, level);
     const std::vector<NodeSums> sums = node_sums(e);
-    const std::vector<NodeTest> nodes = node_tests(e, sums, passing);
+    const std::vector<NodeTest> nodes = node_tests(e, sums, level);
     for (const SumTest& t : whole)
         if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
     out.leak = leak_of(e, whole, sums, nodes);
     out.by_leak = distance_from_even(e);
     by_exponent(e, whole, out);
     const Sample sample = drawn(source, draws, key);
-    out.cap = cap_of(e, sums, nodes, sample, passing);
+    out.cap = cap_of(e, sums, nodes, sample, level);
     by_turning(source, e, whole, nodes, sample, out);
     return out;
 }

@@ -50,8 +50,6 @@ struct FamilyInfo {
 const FamilyInfo& info(Family family);
 /// Whether f has a part in it.
 bool is_of_f(Family family);
-/// Whether the replicates of scrambled draws answer it.
-bool by_replicates(Family family);
 
 /// One question with its result at some stage.
 struct Answer {
