@@ -126,16 +126,35 @@ private:
         first_.extend(source_, *out_.plan, next(look), budget_.of_f(), key_, look);
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
-        std::vector<Least> suspects;
         note_answers(e);
-        for (const auto& [family, least] : least_)
-            if (least.p() < level_of(look)) suspects.push_back(least);
+        const std::vector<Least> suspects = suspects_of(e, level_of(look));
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
         if (!budget_.stop_when_conclusive && look < budget_.looks - 1) return false;
         out_.sizes = sizes(e, level_of(look));
         out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         return budget_.stop_when_conclusive && !out_.inconclusive;
+    }
+
+    /// Of each family below the level the member that is to be tested again: of all that are below it by themselves the
+    /// one whose difference exceeds its standard error, that of the draws which make it included, the most. The least p
+    /// may be of two draws where none was expected, of which the next stage has none with a probability of 13 %.
+    std::vector<Least> suspects_of(const Evidence& e, double level) const {
+        std::map<Family, std::pair<double, Least>> most;
+        for (const auto& [family, least] : least_)
+            if (least.p() < level) most[family] = {-1, least};
+        if (most.empty()) return {};
+        ask_all(e, [&](const Answer& a) {
+            const auto at = most.find(a.family);
+            if (at == most.end() || a.p * at->second.second.members >= level) return;
+            const double d = std::fabs(a.difference);
+            const double errors =
+                std::max(d - a.floor, 0.0) / std::sqrt(a.sd * a.sd + d / e.observations.independent + 1e-300);
+            if (errors > at->second.first) at->second.first = errors, at->second.second.answer = a;
+        });
+        std::vector<Least> out;
+        for (const auto& [family, chosen] : most) out.push_back(chosen.second);
+        return out;
     }
 
     /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is
