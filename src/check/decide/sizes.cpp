@@ -54,7 +54,9 @@ public:
     /// `tested` is variance that the fault adds and the test takes from its draws; `beside` is not known to the test.
     double difference(double tested = 0, double beside = 0, double errors = power_of_each) const {
         const double v = variance_ + tested;
-        const double critical = largest_ > 0 ? bennett_difference(critical_, v, largest_) : critical_ * std::sqrt(v);
+        // One draw alone shows nothing, however little is expected: it may be what the points have not met.
+        const double critical = largest_ > 0 ? std::max(bennett_difference(critical_, v, largest_), 2 * largest_)
+                                             : critical_ * std::sqrt(v);
         // A standard deviation of nu degrees of freedom is known to 1 / sqrt(2 nu) of itself: the one that is tested
         // against, t times, and the one by which the size is stated, t + the quantile times.
         const double more = largest_ > 0 ? 0 : unknown_ * (sqr(critical_) + sqr(critical_ + errors));
