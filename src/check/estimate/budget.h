@@ -60,8 +60,9 @@ struct CheckBudget {
     std::uint32_t points() const { return part(4.8); }
     /// Draws at which f is evaluated.
     std::uint32_t of_f() const { return part(18.3); }
-    /// Draws that are moved for the sizes that are stated, and what they cost.
-    std::uint32_t of_sizes() const { return part(586); }
+    /// Draws that are moved for the sizes that are stated, and what they cost. With half as many, what a rotation of a
+    /// lobe on both sides changes is not known to a third.
+    std::uint32_t of_sizes() const { return std::max(part(586), 1024u); }
     double cost_of_sizes() const { return 14.0 * of_sizes(); }
 
     /// In process.
