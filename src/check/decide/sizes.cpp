@@ -337,6 +337,10 @@ Place place_of(const Evidence& e, Vec3d w, double p) {
     return out;
 }
 
+struct Estimated {
+    double mean = 0, variance = 0;  // of the mean
+};
+
 /// What a rotation of the draws by `angle` about one axis changes, by question: as draws that are moved, and as p there
 /// over p where they were, which is the same but for the sign. The first is exact at edges of p, the second has less
 /// noise where p is smooth; of each effect the larger of the low ends of both counts.
@@ -367,25 +371,32 @@ public:
     /// Total variation between p and p turned.
     double distance = 0;
 
-    /// Effects over what is needed: of all whole sums, then of all nodes.
-    std::vector<double> ratios(const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) const {
-        // One-sided 90 %; of hundreds of nodes the largest error is of three standard errors.
-        constexpr double of_one = 1.2816, of_largest = 3.0;
-        std::vector<double> out;
-        for (const SumTest& t : whole)
-            out.push_back(std::max(low_end(moved_.sums[t.of], of_one), low_end(weighted_.sums[t.of], of_one)) /
-                t.needed.difference());
+    /// What a question's mean changes by, with its standard error, both times.
+    struct Effect {
+        Estimated moved, weighted;
+    };
+    /// Of all whole sums, then of all nodes.
+    std::vector<Effect> effects(const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) const {
+        std::vector<Effect> out;
+        for (const SumTest& t : whole) out.push_back({mean_of(moved_.sums[t.of]), mean_of(weighted_.sums[t.of])});
         for (const NodeTest& t : nodes) {
             const TreeNode& x = e_.plan.tree.nodes()[t.node];
             if (x.depth >= depth) continue;
-            double effect = 0;
-            for (const Change* change : {&moved_, &weighted_}) {
-                const Sums &half = change->nodes[static_cast<std::size_t>(x.child)], &all = change->nodes[t.node];
-                const Sums d{half.sum - t.share * all.sum, half.square + t.share * t.share * all.square};
-                effect = std::max(effect, low_end(d, of_largest));
-            }
-            out.push_back(effect / t.needed.difference());
+            const auto split = [&](const Change& change) {
+                const Sums &half = change.nodes[static_cast<std::size_t>(x.child)], &all = change.nodes[t.node];
+                return mean_of({half.sum - t.share * all.sum, half.square + t.share * t.share * all.square});
+            };
+            out.push_back({split(moved_), split(weighted_)});
         }
+        return out;
+    }
+    /// What their questions need, in the same order.
+    static std::vector<double> needed(
+        const Tree& tree, const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) {
+        std::vector<double> out;
+        for (const SumTest& t : whole) out.push_back(t.needed.difference());
+        for (const NodeTest& t : nodes)
+            if (tree.nodes()[t.node].depth < depth) out.push_back(t.needed.difference());
         return out;
     }
 
@@ -421,12 +432,30 @@ private:
         i = static_cast<std::size_t>(x.child) + ((x.along_phi ? at.phi : at.t) >= x.rect.middle(x.along_phi));
         return true;
     }
-    double low_end(const Sums& change, double errors) const {
+    Estimated mean_of(const Sums& change) const {
         const double mean = change.sum / of_;
-        const double se = std::sqrt(std::max(change.square / of_ - mean * mean, 0.0) / of_);
-        return std::max(std::fabs(mean) - errors * se, 0.0);
+        return {mean, std::max(change.square / of_ - mean * mean, 0.0) / of_};
     }
 };
+
+/// Effects over what is needed, of a turn about c times one axis and s times another: to first order in the angle it is
+/// the sum of both turns.
+std::vector<double> ratios_about(const std::vector<Turned::Effect>& one, const std::vector<Turned::Effect>& other,
+    double c, double s, const std::vector<double>& needed, std::size_t whole) {
+    // One-sided 90 %; of hundreds of nodes the largest error is of three standard errors.
+    constexpr double of_one = 1.2816, of_largest = 3.0;
+    const auto low_end = [&](const Estimated& a, const Estimated& b, double errors) {
+        return std::fabs(c * a.mean + s * b.mean) - errors * std::sqrt(c * c * a.variance + s * s * b.variance);
+    };
+    std::vector<double> out;
+    for (std::size_t t = 0; t < one.size(); ++t) {
+        const double errors = t < whole ? of_one : of_largest;
+        const double most = std::max(low_end(one[t].moved, other[t].moved, errors),
+            low_end(one[t].weighted, other[t].weighted, errors));
+        out.push_back(std::max(most, 0.0) / needed[t]);
+    }
+    return out;
+}
 
 /// The least angle at which one question shows enough; 1 where none does. `ratios` are at angles from `first` on that
 /// grow by `growth`. Between two of them, and below the first, an effect is taken for a power of the angle, linear at
@@ -448,28 +477,38 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
     return out;
 }
 
-/// Of four axes across the mean direction the worst of those about which a rotation changes something.
+/// Of eight axes across the mean direction the worst of those about which a rotation changes something.
 void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& whole,
     const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
     if (sample.w.size() < 64) return;
+    constexpr int axes = 8;
     const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
     const Frame<double> frame = frame_about(axis_of_lobe);
+    const std::vector<double> needed = Turned::needed(e.plan.tree, whole, nodes);
     std::vector<Place> places;
     for (std::size_t i = 0; i < sample.w.size(); ++i) places.push_back(place_of(e, sample.w[i], sample.p[i]));
-    for (Vec3d axis : {frame.t, frame.b, normalize(frame.t + frame.b), normalize(frame.t - frame.b)}) {
-        std::vector<std::vector<double>> ratios;
-        double changed = 0;
-        for (double by : {1.0, growth, growth * growth}) {
-            const bool shown = std::ranges::any_of(ratios,
+    std::array<std::vector<std::vector<double>>, axes> ratios;
+    std::array<double, axes> changed{};
+    for (double by : {1.0, growth, growth * growth}) {
+        const auto shown = [](const std::vector<std::vector<double>>& of_axis) {
+            return std::ranges::any_of(of_axis,
                 [](const std::vector<double>& r) { return std::ranges::any_of(r, [](double x) { return x >= 1; }); });
-            if (by > growth && shown) break;
-            const Turned turned(source, e, sample, places, axis, by * target_rotation);
-            if (by == 1) changed = turned.distance;
-            ratios.push_back(turned.ratios(whole, nodes));
+        };
+        if (by > growth && std::ranges::all_of(ratios, shown)) break;
+        const Turned one(source, e, sample, places, frame.t, by * target_rotation),
+            other(source, e, sample, places, frame.b, by * target_rotation);
+        const auto of_one = one.effects(whole, nodes), of_other = other.effects(whole, nodes);
+        for (int k = 0; k < axes; ++k) {
+            const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
+            const auto at = static_cast<std::size_t>(k);
+            ratios[at].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));
+            if (by == 1) changed[at] = std::hypot(c * one.distance, s * other.distance);
         }
-        if (changed < detection_floor) continue;
-        const double size = least_angle(target_rotation, ratios);
-        if (!out.rotation || size > *out.rotation) out.rotation = size, out.by_rotation = changed / target_rotation;
+    }
+    for (std::size_t k = 0; k < axes; ++k) {
+        if (changed[k] < detection_floor) continue;
+        const double size = least_angle(target_rotation, ratios[k]);
+        if (!out.rotation || size > *out.rotation) out.rotation = size, out.by_rotation = changed[k] / target_rotation;
     }
 }
 

@@ -19,7 +19,7 @@ struct Sizes {
     double by_leak = 1, by_rotation = 1, by_parameter = 1;
 };
 
-/// level: of a family at stage 1. `draws`: so many are moved to see what a rotation changes; 14 evaluations each.
+/// level: of a family at stage 1. `draws`: so many are moved to see what a rotation changes; 8 evaluations each.
 Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t draws, const StreamKey& key);
 
 /// The largest ratio of a size to its target; where a fault of that size changes less of what is drawn than the target

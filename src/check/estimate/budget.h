@@ -62,8 +62,8 @@ struct CheckBudget {
     std::uint32_t of_f() const { return part(18.3); }
     /// Draws that are moved for the sizes that are stated, and what they cost. With half as many, what a rotation of a
     /// lobe on both sides changes is not known to a third.
-    std::uint32_t of_sizes() const { return std::max(part(586), 1024u); }
-    double cost_of_sizes() const { return 14.0 * of_sizes(); }
+    std::uint32_t of_sizes() const { return std::max(part(335), 1024u); }
+    double cost_of_sizes() const { return 8.0 * of_sizes(); }
 
     /// In process.
     static CheckBudget quick() { return {}; }
