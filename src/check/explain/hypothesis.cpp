@@ -39,17 +39,17 @@ CheckBudget budget_for(const CheckAt& found, bool few) {
 
 bool of_density(Family f) { return info(f).verdict == "density" || info(f).verdict == "normalised"; }
 
+bool density_is_wrong(const CheckAt& c) {
+    return std::ranges::any_of(c.findings, [](const Finding& f) { return of_density(f.first.family); });
+}
+
 /// A cause explains the difference if nothing of it is left: not only no family below alpha1, which the fewer draws of
 /// this check would often reach, but none below this. Of right samplers one in a hundred has one.
 constexpr double nothing_left = 1e-2;
 
 bool difference_is_left(const CheckAt& c) {
-    return c.wrong() ||
+    return density_is_wrong(c) ||
         std::ranges::any_of(c.answers, [](const Answer& a) { return of_density(a.family) && a.p < nothing_left; });
-}
-
-bool density_is_wrong(const CheckAt& c) {
-    return std::ranges::any_of(c.findings, [](const Finding& f) { return of_density(f.first.family); });
 }
 
 void draw_at(Place& place, std::uint32_t count) {
