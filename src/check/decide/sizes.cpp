@@ -89,6 +89,7 @@ struct SumTest {
 std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
     std::vector<SumTest> out;
     const double n = e.observations.independent;
+    const Values unmet = unmet_variance(e);
     for (std::size_t q = 0; q < integrands; ++q) {
         const double level = of_family / (q >= centre_x ? 3 : 1);
         const Estimate& claimed = e.integrals.sums[q];
@@ -102,7 +103,7 @@ std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
             n});
         if (e.observations.scrambled == 0 || !vary) continue;
         const ReplicateMean<Replicates> sets = replicate_mean(e, static_cast<int>(q));
-        const Variances w{sets.variance, claimed.variance};
+        const Variances w{sets.variance + unmet[q] / e.observations.scrambled, claimed.variance};
         const double nu = freedom(w.all(), claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1));
         out.push_back({q, Needed::by_student(floor, w, Needed::quantile(nu, level), nu), e.observations.scrambled});
     }
