@@ -478,7 +478,7 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
     return out;
 }
 
-/// Of eight axes across the mean direction the worst of those about which a rotation changes something.
+/// Of eight axes across the mean direction those about which a rotation changes something.
 void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& whole,
     const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
     if (sample.w.size() < 64) return;
@@ -506,11 +506,19 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
             if (by == 1) changed[at] = std::hypot(c * one.distance, s * other.distance);
         }
     }
-    for (std::size_t k = 0; k < axes; ++k) {
-        if (changed[k] < detection_floor) continue;
-        const double size = least_angle(target_rotation, ratios[k]);
-        if (!out.rotation || size > *out.rotation) out.rotation = size, out.by_rotation = changed[k] / target_rotation;
-    }
+    // About an axis of symmetry, or next to it, nothing is turned.
+    const double least_change = std::max(detection_floor, 0.1 * *std::ranges::max_element(changed));
+    struct Size {
+        double angle, changed;
+    };
+    std::vector<Size> sizes;
+    for (std::size_t k = 0; k < axes; ++k)
+        if (changed[k] >= least_change) sizes.push_back({least_angle(target_rotation, ratios[k]), changed[k]});
+    if (sizes.empty()) return;
+    // What one question shows of a turn vanishes about some axis: about seven axes of eight no more is needed.
+    std::ranges::sort(sizes, std::greater<>(), &Size::angle);
+    const Size& stated = sizes[sizes.size() > axes / 2 ? 1 : 0];
+    out.rotation = stated.angle, out.by_rotation = stated.changed / target_rotation;
 }
 
 /// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are taken for draws of p of
