@@ -83,7 +83,7 @@ TEST(Contexts, WrongChoiceIsAnInputErrorWithChoices) {
     EXPECT_THAT(what_of<InputError>([] { open_context({"egl", 999}); }), HasSubstr("crescent list devices"));
 }
 
-TEST(Contexts, ALibraryThatIsNotThereIsNamedWithWhatNeedsIt) {
+TEST(Contexts, MissingLibraryIsNamedWithItsPurpose) {
     EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl", "libnosuch7"); }),
         AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file"),
             HasSubstr("install the packages libnosuch7")));
