@@ -1,8 +1,8 @@
-// crescent_backends FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on
-// GL, in one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some
-// repetitions, CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's
-// arithmetic peak in Gflop/s as its maker states it; the last column is then the fraction of it that the samples'
-// arithmetic makes (bench/counted.h).
+// crescent_backends FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on GL,
+// in one run on one machine, as a Markdown table. Samples are geometry pixels x N; each value is the best of some
+// repetitions, CPU and GL alternating, because other load on the machine can only increase a time. PEAK: the device's
+// arithmetic peak in Gflop/s as stated by its maker; the last column is then the fraction of it used by the samples'
+// arithmetic (bench/counted.h).
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -84,7 +84,7 @@ int main(int argc, char** argv) try {
     if (!kind) throw OutputError("this build has no GL instrument");
     Experiment experiment = load(argv[1]);
     for (Shape& shape : experiment.shapes)
-        if (!shape.material.alpha) shape.material.alpha = 0.2;  // the GGX arms aim by it
+        if (!shape.material.alpha) shape.material.alpha = 0.2;  // used by the GGX samplers
     table(experiment, std::stoull(argv[2]), kind->open({argc > 3 ? argv[3] : "", argc > 4 ? std::stoi(argv[4]) : -1}),
         argc > 5 ? std::stod(argv[5]) : 0);
 } catch (const std::exception& e) {

@@ -1,6 +1,6 @@
-// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample. What an arm
-// and a lobe do is counted in their own source; what the kernels add to it is written out once more in accumulate().
-// + - * / and sqrt count one each; comparisons, selections and integers none.
+// A float that counts its operations, in the vocabulary of simd/scalar.h: the arithmetic of one sample. The operations
+// of a sampler and a lobe are counted in their own source; those of the kernels are repeated in accumulate(). + - * /
+// and sqrt count one each; comparisons, selections and integers none.
 #pragma once
 
 #include "crescent/crescent.h"
@@ -44,7 +44,7 @@ template <> inline Counted to_float<Counted>(std::uint32_t u) { return Counted(t
 
 namespace bench {
 
-/// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there
+/// The estimator's operations for a direction: g = cos/p, X, its square, the test against one disk; the lobe if there
 /// is one.
 template <class L>
 Counted accumulate(const ShadingPoint<Counted>& shading_point, const Drawn<Counted>& drawn, Counted weight) {
@@ -57,7 +57,8 @@ Counted accumulate(const ShadingPoint<Counted>& shading_point, const Drawn<Count
     return dot(miss, miss) * (along * along) + (off * off + g) + g * f;
 }
 
-/// Operations of one sample of an arm on a surface with lobe L under one disk, without shadows and random integers.
+/// Returns the operations of one sample of a sampler on a surface with lobe L under one disk, without shadows and
+/// random integers.
 template <template <class> class A, class L> std::uint64_t operations_per_sample() {
     const auto c = [](double x) { return Counted(static_cast<float>(x)); };
     const LocalDisk<Counted> disk{{c(1), c(0.5), c(2)}, {c(0), c(0), c(-1)}, c(0.1), c(0), c(1)};

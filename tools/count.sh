@@ -1,4 +1,4 @@
-# Shell functions behind ./test: runs tests and counts them into `passed` and `failures`. Sourced after setup.sh.
+# Shell functions of ./test: run tests and count them into `passed` and `failures`. Sourced after setup.sh.
 
 passed=0 failures=0 skipped=0
 
@@ -16,7 +16,7 @@ sum() {
     ' "$@"
 }
 
-# failed_tests LOG: of each test of ctest that failed, its line and the last ones of what it printed.
+# failed_tests LOG: for each test of ctest that failed, its line and the last lines of its output.
 failed_tests() {
     awk -v most=16 '
         function tell() {
@@ -34,13 +34,13 @@ failed_tests() {
     ' "$1"
 }
 
-# longest LOG: the five tests of ctest that took longest.
+# longest LOG: the five slowest tests of ctest.
 longest() {
     sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +([^ ]+) .* ([0-9]+)\.[0-9]+ sec.*/\2 \1/p' "$1" | sort -rn | head -n 5 |
         awk '{ printf "%s%s %d s", NR > 1 ? ", " : "", $2, $1 }'
 }
 
-# check PRESET [OPTION...]: ctest on its build. A program of tests counts as its test cases, a script as one.
+# check PRESET [OPTION...]: runs ctest on its build. A test program counts as its test cases, a script as one.
 check() {
     local dir log xml start=$SECONDS before=$passed broken=$failures
     dir=$(binary_dir "$1")
@@ -55,7 +55,7 @@ check() {
         if [ -f "$xml" ]; then
             local all bad
             all=$(sum tests "$xml") bad=$(($(sum failures "$xml") + $(sum errors "$xml")))
-            # A program that ends badly after its last test has failed too.
+            # A program that fails after its last test has failed too.
             [ "$outcome" != passed ] && [ "$bad" -eq 0 ] && bad=1
             add $((all - bad)) "$bad"
         elif [ "$outcome" = passed ]; then add 1 0

@@ -1,4 +1,4 @@
-// What computes films, by the name it has on the command line.
+// Opens back ends by their name on the command line.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace crescent::cli {
 
-/// Null for "cpu", which is built in. Throws InputError where flags do not fit together, OutputError where this build
+/// Returns null for "cpu", which is built in. Throws InputError if flags do not fit together, OutputError if this build
 /// has no such back end or the machine lacks a part of it.
 std::shared_ptr<Backend> backend(const RunFlags& flags);
 

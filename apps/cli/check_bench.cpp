@@ -1,4 +1,4 @@
-// `crescent check --planted` and `--right`: the check itself, on samplers of which it is known what they are.
+// `crescent check --planted` and `--right`: the check itself, on samplers whose faults are known.
 #include <algorithm>
 #include <cstdio>
 
@@ -10,7 +10,7 @@ namespace crescent::cli {
 
 namespace {
 
-/// What the faults came to, for the files: one verdict a fault, right where it is caught.
+/// Returns the result of a planted fault for the files: one verdict per fault, right if it is detected.
 Verdict caught_or_not(const PlantedFault& fault, const std::string& caught) {
     Verdict v;
     v.arm = fault.breaks;

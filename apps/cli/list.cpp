@@ -1,5 +1,5 @@
-// crescent list: the words that an experiment and the command line can name. Everything comes from the tables that
-// read, compute and draw; nothing is listed by hand here.
+// crescent list: the words that an experiment and the command line can name. All of them come from the tables used by
+// the rest of the program.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -13,7 +13,7 @@ struct Word {
     std::string word, means;
 };
 
-/// The kinds of a list, such as that of shapes.
+/// Returns the kinds of a list, such as that of shapes.
 template <class Kinds> std::vector<Word> kinds() {
     std::vector<Word> out;
     for (std::size_t k = 0; k < Kinds::count; ++k)
@@ -62,7 +62,7 @@ std::vector<Word> instruction_sets() {
     return out;
 }
 
-/// What --gl-device can name, by number.
+/// Returns the devices that --gl-device can name, by number.
 std::vector<Word> devices() {
     std::vector<Word> out;
     for (const auto& kind : backend_kinds())
@@ -74,7 +74,7 @@ std::vector<Word> devices() {
 struct Topic {
     std::string name, means;
     std::vector<Word> (*words)();
-    bool by_name_alone = false;  // finding out takes a while
+    bool by_name_alone = false;  // finding them takes a while
 };
 const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
@@ -122,7 +122,7 @@ int list(const ListFlags& flags) {
     return held;
 }
 
-// ---- crescent schema and crescent version: what the program says of its input and of itself.
+// ---- crescent schema and crescent version: descriptions of the input and of the program.
 
 int schema(const SchemaFlags& flags) {
     print(flags.json ? schema_json() : schema_text());

@@ -1,6 +1,5 @@
-// Arms are found by their sampler; the surround is the region after the first with the most pixels. N is the
-// experiment's where both ladders have it, else the middle one of the sample counts they share. MIS gets N/2 pairs and
-// N.
+// Arms are found by their sampler; the surround is the region with the most pixels after the first. N is the
+// experiment's if both arms have it, else the middle one of their common sample counts. MIS gets N/2 pairs and N.
 #include "cast.h"
 
 #include <fmt/format.h>
@@ -16,7 +15,7 @@ const ArmPlan* by_sampler(const Experiment& e, const std::string& sampler) {
     return arm == e.arms.end() ? nullptr : &*arm;
 }
 
-/// The arm with this sampler; where there is none, a complaint with the nearest that the experiment has.
+/// Returns the arm with this sampler; if there is none, reports an error with the nearest that the experiment has.
 std::string needed(const Experiment& e, const std::string& sampler, std::vector<Diagnostic>& wrong) {
     if (const ArmPlan* arm = by_sampler(e, sampler)) return arm->name;
     std::vector<std::string> there;
@@ -28,7 +27,7 @@ std::string needed(const Experiment& e, const std::string& sampler, std::vector<
     return "";
 }
 
-/// The arm with this sampler, made where there is none, with these sample counts added.
+/// Returns the arm with this sampler, creating it if needed, with these sample counts added.
 std::string added(Experiment& e, const std::string& sampler, const std::vector<std::uint64_t>& sample_counts) {
     for (ArmPlan& arm : e.arms) {
         if (arm.sampler != sampler) continue;

@@ -1,5 +1,5 @@
-// Each question that a shot asks about the time is kept with its answer; a frame at another time is the same where
-// every answer is. Shapes and words go to the canvas with the alpha of their ink scaled, and not at all at 0.
+// Each query of a shot for the time is stored with its result; a frame at another time is equal if every result is.
+// Shapes and words are drawn with the alpha of their colour scaled, and not at all at 0.
 #include "frame.h"
 
 #include <algorithm>

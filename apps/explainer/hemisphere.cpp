@@ -1,4 +1,4 @@
-// Directions are turned about n, then projected along (0, -cos e, sin e), e the elevation; field() inverts this at the
+// Directions are rotated about n, then projected along (0, -cos e, sin e), e the elevation; field() inverts this at the
 // middle of every pixel. Paths are drawn where they face the viewer, grid lines with a point every 1.5 or 3 degrees.
 #include "hemisphere.h"
 

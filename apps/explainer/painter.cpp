@@ -1,6 +1,6 @@
 // Draws the shot and its heading, then the ground over both, so that they fade in and out in 0.3 s, then the caption
-// over that. A frame that shows the same as the one before it, because all that the shot asked of the time has the same
-// answer, is not drawn again.
+// over that. A frame that equals the one before it, because all time queries of the shot have equal results, is not
+// drawn again.
 #include "painter.h"
 
 #include "drawing.h"

@@ -1,4 +1,4 @@
-// The order of the film is a table of functions; each is called once with the film's data.
+// The order of the video is a table of functions; each is called once with the data.
 #include "shots.h"
 
 namespace crescent::explainer {

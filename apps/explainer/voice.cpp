@@ -14,7 +14,7 @@ namespace crescent::explainer {
 
 namespace {
 
-constexpr int track_rate = 48000;  // samples a second
+constexpr int track_rate = 48000;  // samples per second
 constexpr double lead = 0.15;      // s between a caption and its first word
 
 std::uint32_t little(const std::string& bytes, std::size_t at, int size) {

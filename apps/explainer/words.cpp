@@ -1,5 +1,5 @@
-// Numbers are formatted by plates/words.h and carry their source. Markup is read character by character: typed
-// words are searched for digits outside tags, and plain text is what stands outside them, entities resolved last.
+// Numbers are formatted by report/plates/sheet.h and carry their source. Markup is read character by character: literal
+// words are searched for digits outside tags, and plain text is the text outside them, with entities resolved last.
 #include "words.h"
 
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
-// The C interface between crescent's core, compiled to WebAssembly, and the page. One bench an instance: the experiment
-// that was opened last.
+// The C interface between crescent's core, compiled to WebAssembly, and the page. Each instance has one experiment: the
+// one opened last.
 //
-// A call that answers in words takes its request as JSON in request_buffer(size) and leaves its answer, JSON or text,
-// at response_data(), response_size(). A call that answers in numbers leaves planes of 4 bytes a pixel at the address
-// it returns; they stand until the next call. Boxes are [x0, x1) x [y0, y1) in pixels from the bottom-left.
+// A call that returns text takes its request as JSON in request_buffer(size) and leaves its response, JSON or text, at
+// response_data(), response_size(). A call that returns numbers leaves planes of 4 bytes per pixel at the address it
+// returns; they are valid until the next call. Boxes are [x0, x1) x [y0, y1) in pixels from the bottom-left.
 //
-// There are no exceptions in WebAssembly as Debian's libraries have it: what throws calls `api.failed` of the page
-// with its kind and its message, and never returns. The page drops such an instance and makes another one.
+// Debian's libraries for WebAssembly have no exceptions: a throw calls `api.failed` of the page with its kind and its
+// message, and never returns. The page drops such an instance and creates another one.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ namespace crescent::web {
 
 using nlohmann::ordered_json;
 
-/// The request in request_buffer(), and the answer.
+/// The request in request_buffer(), and the response.
 ordered_json request();
 void respond(std::string text);
 void respond(const ordered_json& answer);
@@ -35,20 +35,20 @@ template <class T> std::vector<T>& scratch() {
     return all;
 }
 
-/// A sample count that is being filled in, tile by tile.
+/// A sample count that is being computed, tile by tile.
 struct Slot {
     RunKey key;
     Film film;
 };
 
-/// What was opened.
+/// The open experiment.
 struct Bench {
     Experiment experiment;
     Scene scene;
     ShapeMap shapes;
     std::vector<Slot> slots;
-    /// What primary rays met, by box, for the arms and sample counts that follow; and of the last box that there was no
-    /// room for.
+    /// Hits of primary rays, by box, for the following samplers and sample counts; and those of the last box that did
+    /// not fit.
     std::map<std::array<int, 4>, std::vector<ShadingPoints>> shading_points;
     std::size_t points_kept = 0;
     std::array<int, 4> points_last{};
@@ -60,13 +60,13 @@ struct Bench {
     std::size_t width() const { return static_cast<std::size_t>(experiment.image.width); }
     std::size_t pixels() const { return width() * static_cast<std::size_t>(experiment.image.height); }
 };
-/// Throws Bug where nothing is open.
+/// Throws Bug if no experiment is open.
 Bench& bench();
 Slot& slot(int index);
 
-/// NaN and infinities have no JSON: they are told by name, as in metrics.json.
+/// JSON has no NaN and infinities: they are written by name, as in metrics.json.
 ordered_json json_number(double x);
-/// The arm `name` of the experiment; throws InputError where there is none.
+/// Returns the arm `name` of the experiment; throws InputError if there is none.
 const ArmPlan& arm_of(const std::string& name);
 
 }  // namespace crescent::web

@@ -1,12 +1,12 @@
-// One instance of the WebAssembly module, as apps/web/api.h describes it. Everything that is computed is computed there.
+// One instance of the WebAssembly module, as apps/web/api.h describes it. All computation happens in the module.
 
-/** What the core returns instead of an answer: "input" is the reader's mistake, "memory" and "bug" are not. */
+/** The kinds of error of the core: "input" is the user's mistake, "memory" and "bug" are not. */
 export class DoorError extends Error {
   constructor(readonly kind: string, text: string) {
     super(text);
   }
 
-  /** What is wrong and what to do. */
+  /** The error and the next step. */
   get sentence(): string {
     if (this.kind === "memory") return "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below.";
     if (this.kind === "input") return `This cannot be: ${this.message}.`;
@@ -20,7 +20,7 @@ export const pixelsOf = (b: Box): number => (b.x1 - b.x0) * (b.y1 - b.y0);
 type Call = (...numbers: number[]) => number;
 const text = new TextDecoder();
 
-/** The little of WASI that the C++ library asks for: no files, no clock that matters, nothing to read. */
+/** The part of WASI that the C++ library needs: no files, no real clock, no input. */
 function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   const nothing: Call = () => 52; // ENOSYS
   const sized: Call = (count, size) => {
@@ -43,12 +43,12 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
 }
 
-const unwinding = 1, rewinding = 2; // what asyncify_get_state() says
+const unwinding = 1, rewinding = 2; // returned by asyncify_get_state()
 
 export class Api {
   private readonly calls: Record<string, Call>;
   private readonly memory: WebAssembly.Memory;
-  private paused: (() => number) | undefined; // goes on with a call that left the module, apps/web/pause.h
+  private paused: (() => number) | undefined; // continues a call that left the module, apps/web/pause.h
   private room = 0; // where that call keeps its locals
 
   constructor(module: WebAssembly.Module) {
@@ -71,14 +71,14 @@ export class Api {
     this.calls["_initialize"]!();
   }
 
-  /** Bytes that the instance has taken of the machine. */
+  /** Bytes of memory of the instance. */
   get size(): number { return this.memory.buffer.byteLength; }
 
   private words(at: number, size: number): string {
     return text.decode(new Uint8Array(this.memory.buffer, at, size));
   }
 
-  /** A call that takes and returns numbers. A trap becomes an error with a sentence. */
+  /** A call that takes and returns numbers. A trap becomes an error with a message. */
   number(name: string, ...given: number[]): number {
     try {
       const info = this.calls[name]!(...given);
@@ -100,7 +100,7 @@ export class Api {
     };
   }
 
-  /** Whether a call waits to go on: nothing but that may be asked then. */
+  /** Whether a call is paused: only its continuation may be called then. */
   get waits(): boolean { return this.paused !== undefined; }
 
   private request(request: unknown): void {
@@ -109,7 +109,7 @@ export class Api {
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
   }
 
-  /** A call that answers in words. One that paused says that more is left, as what has parts does. */
+  /** A call that returns text. A paused one reports that more is left, like a request in parts. */
   say(name: string, request?: unknown, ...given: number[]): string {
     if (request !== undefined) this.request(request);
     if (this.paused && name === "go_on") this.paused();
@@ -122,19 +122,19 @@ export class Api {
     return JSON.parse(this.say(name, request, ...given)) as T;
   }
 
-  /** A call that answers in bytes: a copy of them, which may be handed on. */
+  /** A call that returns bytes: a copy of them, which may be transferred. */
   bytes(name: string, size: number, ...given: number[]): ArrayBuffer {
     const at = this.number(name, ...given);
     return this.memory.buffer.slice(at, at + size);
   }
 
-  /** The same with a request in words. */
+  /** The same with a text request. */
   bytesAbout(name: string, request: unknown, size: number, ...given: number[]): ArrayBuffer {
     this.request(request);
     return this.bytes(name, size, ...given);
   }
 
-  /** Bytes into the module, for the call that follows. */
+  /** Copies bytes into the module, for the next call. */
   give(bytes: ArrayBuffer): void {
     const at = this.number("tile_buffer", bytes.byteLength);
     new Uint8Array(this.memory.buffer, at, bytes.byteLength).set(new Uint8Array(bytes));

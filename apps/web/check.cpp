@@ -1,6 +1,6 @@
-// `check` in the page: an arm of the list at one w_o, or a planted fault at the nearest of its own, checked by the same
-// calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence, of as many
-// evaluations.
+// `check` in the page: a built-in sampler at one w_o, or a planted fault at the nearest of its own, checked by the same
+// calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence, for the same
+// number of evaluations.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace crescent::web {
 
 namespace {
 
-/// Those of a fault at the w_o nearest to theta, in degrees.
+/// Returns those of a fault at the w_o nearest to theta, in degrees.
 std::vector<CheckCase> nearest_of(const std::vector<CheckCase>& all, double theta) {
     const auto far = [&](const CheckCase& t) { return std::fabs(t.theta_deg - theta); };
     const double least = far(*std::ranges::min_element(all, {}, far));
@@ -37,8 +37,7 @@ ordered_json verdict_fields(const Verdict& v) {
 }  // namespace
 
 /// {sampler, theta, evaluations} -> {name, state, cases: [{surface, case, verdicts: [{name, state, say, evidence}]}]};
-/// so many evaluations at each w_o, those of the program where it is not asked; what depends on a clock, efficiency, is
-/// left out.
+/// `evaluations` at each w_o, by default those of the program; efficiency, which depends on a clock, is omitted.
 CRESCENT_EXPORT(checked)()->void {
     const ordered_json query = request();
     const std::string name = query.at("sampler").get<std::string>();
@@ -65,8 +64,8 @@ CRESCENT_EXPORT(checked)()->void {
     respond(out);
 }
 
-/// {sampler, theta, n} -> {case, draws: [[x, y]]}: its first n draws on the disk; density_disk() paints what it says
-/// of their density.
+/// {sampler, theta, n} -> {case, draws: [[x, y]]}: its first n draws on the disk; density_disk() paints its stated
+/// density.
 CRESCENT_EXPORT(drawn)()->void {
     const ordered_json query = request();
     const CheckCase check_case =
@@ -83,7 +82,7 @@ CRESCENT_EXPORT(drawn)()->void {
     respond(out);
 }
 
-/// {sampler, theta, size} -> the density that it claims there, as a picture for disk(), `size` pixels across.
+/// {sampler, theta, size} -> the density that it states there, as a picture for disk(), `size` pixels across.
 CRESCENT_EXPORT(density_disk)()->void {
     const ordered_json query = request();
     const CheckCase check_case =

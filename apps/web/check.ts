@@ -1,5 +1,5 @@
-// `check` on the page: a sampler at one w_o, its verdicts in a table; and samplers shown by their draws over the density
-// that they claim.
+// `check` on the page: a sampler at one w_o, its verdicts in a table; and samplers shown by their draws over their
+// stated density.
 import { Asker, evaluations } from "./answers";
 import { choice } from "./controls";
 import { el, minus } from "./dom";
@@ -18,7 +18,7 @@ function table(one: Checked["cases"][number]): HTMLElement {
   return el("table", { class: "verdicts" }, el("caption", {}, one.case), el("tbody", {}, ...rows));
 }
 
-/** A sampler and a w_o to choose, and what `check` says of them. */
+/** A sampler and a w_o to choose, and the verdicts of `check` on them. */
 export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
   const { samplers, theta } = lesson.check!, answer = lesson.answer as { samplers: readonly string[]; theta: number };
   let sampler = answer.samplers[0]!, at = answer.theta, asked = 0;
@@ -29,7 +29,7 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
     try {
       const checked = await asker.checked<Checked>(sampler, at);
       if (mine !== asked) return;
-      // A planted fault has a name of several words; the program judges it at three w_o in one call.
+      // A planted fault has a name of several words; the program checks it at three w_o in one call.
       const how = sampler.includes(" ") ? ["; the program judges such faults by ", "crescent check --planted"] : [`, from ${evaluations} evaluations a surface; the program makes five times as many: `, `crescent check ${sampler} --wo ${at}`];
       out.replaceChildren(el("p", {}, el("b", {}, checked.state), how[0], el("code", {}, how[1])), ...checked.cases.map(table));
     } catch (error) {
@@ -43,7 +43,7 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
       el("button", { type: "button", id: "check", onclick: () => void check() }, "Check")), out);
 }
 
-/** Paints a sampler's density and its draws when there is room for it; what is no longer on the page is left out. */
+/** Paints a sampler's density and its draws when there is room for it; skipped if it is no longer on the page. */
 async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
   const wanted = (): boolean => canvas.isConnected;
   const density = await model.disk(wanted, "density_disk", { sampler: value, theta }, size);
@@ -64,7 +64,7 @@ async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: 
 
 function picture(model: Model, option: Option, theta: number): HTMLElement {
   const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": `${option.words}: its draws` });
-  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question stands without it
+  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question works without it
   return el("figure", {}, canvas, el("figcaption", {}, el("b", {}, option.words)));
 }
 

@@ -1,5 +1,5 @@
-// What the measurements of a lesson come to, in words: which is largest, by what factor, what a sampler's verdicts say.
-// Every number was measured for this answer, and `kind` names what was found, so that what is said can follow it.
+// The conclusions from the measurements of a lesson, in words: which is largest, by what factor, a sampler's verdicts.
+// Every number was measured for this answer, and `kind` names the result, so that the text can depend on it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct Found {
     std::vector<std::string> lines{};
 };
 
-/// A measurement of measure.cpp with its words.
+/// A measurement of measure.cpp with its text.
 struct Series {
     std::string name;  // "cosine, N = 64: RMSE of H"
     double n = 0, median = 0, low = 0, high = 0;
@@ -39,7 +39,7 @@ Series series_of(const ordered_json& v) {
     return out;
 }
 
-/// The largest or the smallest of these, where its band lies apart from every other; else "overlap".
+/// Returns the largest or the smallest of these if its band is disjoint from every other; else "overlap".
 Found extreme_of(const ordered_json& query, const ordered_json& of) {
     const double sign = query.at("by").get<std::string>() == "largest" ? 1 : -1;
     std::vector<Series> all;
@@ -56,7 +56,7 @@ Found extreme_of(const ordered_json& query, const ordered_json& of) {
     return out;
 }
 
-/// The same of what was asked, with what was measured beside it.
+/// The same for the request, with the additional measurements.
 Found extreme(const ordered_json& query) {
     Found out = extreme_of(query, query.at("of"));
     if (!query.contains("beside")) return out;
@@ -65,7 +65,7 @@ Found extreme(const ordered_json& query) {
     return out;
 }
 
-/// The factor from the first to the second, seed by seed.
+/// Returns the factor from the first to the second, seed by seed.
 Found factor(const ordered_json& query) {
     const Series a = series_of(query.at("of").at(0)), b = series_of(query.at("of").at(1));
     std::vector<double> each;
@@ -93,7 +93,7 @@ const ordered_json& verdict_of(const ordered_json& one, const std::string& name)
         if (v.at("name").get<std::string>() == name) return v;
     throw InputError({"lesson", 0, 0}, "no verdict '" + name + "' in " + one.dump());
 }
-/// The smallest p-value of a verdict, each for all members of its family; "" where it has none.
+/// Returns the smallest p-value of a verdict, each for all members of its family; "" if it has none.
 std::string least_p(const ordered_json& v) {
     const ordered_json all = v.at("evidence").value("p", ordered_json::object());
     double least = 1;
@@ -110,14 +110,14 @@ std::string message_of(const ordered_json& v) {
 }
 std::string state_of(const ordered_json& v) { return v.at("state").get<std::string>(); }
 
-/// The case on a surface, of the only one where none is asked for.
+/// Returns the case on a surface; without a surface, the only one.
 const ordered_json& case_on(const ordered_json& checked, const std::string& surface) {
     for (const auto& one : checked.at("cases"))
         if (surface.empty() || one.at("surface").get<std::string>() == surface) return one;
     throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was checked on");
 }
 
-/// Whether light is out of reach.
+/// Returns whether light is out of reach.
 Found unbiased(const ordered_json& one) {
     const ordered_json& support = verdict_of(one, "support");
     Found out{state_of(support), state_of(support), {"on " + one.at("case").get<std::string>(), message_of(support)}};
@@ -125,7 +125,7 @@ Found unbiased(const ordered_json& one) {
     return out;
 }
 
-/// What chi-square says, and what the other verdicts say.
+/// Compares chi-square with the other verdicts.
 Found beside_chi_square(const ordered_json& one) {
     const ordered_json& density = verdict_of(one, "density");
     Found out{"right", "", {message_of(density)}};
@@ -138,7 +138,7 @@ Found beside_chi_square(const ordered_json& one) {
     return out;
 }
 
-/// A t-test as it is commonly made, on the weights that `mean` looked at, beside what `mean` says.
+/// Compares a common t-test, on the weights used by `mean`, with the verdict `mean`.
 Found beside_t_test(const ordered_json& one) {
     const ordered_json& mean = verdict_of(one, "mean");
     const ordered_json& e = mean.at("evidence");
@@ -156,7 +156,7 @@ Found beside_t_test(const ordered_json& one) {
     return out;
 }
 
-/// Which of several samplers nothing is wrong with.
+/// Returns which of several samplers has no fault.
 Found which_is_right(const ordered_json& query) {
     Found out{"", "none"};
     std::size_t right = 0;
@@ -191,8 +191,8 @@ Found concluded(const ordered_json& query) {
 
 }  // namespace
 
-/// {by, options, surface, of: [what measure or checked said], beside: [what else measure said]} -> {answer, kind,
-/// lines}.
+/// `{by, options, surface, of: [results of measure or checked], beside: [other results of measure]}` ->
+/// {answer, kind, lines}.
 CRESCENT_EXPORT(concluded)()->void {
     const Found found = concluded(request());
     respond(ordered_json{{"answer", found.answer}, {"kind", found.kind}, {"lines", found.lines}});

@@ -1,4 +1,4 @@
-// One pixel opened: its hemisphere as a picture, its draws as points, its running mean, its largest sample in parts.
+// One pixel: its hemisphere as a picture, its draws as points, its running mean, the factors of its largest sample.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,9 +42,9 @@ std::string mean_chart(const std::vector<double>& mean, std::optional<double> re
     return chart.str();
 }
 
-constexpr std::uint64_t draw_cost = 400;  // of a draw that is told one by one, in samples of a pixel
+constexpr std::uint64_t draw_cost = 400;  // cost of reporting one draw, in samples of a pixel
 
-/// What is told of an open pixel, part by part.
+/// The response for a pixel, part by part.
 struct OpenPixelReply {
     std::shared_ptr<const OpenPixel> open;
     Disk view;
@@ -97,7 +97,7 @@ struct OpenPixelReply {
 }  // namespace
 
 /// {i, j, arm, n, css, reference: whether it is computed} -> draws, lights, the running mean and the largest sample; {}
-/// where the pixel sees nothing.
+/// if the pixel sees nothing.
 CRESCENT_EXPORT(pixel)()->void {
     const ordered_json query = request();
     const int i = query.at("i").get<int>(), j = query.at("j").get<int>();
@@ -120,8 +120,8 @@ CRESCENT_EXPORT(pixel)()->void {
     begin(std::move(parts));
 }
 
-/// {i, j, arm, what, size} -> the picture of a hemisphere for disk(), `size` pixels across: f L cos, or where `what` is
-/// "pdf" the arm's density (of an arm of two techniques, of the first).
+/// {i, j, arm, what, size} -> the picture of a hemisphere for disk(), `size` pixels across: f L cos, or if `what` is
+/// "pdf" the sampler's density (for two techniques, that of the first).
 CRESCENT_EXPORT(hemisphere)()->void {
     const ordered_json query = request();
     const std::shared_ptr<const OpenPixel> open = open_pixel(query.at("i").get<int>(), query.at("j").get<int>());

@@ -1,4 +1,4 @@
-// What a worker can be asked, and how any instance answers: the same code in a worker and on the page's own thread.
+// The jobs of a worker, and their execution in any instance: the same code in a worker and on the page's own thread.
 import { Box, Api, DoorError, pixelsOf } from "./api";
 
 export interface Opening { file: string; text: string; set: string[]; published: string }
@@ -8,7 +8,7 @@ export type Job =
   | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
   | { kind: "photograph"; box: Box; opening: Opening } // of the reference
-  | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: asked of another experiment
+  | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: for another experiment
 
 export type Answer = { bytes?: ArrayBuffer[]; response?: unknown };
 export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string }; size?: number }; // size: of its instance
@@ -38,18 +38,18 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" }>): Answer {
 const goesOn = (answer: Answer): boolean => typeof answer.response === "object" && answer.response !== null && "more" in answer.response;
 const readsReference = (job: Job): boolean => job.kind === "reference" || job.kind === "photograph";
 
-/** An instance that opens what a job is about, and its experiment again after it broke. */
+/** An instance that opens the experiment of a job, and opens it again after a failure. */
 export class Answering {
   private api: Api;
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the api
-  private ready = false; // to compute its reference
-  private steps: (() => Answer)[] = []; // of the job that was begun: the last one answers it
+  private ready = false; // ready to compute its reference
+  private steps: (() => Answer)[] = []; // of the current job: the last step returns its answer
   private goes = false; // the first of them has parts left
   worked = 0; // the work of the last part, in samples, and of the largest so far
   most = 0;
 
-  /** `kept`: for how many pixels it keeps what their primary rays met. */
+  /** `kept`: the number of pixels for which it keeps the hits of primary rays. */
   constructor(private readonly module: WebAssembly.Module, private readonly kept = 0) { this.api = this.made(); }
 
   private made(): Api {
@@ -67,10 +67,10 @@ export class Answering {
     return answer;
   }
 
-  /** What jobs are about that name no opening. */
+  /** The experiment of jobs that name no opening. */
   about(opening: Opening): void { this.last = opening; }
 
-  /** The first part of a job; undefined where more are left. What was not finished before is dropped. */
+  /** The first part of a job; undefined if more are left. Unfinished parts from before are dropped. */
   begin(job: Job): Answer | undefined {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
@@ -84,7 +84,7 @@ export class Answering {
     return this.goOn();
   }
 
-  /** The next part of the job that was begun. */
+  /** The next part of the current job. */
   goOn(): Answer | undefined {
     return this.part(() => {
       const answer = this.goes ? { response: this.api.ask("go_on") } : this.steps[0]!();

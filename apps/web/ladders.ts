@@ -1,8 +1,8 @@
-// RMSE against N, one chart a region, as the core draws it.
+// RMSE against N, one chart per region, drawn by the core.
 import { el, made } from "./dom";
 import { Model } from "./model";
 
-/** The charts of what the model has measured, unless it opens something else meanwhile. */
+/** The charts of the model's measurements, unless it opens something else meanwhile. */
 export async function showLadders(root: HTMLElement, model: Model): Promise<void> {
   const { described, shown } = model;
   await model.turns.pass();

@@ -1,5 +1,5 @@
-// What lessons ask: an arm over a region at one N on several seeds, the largest sample, furnaces. Every number with its
-// seeds; conclude.cpp says what they come to.
+// Measurements for lessons: an arm over a region at one N on several seeds, the largest sample, furnaces. Every number
+// comes with its seeds; conclude.cpp draws the conclusions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ double rms_of(const std::vector<double>& a, const std::vector<double>& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// RMSE of an arm over a box on several seeds, put together part by part.
+/// RMSE of an arm over a box on several seeds, accumulated part by part.
 struct Measuring {
     explicit Measuring(const ordered_json& query)
         : box(tile_of(requested_box(query))),
@@ -74,7 +74,7 @@ public:
     std::vector<std::vector<double>> y;  // by seed
 };
 
-/// The largest sample of a box, part by part; of equal ones, the first from the bottom-left.
+/// The largest sample of a box, part by part; among equal ones, the first from the bottom-left.
 struct Largest {
     float x = 0;
     int i = 0, j = 0;
@@ -101,7 +101,7 @@ struct Largest {
     }
 };
 
-/// What the furnaces read, one after another, and why the one that is asked about is off.
+/// The results of the furnaces, one after another, and why the requested one deviates.
 struct Furnaces {
     explicit Furnaces(std::string of) : name(std::move(of)) {}
 
@@ -131,13 +131,13 @@ private:
         else if (off > 4 * f.se) why = "bug";
     }
     std::string name, why = "none";
-    FurnaceDraws draws;  // of the furnace that is to be read
+    FurnaceDraws draws;  // of the furnace that is next
     ordered_json lines = ordered_json::array();
 };
 
 }  // namespace
 
-/// {arm, n, region, box, seeds, as} -> {name, n, rmse: [one a seed], median, q05, q95, mean, met}; `as`: its name where
+/// {arm, n, region, box, seeds, as} -> {name, n, rmse: [one per seed], median, q05, q95, mean, met}; `as`: its name if
 /// that is not the arm's; mean: of the reference's Y; met: the share of directions that met a light.
 CRESCENT_EXPORT(measure)()->void {
     const ordered_json query = request();
@@ -150,7 +150,8 @@ CRESCENT_EXPORT(measure)()->void {
     begin(std::move(parts));
 }
 
-/// {arm, n, box} -> the largest sample of a box: X = f L cos / p taken apart, which factor is the largest, its pixel.
+/// {arm, n, box} -> the largest sample of a box: the factors of X = f L cos / p, which factor is the largest, its
+/// pixel.
 CRESCENT_EXPORT(firefly)()->void {
     const ordered_json query = request();
     const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
@@ -163,9 +164,10 @@ CRESCENT_EXPORT(firefly)()->void {
     begin(std::move(parts));
 }
 
-/// {n, name} -> what that furnace of the experiment reads at n samples and why; a line for each furnace.
-/// tail: it is off and k-hat says that the variance is infinite; bug: it is off by more than four standard errors
-/// though it is not; precision: float sums of n terms may be that far off, n 2^-24; none: it is not off.
+/// {n, name} -> the value of that furnace of the experiment at n samples and why; a line for each furnace. tail: it
+/// deviates and k-hat indicates infinite variance; bug: it deviates by more than four standard errors and the variance
+/// is finite; precision: the deviation is within the error of float sums of n terms, n 2^-24; none: it does not
+/// deviate.
 CRESCENT_EXPORT(furnaces_of)()->void {
     const ordered_json query = request();
     const auto n = query.at("n").get<std::uint64_t>();

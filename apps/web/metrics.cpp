@@ -1,5 +1,5 @@
-// Numbers under the pictures: the metrics of a film beside what was published for the same run, tails, and charts
-// of both.
+// Numbers under the pictures: the metrics of a film with the published values of the same run, tails, and charts of
+// both.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::string class_of(const std::string& arm) {
     return fmt::format("c{}", at % 6);
 }
 
-/// The largest samples of a box beside those of the boxes before it.
+/// Merges the largest samples of a box with those of the boxes before it.
 void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
     const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
     count_work(pixels_of(box) * cost_of(sampler, tail_cost * plan.n));
@@ -45,7 +45,7 @@ void send_tail(std::vector<float>& largest) {
     std::ranges::sort(largest, std::greater<>());
     const std::optional<Tail> found = fit_pooled_tail(largest);
     if (!found) return respond(ordered_json{{"words", "no tail: the samples do not spread"}});
-    // The mean is the integral and exists whatever k is; from k = 1 on the samples seen do not bound it.
+    // The mean is the integral and exists for any k; from k = 1 on the observed samples do not bound it.
     const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
     const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
         : found->heavy() && sure                 ? "inconclusive: heavy tail, the variance looks infinite"
@@ -92,7 +92,7 @@ CRESCENT_EXPORT(metrics)(int index)->void {
     begin(std::move(parts));
 }
 
-/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: how heavy the tail of the arm's samples is in a box.
+/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box.
 CRESCENT_EXPORT(tail)()->void {
     const ordered_json query = request();
     const Box box = requested_box(query);

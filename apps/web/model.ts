@@ -1,5 +1,5 @@
-// The bench behind the pictures: an experiment as it is set, its films growing from one sample count to the next, its reference, its metrics.
-// One instance of the module on the page's own thread puts the tiles together; workers compute them.
+// The state behind the pictures: the experiment with its settings, its films at growing sample counts, its reference,
+// its metrics. One instance of the module on the page's own thread assembles the tiles; workers compute them.
 import { Box, Api, DoorError, pixelsOf } from "./api";
 import { Opening } from "./jobs";
 import { Pool } from "./pool";
@@ -22,12 +22,12 @@ export interface Metrics {
 }
 export interface Tail { k?: number; se?: number; heavy?: boolean; text?: string; words: string }
 
-/** One picture: an arm of the experiment and what is known of it so far. */
+/** One picture: an arm of the experiment and its results so far. */
 export interface Shown {
   arm: number; name: string; n: number; sampleCounts: { n: number; metrics: Metrics }[]; tails: Record<string, Tail>;
 }
 
-/** Whom the model tells. */
+/** The listener of the model. */
 export interface Viewer {
   opened(described: Described, shown: Shown[]): void;
   painted(index: number, box: Box): void; // index -1: the reference
@@ -37,7 +37,7 @@ export interface Viewer {
 }
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
-const referenceAfter = 64; // sample counts up to here come before it
+const referenceAfter = 64; // sample counts up to this one are computed before it
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
@@ -49,11 +49,11 @@ export class Model {
   startedAt = 0;
   took = 0; // ms to the last metric, and to the last film
   filmsTook = 0;
-  private readonly most: number; // samples of one part, and what a pixel counts: of the reference; of a film, its samples apart
+  private readonly most: number; // samples of one part, and the cost of a pixel: of the reference; of a film, without its samples
   private readonly referenceCost: number;
   private readonly filmCost: number;
   private era = 0;
-  private asking: Promise<unknown> = Promise.resolve(); // what is asked in parts, one after another
+  private asking: Promise<unknown> = Promise.resolve(); // requests in parts, one after another
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
   /** `api`: an instance of the module for the page's own thread. */
@@ -71,8 +71,8 @@ export class Model {
     return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques + this.filmCost, 0);
   }
 
-  /** A call in parts, each in a turn that has room: one question after another. `take`: what is done with the answer before
-      the next. Undefined where it is no longer wanted. */
+  /** A call in parts, each in a turn that has room: one request after another. `take` is applied to the result before
+   *  the next. Undefined if it is no longer wanted. */
   parts<T, R = T>(wanted: () => boolean, call: string, request?: unknown, given: number[] = [], take = (answer: T): R => answer as unknown as R): Promise<R | undefined> {
     const done = this.asking.then(async () => {
       for (let next = call; ; next = "go_on") {
@@ -87,7 +87,7 @@ export class Model {
     return done;
   }
 
-  /** Opens, and begins to compute up to n samples a pixel of these arms; throws DoorError for settings that are wrong. */
+  /** Opens, and begins to compute up to n samples per pixel of these arms; throws DoorError for invalid settings. */
   async run(opening: Opening, arms: string[], n: number): Promise<void> {
     const era = ++this.era, sampleCounts = [...ladder.filter((sampleCount) => sampleCount > 1 && sampleCount < n), n];
     this.startedAt = performance.now();
@@ -104,7 +104,7 @@ export class Model {
         this.api.number("begin", index, s.arm, sampleCounts[0]!);
       }
     } catch (error) {
-      this.api = new Api(this.module); // a call that failed leaves its instance as it was in the midst of it
+      this.api = new Api(this.module); // a failed call leaves its instance in an intermediate state
       throw error;
     }
     this.viewer.opened(this.described, this.shown);
@@ -117,14 +117,14 @@ export class Model {
     }
   }
 
-  /** What is under way is dropped. */
+  /** Drops the work in progress. */
   stop(): void {
     ++this.era;
     this.pool.cancel();
   }
 
-  /** Films first: the reference costs more than a film at the sample count before it, and no picture waits for it. Sample counts that
-      were over before it was there are made once more, for their metrics. */
+  /** Films first: the reference costs more than a film at the sample count before it, and no picture waits for it.
+   *  Sample counts completed before the reference are computed again, for their metrics. */
   private async compute(era: number, opening: Opening, sampleCounts: number[]): Promise<void> {
     const known = this.keep(opening), early = sampleCounts.filter((n) => !known && n <= referenceAfter), late = sampleCounts.filter((n) => !early.includes(n));
     const watched = early.filter((_, k) => k === 0 || k !== early.length - 2); // the last but one would cost a fifth of the time
@@ -155,10 +155,10 @@ export class Model {
     }));
   }
 
-  /** The memory of a film, of the reference for -1; undefined where something else was opened meanwhile. */
+  /** The memory of a film, of the reference for -1; undefined if something else was opened meanwhile. */
   private room(era: number, film: number): Promise<object | undefined> { return this.parts<object>(() => era === this.era, "film_buffer", undefined, [film]); }
 
-  /** A sample count for its metrics alone, in a film that no picture shows. */
+  /** A sample count computed only for its metrics, in a film that no picture shows. */
   private async again(era: number, n: number): Promise<void> {
     const spare = this.shown.length;
     for (const s of this.shown) {
@@ -172,7 +172,7 @@ export class Model {
     }
   }
 
-  /** One tile of each arm put into its film, [film, arm]; false where something else was opened meanwhile. */
+  /** Puts one tile of each arm into its film, [film, arm]; false if something else was opened meanwhile. */
   private async tile(era: number, films: [number, number][], n: number, box: Box): Promise<boolean> {
     const { bytes } = await this.pool.ask({ kind: "tile", arms: films.map(([, arm]) => arm), n, box });
     if (era !== this.era || !bytes) return false;
@@ -194,7 +194,7 @@ export class Model {
     this.viewer.measured();
   }
 
-  /** Where the scale of maps ends. */
+  /** The end of the scale of maps. */
   async top(): Promise<number> {
     const { era } = this;
     return (await this.parts<{ top: number }>(() => era === this.era, "scale", undefined, [this.shown.length]))?.top ?? 1;
@@ -205,7 +205,7 @@ export class Model {
     return this.parts(wanted, call, { ...request, size }, [], () => new ImageData(new Uint8ClampedArray(this.api.bytes("disk", 4 * size * size)), size, size));
   }
 
-  /** The reference is kept where only seeds, arms, regions or k have changed; whether all of it is there. */
+  /** The reference is kept if only seeds, arms, regions or k have changed; returns whether it is complete. */
   private keep(opening: Opening): boolean {
     const key = JSON.stringify([opening.text, opening.set.filter((set) => !untouchedByReference.test(set))]);
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
@@ -213,7 +213,7 @@ export class Model {
   }
   private referenceBoxes(): Box[] { return this.boxes(this.referenceCost); }
 
-  /** By quadrature; what is kept is put first. */
+  /** By quadrature; the memory is copied first. */
   private async reference(era: number): Promise<void> {
     const { parts } = this.tiles;
     if (!(await this.room(era, -1))) return;
@@ -241,7 +241,8 @@ export class Model {
     if (this.shown[0]!.n > 0) await this.measure(era);
   }
 
-  /** Once the hand rests, and one after another: each takes a worker for a while, and a new setting is to find one free. */
+  /** After the last change, one after another: each occupies a worker for a while, and a new setting must find one
+   *  free. */
   private async tails(era: number): Promise<void> {
     await new Promise((done) => setTimeout(done, 300));
     for (const s of this.shown)
@@ -254,17 +255,17 @@ export class Model {
       }
   }
 
-  /** A question to any worker, of another experiment where one is given: that one is answered whatever is opened meanwhile. */
+  /** A request to any worker, of another experiment if one is given: such a request survives other openings. */
   async ask<T>(call: string, request: unknown, opening?: Opening): Promise<T> {
     if (!opening) return (await this.pool.ask({ kind: "ask", call, request })).response as T;
     return (await this.pool.ask({ kind: "ask", call, request, opening }, true)).response as T;
   }
 
-  /** The reference of an experiment as a picture, RGBA of a box after another. What is asked last is answered first. */
+  /** The reference of an experiment as a picture, RGBA of one box after another. The last request is computed first. */
   async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
     await this.pool.ready;
     for (const box of this.boxes(this.referenceCost + this.filmCost, size).reverse()) // and its colours
-      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question stands without it
+      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
   }
 
   /** RGBA of a box, rows from the top. */

@@ -1,4 +1,4 @@
-// An experiment's text and its settings -> a bench, and what the page has to know of it: arms, regions, knobs.
+// Opens an experiment's text with its settings, and returns what the page needs of it: arms, regions, knobs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void add_material_knobs(const Shape& shape, ordered_json& to) {
         add(knob(shape.name + ".rho_s", "rho_s of " + shape.name, "", 0, 1, false), m.rho_s);
 }
 
-/// A light's lengths and its centre or edges; which way it faces is left to the page's address.
+/// A light's lengths and its centre or edges; its direction can be changed only in the page's address.
 void add_light_knobs(const Light& light, ordered_json& to) {
     ordered_json places = ordered_json::array();  // after the lengths
     std::visit(
@@ -123,7 +123,7 @@ CRESCENT_EXPORT(open)()->void {
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
     const std::string published = query.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);
-    std::vector<Slot> films;  // room that was taken serves again; two images of the largest size would not fit
+    std::vector<Slot> films;  // allocated memory is reused; two images of the largest size would not fit
     if (opened && e.image.width == opened->experiment.image.width && e.image.height == opened->experiment.image.height)
         films = std::move(opened->slots);
     opened.reset();
@@ -132,7 +132,7 @@ CRESCENT_EXPORT(open)()->void {
     respond(described(opened->experiment));
 }
 
-/// The samplers that an arm may have, with a line on each.
+/// The samplers that an arm may have, with one line about each.
 CRESCENT_EXPORT(samplers)()->void {
     ordered_json all = ordered_json::array();
     for (const SamplerInfo& info : sampler_infos())

@@ -26,16 +26,16 @@ export class Page implements Viewer {
   private top = 1;
   private timer = 0;
   private openedAt = 0;
-  private seen: Described | undefined; // what the pictures are of; the model may have opened another
-  private painting = 0; // counts pictures that are painted anew, and pixels that are opened: the last one goes on
+  private seen: Described | undefined; // shown in the pictures; the model may have opened another
+  private painting = 0; // counts repaints of the pictures, and opened pixels: only the last one continues
   private opening = 0;
-  private movedAt = 0; // when a hand changed what is not yet open
-  private awaited = 0; // and what is not yet painted
-  private good: Opened | undefined; // what was opened last
-  private refused = false; // what was set since cannot be
-  private response: string[] = []; // of the address, until something is opened
-  private idle = true; // nothing is computed for a bench that is not seen
-  private asRead = false; // an answered lesson that the address shows with settings of its own
+  private movedAt = 0; // time of the last change that is not open yet
+  private awaited = 0; // and not painted yet
+  private good: Opened | undefined; // the last one that opened
+  private refused = false; // the settings since then are invalid
+  private response: string[] = []; // from the address, until something is opened
+  private idle = true; // nothing is computed while the bench is hidden
+  private asRead = false; // an answered lesson that the address shows with its own settings
   private known: Asker | undefined;
   private readonly speaker = new Speaker(byId("status"));
 
@@ -67,7 +67,7 @@ export class Page implements Viewer {
   private get source(): Source { return this.data.sources[this.state.experiment]!; }
   private get lesson(): Lesson | undefined { return lessons.find((l) => l.id === this.state.lesson); }
 
-  /** A step that the browser's Back takes back: another part, lesson or choice. What is dragged or typed is none. */
+  /** A step that the browser's Back reverts: another part, lesson or choice. Dragging and typing are not steps. */
   private turn(): void {
     if (write(this.state) !== location.hash) history.pushState(null, "", write(this.state));
   }
@@ -84,7 +84,7 @@ export class Page implements Viewer {
     else if (!answered) this.open(); // an answered lesson opens what it shows
   }
 
-  /** Opens what the state says; settings that the core refuses are reported and left out. */
+  /** Opens the state; settings that the core rejects are reported and omitted. */
   private open(response: string[] = this.response): void {
     const { state, source } = this;
     this.response = [];
@@ -104,7 +104,7 @@ export class Page implements Viewer {
     });
   }
 
-  /** A setting changes: at once in the address, in the pictures thirty times a second at most. */
+  /** Applies a setting: at once in the address, in the pictures at most thirty times a second. */
   private change(path: string, value: string | undefined): void {
     if (value === undefined) delete this.state.set[path];
     else this.state.set[path] = value;
@@ -132,7 +132,7 @@ export class Page implements Viewer {
     };
     const same = this.pictures.length === shown.length + 1 && this.pictures[0]?.canvas.width === d.width && this.pictures[0].canvas.height === d.height;
     this.pictures = [...shown.map((_, index) => new Picture(index, d, picking)), new Picture(-1, d, picking)].map((picture, k) => {
-      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stands until it is painted over
+      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stays until it is painted over
       return picture;
     });
     for (const picture of this.pictures) {
@@ -150,7 +150,8 @@ export class Page implements Viewer {
     this.refused = false;
   }
 
-  /** All settings, or those that a lesson lets one play with. A hand on one of them keeps it: they are not made anew then. */
+  /** All settings, or those that a lesson allows to change. They are not created again while the user moves one of
+   *  them. */
   private knobs(): void {
     const { described } = this.model, held = document.activeElement?.closest("[data-path]") && document.activeElement.getAttribute("aria-label");
     if (described) byId("knobs").replaceChildren(...controlRows(described, (path, value) => this.change(path, value), this.lesson?.play));
@@ -189,7 +190,7 @@ export class Page implements Viewer {
     void this.finished(Promise.all([painted, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
   }
 
-  /** Tells the tests, once all of it is shown. */
+  /** Notifies the tests once everything is shown. */
   private async finished(shown: Promise<unknown>): Promise<void> {
     const { described, took } = this.model, info = document.documentElement.dataset;
     info["films"] = String(Math.round(this.model.filmsTook));
@@ -200,7 +201,7 @@ export class Page implements Viewer {
     info["took"] = String(Math.round(took));
   }
 
-  /** All pictures, unless others are wanted meanwhile. */
+  /** All pictures, unless others are requested meanwhile. */
   private async repaint(): Promise<void> {
     const { pictures, model, seen } = this, mine = ++this.painting;
     const stands = (): boolean => mine === this.painting && pictures === this.pictures && seen === model.described;
@@ -227,7 +228,7 @@ export class Page implements Viewer {
     });
   }
 
-  /** A sentence with what to do; `all`: there is nothing to show of these settings but their command. */
+  /** A message with the next step; `all`: nothing can be shown for these settings except their command. */
   failed(error: DoorError, all = false): void {
     if (all) {
       byId("command").textContent = command(this.state, this.source);
@@ -238,7 +239,7 @@ export class Page implements Viewer {
     byId("wrong").replaceChildren(el("p", {}, error.sentence));
   }
 
-  /** The bench, the lessons or the sheet. A lesson brings its arms and keeps the bench below it. */
+  /** The bench, the lessons or the sheet. A lesson has its own arms and keeps the bench below it. */
   private show(): void {
     const { part, answers } = this.state, { lesson } = this;
     for (const link of document.querySelectorAll<HTMLElement>("#tabs a"))
@@ -282,7 +283,7 @@ export class Page implements Viewer {
           this.state.answers[lesson.id] = answer;
           this.turn();
         }
-        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
+        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it uses samplers, not pictures
         if (!kept) Object.assign(this.state, { experiment: Object.keys(this.data.sources)[0]!, arms: [...lesson.arms], n: lesson.n, view: lesson.view ?? "photograph", arm: 0 });
         byId("bench").hidden = false;
         this.open();

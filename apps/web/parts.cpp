@@ -1,5 +1,6 @@
-// A question is a list of functions, one a call from the page; what they did is counted until the page asks. Boxes are
-// cut into parts at most 64 pixels across. Sites are kept by box for as many pixels as the page allows, else for one.
+// A request is a list of functions, one for each call from the page; their work is counted until the page asks. Boxes
+// are cut into parts at most 64 pixels across. Shading points are kept by box for as many pixels as the page permits,
+// else for one.
 #include "parts.h"
 
 #include <algorithm>
@@ -14,21 +15,20 @@ namespace {
 
 double done = 0;
 Parts left;                   // the next one last
-std::size_t most_points = 0;  // kept of one experiment; some 200 bytes each
+std::size_t most_points = 0;  // kept for one experiment; about 200 bytes each
 
 std::uint64_t bad_of(const Moments& m, std::size_t count) {
     return std::accumulate(m.bad.begin(), m.bad.begin() + static_cast<std::ptrdiff_t>(count), std::uint64_t{0});
 }
 
-/// Where a pixel of the image stands in a box.
+/// Returns the index of an image pixel in a box.
 std::uint32_t within(std::uint32_t pixel, const TileBox& box) {
     const auto width = static_cast<std::uint32_t>(bench().width());
     const auto i = static_cast<int>(pixel % width), j = static_cast<int>(pixel / width);
     return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
 }
 
-/// What the primary rays of a box meet; asked for arm after arm and sample count after sample count, they are traced
-/// once.
+/// Returns the hits of the primary rays of a box; they are traced once for all samplers and sample counts.
 std::vector<ShadingPoints>& points_seen(const TileBox& box) {
     Bench& b = bench();
     const std::array key = {box.x0, box.y0, box.x1, box.y1};
@@ -113,20 +113,20 @@ void reference_over(const TileBox& box, ReferenceFilm& film) {
     b.quadrature->write(box, {&film, 1});
 }
 
-/// What is to be called before reference_tile(); {} once it is done.
+/// Must be called before reference_tile(); returns {} once it is done.
 CRESCENT_EXPORT(prepare_reference)()->void {
     begin({[] {
         prepare_reference();
         respond(ordered_json::object());
     }});
 }
-/// The next part of the question that was begun.
+/// Runs the next part of the current request.
 CRESCENT_EXPORT(go_on)()->void { next_part(); }
-/// Keeps what primary rays met for so many pixels of an experiment: where the same tiles are asked for again.
+/// Keeps the hits of primary rays for this many pixels of an experiment, for tiles that are requested again.
 CRESCENT_EXPORT(keep_points)(double pixels)->void { most_points = static_cast<std::size_t>(pixels); }
-/// Samples that were drawn, or what cost as much, since the last call.
+/// Returns the samples drawn since the last call, or work of equal cost.
 CRESCENT_EXPORT(worked)()->double { return std::exchange(done, 0.0); }
-/// The most that one part may do, and what a pixel counts of a reference, and of a film beside its samples.
+/// The largest work of one part, and the cost of a pixel of a reference, and of a film without its samples.
 CRESCENT_EXPORT(most_of_part)()->double { return static_cast<double>(most_of_part); }
 CRESCENT_EXPORT(reference_cost)()->double { return static_cast<double>(reference_cost); }
 CRESCENT_EXPORT(film_cost)()->double { return static_cast<double>(film_cost); }

@@ -30,12 +30,12 @@ export class Picture {
     this.canvas.setAttribute("aria-label", `${title} ${line}. Arrow keys choose a pixel.`);
   }
 
-  /** What the arm aims by, and its density; of two techniques, their weights. */
+  /** The axis of the arm, and its density; for two techniques, their weights. */
   about(arm: Arm): void {
     this.aim.replaceChildren(made(`${arm.summary}: <math><mi>${arm.techniques > 1 ? "w" : "p"}</mi><mo>=</mo>${arm.formula}</math>`));
   }
 
-  /** The scale of the maps beside, under the reference. */
+  /** The scale of the neighbouring maps, under the reference. */
   legend(model: Model, state: State, top: number): void {
     if (state.view === "photograph" || !model.referenceDone) return this.table.replaceChildren();
     const heat = state.view === "heat", width = 256, end = model.api.say("figures", undefined, top);
@@ -45,7 +45,7 @@ export class Picture {
     this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
 
-  /** The corners of a region that was drawn can be moved; by the tabulator, those on the reference are reached. */
+  /** The corners of a drawn region can be moved; the tab key reaches those on the reference. */
   outlines(pixel: [number, number] | undefined): void {
     const own = (name: string): Partial<Outlined> => (name === mine ? { move: this.picking.region, reached: this.index < 0 } : {});
     this.frame.outlines(this.d.regions.map((region) => ({ ...region, ...own(region.name) })), pixel);
@@ -59,7 +59,7 @@ export class Picture {
     this.canvas.getContext("2d")!.putImageData(pixels, box.x0, this.d.height - box.y1);
   }
 
-  /** All of it, strip by strip from the top, while that is wanted. */
+  /** Paints all of it, strip by strip from the top, while it is wanted. */
   async repaint(model: Model, state: State, top: number, wanted: () => boolean): Promise<void> {
     for (let y1 = this.d.height; y1 > 0; y1 -= strip) {
       await model.turns.pass();
@@ -74,14 +74,15 @@ export class Picture {
     return [", the program's ", el("code", {}, program), verdict];
   }
 
-  /** Every row is there from the start, so that nothing moves when its number comes. `native`: the hash of the program's film, where this one has it. */
+  /** Every row exists from the start, so that nothing moves when its number arrives. `native`: the hash of the
+   *  program's film, if this is one of its films. */
   metrics(s: Shown, native: (key: string) => string | undefined): void {
     const last = s.sampleCounts.at(-1);
     this.name(s.name, last ? `N = ${last.n}` : "being sampled");
     const m = last?.metrics, rows: HTMLTableRowElement[] = [], waiting: Metric = { value: 0, text: "…" };
     const row = (name: string, metric: Metric | undefined = last ? undefined : waiting, note = ""): void => {
       if (!metric) return;
-      const room = this.d.source !== "" && !note; // for what was published, where anything was
+      const room = this.d.source !== "" && !note; // for published values, if there are any
       const published = metric.published || room ? el("small", {}, metric.published ? `published ${minus(metric.published)}` : "\u00a0") : undefined;
       rows.push(el("tr", {}, el("th", { scope: "row" }, name),
         el("td", { class: "n" }, minus(metric.text), published)));
@@ -101,10 +102,10 @@ export class Picture {
   }
 }
 
-/** The path under which a region that was drawn is set. */
+/** The path under which a drawn region is set. */
 export const drawnRegion = `regions.${mine}.box`;
 
-/** The pixel that an arrow key leads to, ten pixels on with shift; from the middle where none is chosen. */
+/** The pixel that an arrow key leads to, ten pixels with shift; from the middle if none is selected. */
 export function byArrow(event: KeyboardEvent, from: [number, number] | undefined, d: Described): [number, number] | undefined {
   const by = byKey(event);
   if (!by) return undefined;

@@ -1,4 +1,4 @@
-// Requests and answers in words, and what happens to an error: the page is told, and the call does not return.
+// Requests and responses as text, and errors: they are reported to the page, and the call does not return.
 #include <cstdlib>
 #include <new>
 #include <typeinfo>
@@ -7,7 +7,7 @@
 
 extern "C" {
 
-/// The page's: throws an error of its own out of the call.
+/// Provided by the page: throws an error of its own out of the call.
 [[noreturn]] __attribute__((import_module("api"), import_name("failed"))) void api_failed(
     const char* kind, std::size_t kind_size, const char* text, std::size_t text_size);
 
@@ -50,9 +50,9 @@ CRESCENT_EXPORT(request_buffer)(std::size_t size)->char* {
 CRESCENT_EXPORT(response_data)()->const char* { return response.data(); }
 CRESCENT_EXPORT(response_size)()->std::size_t { return response.size(); }
 
-/// Words with formulas between dollar signs as HTML with MathML.
+/// Formats text with formulas between dollar signs as HTML with MathML.
 CRESCENT_EXPORT(html)()->void { respond(formula::html(request().get<std::string>())); }
-/// A number for reading.
+/// Formats a number for reading.
 CRESCENT_EXPORT(figures)(double x)->void { respond(crescent::figures(x)); }
 
 CRESCENT_EXPORT(style)()->void { respond(std::string(style_sheet)); }

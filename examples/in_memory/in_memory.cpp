@@ -1,5 +1,5 @@
-// A run in memory: an experiment made in code, its steps called one by one, one RMSE of two arms with its interval over
-// seeds. No file is read and none is written. `in_memory stop` sets the stop flag on the way, as a host's button would.
+// A run in memory: an experiment made in code, its steps called one by one, the RMSE of two arms with its interval over
+// seeds. No file is read or written. `in_memory stop` sets the stop flag during the run, as a host's button would.
 #include <cstdio>
 #include <cstring>
 

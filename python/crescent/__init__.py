@@ -55,7 +55,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """The modules of the package that are loaded when they are first used."""
+    """Loads a module of the package on first use."""
     if name in ("adapters", "testing"):
         return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

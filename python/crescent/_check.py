@@ -1,4 +1,4 @@
-"""Is this sampler wrong, right but heavy-tailed, or right and good? One call: :func:`check`."""
+"""Checks samplers: :func:`check` finds errors, heavy tails and inefficiency."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Progress = Callable[[str, float, float], None]
 
 @dataclass(frozen=True)
 class Description:
-    """What distribution draws have: ``print`` shows it; `cases` has the numbers, each with its 95 % interval."""
+    """The distribution of draws: ``print`` shows it; `cases` has the numbers, each with its 95 % interval."""
 
     text: str
     cases: list[dict[str, Any]]
@@ -74,7 +74,7 @@ def _numbers(settings: Mapping[str, float]) -> dict[str, float]:
 
 
 def _of_library(s: Sampler) -> Sampler:
-    """The sampler with callables that take NumPy's arrays, whatever its own take."""
+    """Returns the sampler with callables that take NumPy's arrays, for any library of its own."""
     if s.array_module is np or s.array_module == "numpy":
         return s
     rows = rows_to_look_with(8, s.u) if s.wo != "none" else rows_to_look_with(8, s.u)[1:]
@@ -96,7 +96,7 @@ def _of_library(s: Sampler) -> Sampler:
 
 
 def _look(s: Sampler) -> tuple[int, bool, bool]:
-    """Channels, whether it gives weights, whether it gives delta parts: seen from a few answers."""
+    """Returns channels, whether it returns weights, and whether it returns delta parts, from a few results."""
     n, takes_wo = 8, s.wo != "none"
     wo, u = rows_to_look_with(n, s.u)
     wi, _, weight, delta = _arrays.asks_sample(s.sample, s.title(), takes_wo)(wo, u)
@@ -190,7 +190,7 @@ def _cases_and_title(
     full: bool,
     wo_deg: Grid | None,
 ) -> tuple[_crescent.CheckCases, str]:
-    """What `check` and `describe` are given, over its w_o, and its name."""
+    """Returns the cases of `check` and `describe` over the w_o, and the sampler's name."""
     _must_be_known(known)
     if isinstance(sample, str) and names_a_file(sample):
         sample = sampler_at(sample)
@@ -217,9 +217,9 @@ def describe(
     progress: Progress | None = None,
     **known: Unpack[Known],
 ) -> Description:
-    """What distribution the draws of a sampler have at each w_o; its arguments are those of :func:`check`.
+    """Describes the distribution of a sampler's draws at each w_o; the arguments are those of :func:`check`.
 
-    Nothing is checked, and neither pdf nor f is evaluated but to learn their shapes. `full` makes sixteen times as many
+    Nothing is checked, and pdf and f are evaluated only to learn their shapes. `full` makes sixteen times as many
     draws.
     """
     cases, _ = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
@@ -245,17 +245,17 @@ def check(
     progress: Progress | None = None,
     **known: Unpack[Known],
 ) -> CheckResult:
-    """Judges a sampler over a grid of w_o.
+    """Checks a sampler over a grid of w_o.
 
-    `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`), or `sample` is a :class:`Sampler`, or
-    where one is, "mine.py:sampler", whose folder is added to the path as pytest adds that of a test; or it is the name
-    of a built-in arm, whose parameters `settings` gives: ``check("phong", settings={"s": 32})``. What is known
-    of a sampler of callables is given by the fields of :class:`Sampler` as keywords: name, u, domain, wo, channels,
-    delta, eta, ...
+    `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`); or `sample` is a :class:`Sampler`, or the
+    place of one, "mine.py:sampler", whose folder is added to the path as pytest adds that of a test; or it is the name
+    of a built-in sampler, whose parameters `settings` gives: ``check("phong", settings={"s": 32})``. Properties of a
+    sampler of callables are given by the fields of :class:`Sampler` as keywords: name, u, domain, wo, channels, delta,
+    eta, ...
 
-    `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, in place of the grid. `alpha`: how often a right
-    sampler may be called wrong, over everything in the call. `against`: a second sampler, compared with the first.
-    `progress(what, done, total)` is called some times a second.
+    `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, instead of the grid. `alpha`: the probability
+    that a correct sampler is reported as wrong, over everything in the call. `against`: a second sampler, compared with
+    the first. `progress(what, done, total)` is called several times a second.
     """
     cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
@@ -281,7 +281,7 @@ def check(
 
 
 def _spelled_out() -> inspect.Signature:
-    """check's parameters with the fields of Sampler one by one, as help() and a notebook show them."""
+    """Returns check's parameters with the fields of Sampler one by one, for help() and notebooks."""
     given = inspect.signature(check)
     keyword = inspect.Parameter.KEYWORD_ONLY
     known = [

@@ -1,4 +1,4 @@
-"""A result: nine verdicts a direction w_o, in words, as data, and as files."""
+"""A result: nine verdicts for each direction w_o, in words, as data, and as files."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class Verdict:
     case: str  #: w_o and parameters: "w_o 60 deg az 250"
     name: str  #: valid, support, normalised, density, identity, physics, tail, mean or efficiency
     state: State
-    say: str  #: one sentence for the reader
-    cause: str = ""  #: what explains it, where something does
-    settle: str = ""  #: what would settle it, where it is inconclusive
-    expected: bool = True  #: False: the list of built-in arms expects another state
-    evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers behind it
+    say: str  #: the message
+    cause: str = ""  #: the cause, if one is found
+    settle: str = ""  #: the next step, if it is inconclusive
+    expected: bool = True  #: False: another state was expected of a built-in sampler
+    evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers of the test
     seconds: float = field(default=0.0, compare=False, repr=False)
 
 
@@ -47,7 +47,7 @@ def _verdict(raw: dict[str, Any]) -> Verdict:
 
 @dataclass(frozen=True)
 class _Kept:
-    """A result as texts and numbers alone, which go from process to process."""
+    """A result as texts and numbers only, which can be passed between processes."""
 
     state: str
     as_expected: bool
@@ -70,7 +70,7 @@ class _Kept:
 
 
 class CheckResult:
-    """What a call of :func:`crescent.check` found. It has no truth value: ask for ``.state``."""
+    """The result of :func:`crescent.check`. It has no truth value: use ``.state``."""
 
     def __init__(self, checked: _crescent.CheckRun | _Kept) -> None:
         self._run = checked
@@ -90,22 +90,23 @@ class CheckResult:
 
     @property
     def as_expected(self) -> bool:
-        """Every verdict is what the list of built-in arms expects; of a sampler of one's own: none is wrong."""
+        """Whether every verdict is as expected by the list of built-in samplers; for a user's sampler: none is wrong.
+        """
         return bool(self._run.as_expected)
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Every verdict, in the order in which they are given."""
+        """Every verdict, in the order of the list."""
         return self._verdicts
 
     @property
     def tests(self) -> int:
-        """How many statistical tests shared alpha."""
+        """The number of statistical tests that shared alpha."""
         return int(self._run.tests)
 
     @property
     def questions(self) -> int:
-        """How many draws, densities and values of f the sampler was asked for; 0 of arms of the list."""
+        """The number of draws, densities and values of f that were evaluated; 0 for built-in samplers."""
         return int(self._run.questions)
 
     def of(self, name: str) -> tuple[Verdict, ...]:
@@ -113,11 +114,11 @@ class CheckResult:
         return tuple(v for v in self._verdicts if v.name == name)
 
     def wrong(self) -> tuple[Verdict, ...]:
-        """The verdicts that accuse."""
+        """The verdicts with the state "wrong"."""
         return tuple(v for v in self._verdicts if v.state == "wrong")
 
     def broken(self) -> tuple[str, ...]:
-        """The names of the verdicts that accuse, each once, in their order."""
+        """The names of the wrong verdicts, each once, in their order."""
         return tuple(dict.fromkeys(v.name for v in self.wrong()))
 
     def __iter__(self) -> Iterator[Verdict]:
@@ -134,11 +135,11 @@ class CheckResult:
         return self._run.text()
 
     def text(self, all: bool = False) -> str:
-        """The table of the terminal; `all`: every verdict with its sentence."""
+        """The table of the terminal; `all`: every verdict with its message."""
         return self._run.text(all)
 
     def json(self) -> str:
-        """The text of docs/check.schema.json: equal calls give equal bytes."""
+        """The text described by docs/check.schema.json: equal calls give equal bytes."""
         return self._run.json()
 
     def junit(self, path: Path) -> None:
@@ -150,7 +151,7 @@ class CheckResult:
         _write(path, self._run.html())
 
     def _repr_html_(self) -> str:
-        """The page in a frame of a notebook's cell."""
+        """The report in a frame of a notebook's cell."""
         page = self._run.html().replace("&", "&amp;").replace('"', "&quot;")
         return f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0" title="result"></iframe>'
 

@@ -1,4 +1,4 @@
-// The built-in arms and BRDFs as vectorised functions, and the tail of a set of weights, for crescent/arms.py.
+// The built-in samplers and BRDFs as vectorised functions, and the tail of a set of weights, for crescent/arms.py.
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -27,7 +27,7 @@ Vec3d row(const In& a, std::size_t i) { return {a(i, 0), a(i, 1), a(i, 2)}; }
 
 bool same(Vec3d a, Vec3d b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-/// An arm of the list on a surface under an even light; one that aims at area lights has nothing to aim at there.
+/// A built-in sampler on a surface under constant light; one that aims at area lights has no light to aim at.
 struct ListedArm {
     std::string name;
     SurfaceSetup surface;
@@ -53,7 +53,7 @@ ListedArm arm_of(const std::string& name, const std::string& lobe, double s, dou
     return out;
 }
 
-/// Calls ask(sampler, i) row by row; an arm is aimed anew where w_o changes.
+/// Calls ask(sampler, i) row by row; a sampler is created again when w_o changes.
 template <class Ask> void each_row(const ListedArm& arm, const In& wo, Ask&& ask) {
     std::shared_ptr<const SamplerAdapter> adapter;
     Vec3d aimed{};
@@ -106,7 +106,7 @@ Out f(const ListedArm& arm, const In& wo, const In& wi) {
     return made(std::move(value), {n});
 }
 
-/// (k, se, exceedances) of the largest of `weights`.
+/// Returns (k, se, exceedances) of the largest of `weights`.
 std::optional<std::tuple<double, double, std::uint64_t>> tail_of(
     const nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>& weights) {
     std::vector<double> all(weights.shape(0));

@@ -1,4 +1,4 @@
-// Samplers and their result, for crescent/_check.py: samplers in, a CheckResult out.
+// Samplers and the results of their checks, for crescent/_check.py.
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -15,10 +15,10 @@ namespace {
 
 using Adapter = std::shared_ptr<const SamplerAdapter>;
 
-/// CheckCases over w_o, and who is asked in them.
+/// CheckCases over w_o, and the sampler in them.
 struct CheckCases {
     std::vector<CheckCase> all;
-    Adapter adapter;  // null: an arm of the list
+    Adapter adapter;  // null: a built-in sampler
     std::size_t size() const {
         std::size_t checked = 0;
         for (const CheckCase& t : all) checked += !t.baseline;
@@ -47,10 +47,6 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     c.traits.importance = importance;
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
     const auto adapter = std::make_shared<CallableSampler>(std::move(c));
-    return {make_user_cases(adapter, full, grid), adapter};
-}
-
-CheckCases of_adapter(const Adapter& adapter, bool full, const Grid& grid) {
     return {make_user_cases(adapter, full, grid), adapter};
 }
 
@@ -115,7 +111,7 @@ CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::
     return out;
 }
 
-/// What distribution the draws have: as text and as JSON.
+/// Describes the distribution of the draws, as text and as JSON.
 std::pair<std::string, std::string> described(
     CheckCases& check_cases, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
     check::DescribeSettings settings;
@@ -139,7 +135,7 @@ std::pair<std::string, std::string> described(
     return {text, check::description_json(all).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
 }
 
-/// The cases of an arm of the list where `a` was checked.
+/// Returns the cases of a built-in sampler on which `a` was checked.
 CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
     if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
         const std::string near = nearest(arm, names);
@@ -240,25 +236,6 @@ void add_checking(nb::module_& m) {
             return CheckCases{make_cases(arm, settings, full, grid), nullptr};
         },
         "arm"_a, "settings"_a, "full"_a, "grid"_a);
-    m.def(
-        "cases_of_program",
-        [](const std::string& command, double patience, bool full, const Grid& grid) {
-            PipeLimits limits;
-            limits.total_seconds = patience > 0 ? patience : full ? 3600 : limits.total_seconds;
-            return of_adapter(start_pipe(command, limits), full, grid);
-        },
-        "command"_a, "patience"_a, "full"_a, "grid"_a);
-    m.def(
-        "cases_of_plugin",
-        [](const std::string& path, bool full, const Grid& grid) { return of_adapter(open_plugin(path), full, grid); },
-        "path"_a, "full"_a, "grid"_a);
-    m.def(
-        "cases_of_samples",
-        [](const std::string& samples, const std::string& table, double theta, double azimuth) {
-            const auto file = std::make_shared<SampleFile>(samples, table);
-            return CheckCases{{make_user_case(file, theta, azimuth)}, file};
-        },
-        "samples"_a, "table"_a, "theta"_a, "azimuth"_a);
     m.def("draw", &draw_batches, "cases"_a, "batches"_a,
         "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
     m.def("baseline_of", &arm_beside, "arm"_a, "cases"_a);

@@ -1,5 +1,5 @@
-// The module `crescent._crescent`: what the package `crescent` is made of. Errors keep their kind: InputError and
-// SamplerError become ValueError and RuntimeError, OutputError an OSError.
+// The module `crescent._crescent` of the package `crescent`. Errors keep their kind: InputError and SamplerError become
+// ValueError and RuntimeError, OutputError an OSError.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 

@@ -1,4 +1,4 @@
-"""Faults of public projects: each is caught by the verdicts that it is said to be caught by, and fixed it is right."""
+"""Faults of public projects: each is detected by the stated verdicts, and its fixed version passes."""
 
 import os
 from pathlib import Path

@@ -9,7 +9,7 @@ from crescent import Sampler, check
 from crescent.testing import Session, assert_sampler, mutants, who_notices
 
 pytest_plugins = ["pytester"]
-#: An installed package's plugin is loaded by itself.
+#: An installed package's plugin is loaded automatically.
 LOAD = () if entry_points(group="pytest11", name="crescent") else ("-p", "crescent.pytest_plugin")
 MINE = Sampler(cosine, cosine_pdf, lambert, name="mine")
 
@@ -65,7 +65,7 @@ def test_who_notices_says_which_tests_see_which_fault():
         import numpy as np
 
         wi, _ = sampler.sample(np.tile([0.0, 0.0, 1.0], (64, 1)), np.full((64, 2), 0.5))[:2]
-        return np.all(wi[:, 2] > 0)  # a bool of NumPy's own
+        return np.all(wi[:, 2] > 0)  # a NumPy bool
 
     def checks(sampler):
         return check(sampler, wo_deg=[(45, 130)]).state == "right"

@@ -1,4 +1,4 @@
-// Journals: what was written whole is read back, whatever a kill or a worn disk did to the rest.
+// Journals: complete records are read back after a kill or disk errors in the rest.
 #include "base/journal.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST_F(Journals, GiveRecordsBackInOrder) {
     EXPECT_EQ(read(), (Texts{"first", "second", ""}));
 }
 
-TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
+TEST_F(Journals, TornRecordIsDroppedAndWritingContinues) {
     write({{"one"}, {"two"}, {"three"}});
     std::ifstream whole(path_, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
@@ -66,7 +66,7 @@ TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
         EXPECT_TRUE(std::equal(kept.begin(), kept.end(), all.begin())) << length;
         append(journal, {"new"});
         kept.push_back("new");
-        Journal elsewhere = std::move(journal);  // lets go of the file at the end of this turn
+        Journal elsewhere = std::move(journal);  // releases the file at the end of this iteration
         EXPECT_TRUE(read().empty()) << "another reader, while the file is in use";
         fs::copy_file(path_, path_ + "-copy", fs::copy_options::overwrite_existing);
         Journal copy(path_ + "-copy", "work", monitor_);

@@ -1,4 +1,4 @@
-// A check written out, and held: five ways to compare two doubles.
+// Formats and evaluates assertions: five ways to compare two doubles.
 #include "experiment/assertion.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ bool holds(double left, std::string_view op, double right) {
     return op == "==" && left == right;
 }
 
-// ---- Text -> ParsedQuantity, by recursive descent over one line.
+// ---- Parses text to a ParsedQuantity, by recursive descent over one line.
 
 namespace {
 
@@ -175,7 +175,7 @@ template <class T> std::string missing(const std::vector<T>& all, const char* wh
         names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
 }
 
-/// Null where there is no such word.
+/// Returns null if there is no such word.
 const QuantityWord* word_of(const ParsedQuantity& q) {
     const auto& words = quantity_words();
     const auto known = std::ranges::find(words, q.word, &QuantityWord::word);
@@ -248,7 +248,7 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     return "";
 }
 
-// ---- Every check of the file, parsed; its quantities are written out in full.
+// ---- Parses every assertion of the file and completes its quantities.
 
 namespace {
 

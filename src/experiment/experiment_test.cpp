@@ -1,4 +1,5 @@
-// Good files: what-ifs in one line, inherited values, stable hashes, and a manual that agrees with the parser.
+// Valid files: overrides on the command line, inherited values, stable hashes, and a manual that agrees with the
+// parser.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,7 +67,7 @@ TEST(WhatIfs, AreOneLineEach) {
     EXPECT_THAT(gallery({"arms.second={sampler=\"cosine\", n=9}"}).find_arm("second")->n, ElementsAre(9u));
 }
 
-TEST(WhatIfs, OfTheExponentMoveEverySurfaceAndEveryRunThatNamesNone) {
+TEST(WhatIfs, ExponentAppliesToAllThatNameNone) {
     const Experiment e = gallery({"sphere.s=64"});
     EXPECT_EQ(e.s(), 64);
     for (const Shape& shape : e.shapes) EXPECT_EQ(shape.material.s, 64) << shape.name;
@@ -103,7 +104,7 @@ TEST(WhatIfs, MeetTheChecksOfTheFile) {
         testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
 }
 
-TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
+TEST(AnotherS, ChangesTheShapeAndAllThatInheritIt) {
     const Experiment e = load(folder + "three-glosses.toml").with_s(7);
     EXPECT_EQ(e.s(), 7);
     EXPECT_EQ(e.find_shape("gloss")->material.s, 7);
@@ -122,7 +123,7 @@ TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
     EXPECT_THROW((void)parse(room + "[arms.phong]\nn = 4\n", "room"), InputError);
 }
 
-/// A good value of a key, as TOML.
+/// Returns a valid value of a key, as TOML.
 std::string example(const Key& key) {
     const double x = key.range.low > 0 ? key.range.low : 1;
     switch (key.type) {
@@ -147,7 +148,7 @@ std::string example(const Key& key) {
     return "";
 }
 
-/// Sets every key of a section to a good value; the parser takes all of them. Returns how many there are.
+/// Sets every key of a section to a valid value, which the parser accepts. Returns the number of keys.
 std::size_t take_every_key(const Section& section, const std::string& path) {
     std::size_t count = section.keys.size();
     const std::string prefix = path.empty() ? "" : path + ".";

@@ -1,4 +1,5 @@
-// Published figures from JSON. A place in the file is known for wrong syntax; elsewhere a JSON pointer stands for it.
+// Published values from JSON. For wrong syntax the place in the file is known; for other errors a JSON pointer is
+// given.
 #include "experiment/experiment.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Lights of both tables under one roof, and the settings that make one wider.
+// Lights of both tables in one list, and the settings that widen one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-// The image in rectangles, one after another: its shading points, a program for each lobe there (compiled for the arm,
-// the lobe and the numbers of lights and bodies, kept by its text), then a Pass sample count by sample count, whose
-// moments resolve_film() makes radiance of.
+// Computes the image in rectangles, one after another: its shading points, a program for each lobe there (compiled for
+// the sampler, the lobe and the numbers of lights and bodies, cached by its text), then a Pass sample count by sample
+// count, whose moments resolve_film() converts to radiance.
 #include "estimator.h"
 
 #include <fmt/format.h>
@@ -95,7 +95,7 @@ const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t att
 
 namespace {
 
-/// What every draw of a program reads besides the samples' range.
+/// The inputs of every draw of a program except the samples' range.
 void set_scene(const Program& program, const ShadingPoints& lights, const Bodies& bodies, const TileBox& box,
     int image_width, std::uint32_t seed) {
     program.use();
@@ -116,7 +116,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     const LightCounts counts = count_lights(scene);
     const PointTexture& here = shading_points(scene, box, monitor);
     if (here.groups().empty()) return;
-    const ShadingPoints lights = empty_points(scene, -1);  // a group's own occluders are those that matter to it
+    const ShadingPoints lights = empty_points(scene, -1);  // a group's own occluders are those that can affect it
     const Bodies bodies = bodies_of(lights.occluders);
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {

@@ -13,7 +13,7 @@ namespace crescent::gl {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may hold, see estimator.glsl
+constexpr std::uint64_t longest_sum = 4096;  // samples in a draw's float sums at most, see estimator.glsl
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void Pass::advance_to(std::uint64_t n) {
     }
 }
 
-/// As many as a draw over the fullest strip can take, in whole blocks of 16: few large draws, few readings.
+/// As many as a draw over the fullest strip can take, in whole blocks of 16, which gives few large draws and readings.
 int Pass::samples_per_draw(std::uint64_t left) const {
     std::uint64_t fits = longest_sum;
     for (const LobePart& part : parts_) {
@@ -64,8 +64,7 @@ void Pass::take(int samples) {
     }
 }
 
-/// A draw of no samples: drivers finish compiling when a program is first drawn with, and that is no measure of its
-/// speed.
+/// A draw of no samples: drivers finish compiling at a program's first draw, which must not count as its speed.
 void Pass::warm_up(const LobePart& part) {
     part.program->set("samples", 0);
     draw_strips(part, 0, 1);
@@ -98,7 +97,7 @@ void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
     context_.check("a draw");
 }
 
-/// Adds what the last draws of all parts wrote.
+/// Adds the results of the last draws of all parts.
 void Pass::gather(std::size_t first_light, int samples) {
     const double before = static_cast<double>(done_), more = samples;
     if (first_light == 0) {

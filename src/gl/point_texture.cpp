@@ -1,6 +1,5 @@
-// shading_points_of() finds the shading points tile by tile on all cores; they are put into one array of floats, layer
-// after layer, and uploaded once as RGBA32F. A pixel without a shading point has -1 in the place of its lobe. Lengths
-// in m.
+// shading_points_of() finds the shading points tile by tile on all cores; they are stored in one array of floats, layer
+// after layer, and uploaded once as RGBA32F. A pixel without a shading point has -1 as its lobe. Lengths in m.
 #include "point_texture.h"
 
 #include <oneapi/tbb/parallel_for.h>

@@ -1,5 +1,5 @@
 // Welch 1947 with the degrees of Welch and Satterthwaite, Holm 1979, Benjamini & Hochberg 1995 and, for dependent
-// tests, Benjamini & Yekutieli 2001. What has no spread at all is p = 1 where the means agree and 0 where they do not.
+// tests, Benjamini & Yekutieli 2001. Without any spread, p = 1 if the means are equal and 0 if not.
 #include "math/hypotheses.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Indices of the finite p values, rising.
+/// Returns the indices of the finite p values, ascending.
 std::vector<std::size_t> rising(std::span<const double> p) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < p.size(); ++i)

@@ -1,6 +1,5 @@
-// What the article says of heavy tails is put to a measurement: quantiles of furnaces by n and by the resolution of u,
-// draws that fall outside the Phong arm's support, and how often a t-test rejects a mean that is right. Seeds are the
-// experiment's.
+// Tests what the article says of heavy tails: quantiles of furnaces by n and by the resolution of u, draws outside the
+// Phong sampler's support, and how often a t-test rejects a correct mean. Seeds are the experiment's.
 #include "metrics/article_checks.h"
 
 #include <algorithm>
@@ -22,16 +21,16 @@ namespace crescent::inline metrics {
 
 namespace {
 
-/// What the heavy tail is shown on: the control shape's material as luminances, seen straight from above.
+/// The case for the heavy tail: the control shape's material as luminances, seen from directly above.
 struct FurnaceCase {
     Surface surface;
     double s = 0, rho_d = 0, rho_s = 0;
     std::uint32_t seed = 0;
 
-    /// The cosine with R for u.
+    /// Returns the cosine with R for u.
     double cosine(double u) const { return math::exp(math::log(u) / (s + 1)); }
-    /// X of the combined furnace for u, R = n, where the angle about R does not matter: (cos/p) (rho_d/pi + rho_s lobe)
-    /// with p = (s+1)/(2 pi) u/cos and lobe = (s+2)/(2 pi) u/cos.
+    /// Returns X of the combined furnace for u, R = n, where the angle about R does not matter: (cos/p) (rho_d/pi +
+    /// rho_s lobe) with p = (s+1)/(2 pi) u/cos and lobe = (s+2)/(2 pi) u/cos.
     double weight(double u, double cos) const {
         const double diffuse = 2 * rho_d / (s + 1), lobe = rho_s * (s + 2) / (s + 1);
         return diffuse * (cos * cos / u) + lobe * cos;
@@ -57,7 +56,7 @@ void float_furnace(const FurnaceCase& adapter, const std::string& isa, ProgressM
     }
 }
 
-/// Resolutions of u in double precision that are shown beside each other.
+/// Resolutions of u in double precision that are compared.
 constexpr std::array<int, 3> resolutions = {24, 32, 53};
 
 /// u as an odd multiple of 2^-bits, from 64 random bits.
@@ -65,7 +64,7 @@ double unit_double(std::uint64_t h, int bits) {
     return static_cast<double>(h >> (64 - bits) | 1u) / static_cast<double>(std::uint64_t{1} << bits);
 }
 
-/// (1 + d)^k for many d. In u's last bits it takes a few terms of the series: the next one is under 1e-17.
+/// (1 + d)^k for many d. In u's last bits it needs a few terms of the series: the next one is below 1e-17.
 struct PowerNear1 {
     double k, second = (k - 1) / 2, third = (k - 2) / 3, fourth = (k - 3) / 4, fifth = (k - 4) / 5;
     double operator()(double d) const {
@@ -74,7 +73,7 @@ struct PowerNear1 {
     }
 };
 
-/// One draw of random bits serves every resolution, and one cosine: resolutions of a u differ by little.
+/// One draw of random bits and one cosine serve every resolution, because resolutions of a u differ by little.
 void double_furnaces(const FurnaceCase& adapter, ProgressMonitor& monitor, Evidence& out) {
     using Means = std::vector<std::vector<double>>;  // [sample count][replicate]
     const PowerNear1 root = {1 / (adapter.s + 1)};
@@ -105,7 +104,7 @@ void double_furnaces(const FurnaceCase& adapter, ProgressMonitor& monitor, Evide
                 quantiles("float64", resolutions[i], furnace_sample_counts[sample_count], means[i][sample_count]));
 }
 
-/// Draws by the cosine arm, asks the Phong arm for its density: where it is 0, Lambert's light is lost.
+/// Draws with the cosine sampler and evaluates the Phong sampler's density: where it is 0, Lambert's light is lost.
 LostSupport lost_support(const FurnaceCase& adapter, double theta_deg) {
     constexpr std::uint64_t n = 100'000;
     const double theta = theta_deg * pi / 180;
@@ -119,13 +118,13 @@ LostSupport lost_support(const FurnaceCase& adapter, double theta_deg) {
         const Vec2<float> u = draw(adapter.seed, 0, j);
         const Vec3<double> wi =
             cosine.sample(shading_point.wo, {static_cast<double>(u.x), static_cast<double>(u.y)}).wi;
-        lost += dot(wi, R) <= 0;  // the support of the Phong pdf, however small its power gets
+        lost += dot(wi, R) <= 0;  // the support of the Phong pdf, for any value of its power
     }
     const double p = static_cast<double>(lost) / static_cast<double>(n);
     return {theta_deg, p, std::sqrt(p * (1 - p) / static_cast<double>(n)), (1 - math::cos(theta)) / 2};
 }
 
-/// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
+/// Repeats a t-test of the Phong sampler on a Lambert surface against the known mean.
 FalseRejection false_rejection(
     const FurnaceCase& adapter, double s, double alpha, const std::string& isa, ProgressMonitor& monitor) {
     constexpr std::uint64_t n = 100'000;

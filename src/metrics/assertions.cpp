@@ -1,5 +1,5 @@
-// Both sides of a check are looked up in what was measured. What was not measured is NaN, and no comparison with NaN
-// holds. An RMSE that the reference's own error is a large part of is no evidence.
+// Both sides of an assertion are looked up in the measurements. What was not measured is NaN, and no comparison with
+// NaN holds. An RMSE dominated by the reference's own error cannot prove an assertion.
 #include "metrics/assertions.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ QuantityOf make_adapter(const std::string& word) {
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
 }
 
-/// find(key): the run of that key, for who is of one.
+/// find(key): the run of that key, for quantities of one run.
 template <class Find> double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment,
     std::uint32_t seed, const PlateBytes& plate_bytes, const Find& find) {
     if (q.number) return *q.number;
@@ -64,7 +64,7 @@ template <class Find> double value_of(const ParsedQuantity& q, const Metrics& me
     return unmeasured;
 }
 
-/// Is this no RMSE, or one that is long against the reference's own error in its region?
+/// Returns whether this is not an RMSE, or one that is large against the reference's own error in its region.
 bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, const Experiment& experiment) {
     if (q.word != "rmse") return true;
     const double s = q.s > 0 ? q.s : experiment.s();
@@ -76,16 +76,16 @@ bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, c
     return true;
 }
 
-/// What the checks of an experiment are held against.
+/// The values that assertions are compared with.
 struct Measurements {
     const Experiment& experiment;
     const Metrics& metrics;
     RunIndex runs;
     const PlateBytes& plate_bytes;
-    bool drawn;  // whether any plates were to be
+    bool drawn;  // whether plates were requested
 
     std::uint32_t own_seed() const { return metrics.series.empty() ? experiment.seed : metrics.series.front(); }
-    /// The seeds that a check is read at.
+    /// Returns the seeds at which an assertion is evaluated.
     std::vector<std::uint32_t> seeds(bool median) const {
         if (!median || runs.seeds().empty()) return {own_seed()};
         return metrics.series.empty() ? runs.seeds() : metrics.series;
@@ -94,7 +94,7 @@ struct Measurements {
 
 bool is_of_a_run(const ParsedQuantity& q) { return !q.number && make_adapter(q.word) == QuantityOf::run; }
 
-/// Which seeds of the series a check needs and this run does not have; "" where none is missing.
+/// Returns which seeds of the series an assertion needs and this run does not have; "" if none is missing.
 std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
     const auto& series = of.metrics.series;
     if (!is_of_a_run(plan.check.left) && !is_of_a_run(plan.check.right)) return "";
@@ -105,9 +105,9 @@ std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
     return plan.median && series.size() > 1 ? "needs seeds 1 to " + std::to_string(series.size()) : "needs seed 1";
 }
 
-/// One side of a check: its value, and what is to be said of it.
+/// Evaluates one side of an assertion: its value and remarks.
 double side(ParsedQuantity q, bool over_seeds, const Measurements& of, AssertionResult& out) {
-    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may leave n out
+    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may omit n
     std::vector<double> values;
     for (const std::uint32_t seed : of.seeds(over_seeds))
         values.push_back(value_of(
@@ -119,7 +119,7 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& of, Assertion
     return value;
 }
 
-/// "plate_bytes(hero) > 0": what a run measures of it is above 0 wherever it ends.
+/// "plate_bytes(hero) > 0": always true for a run that completes.
 bool cannot_fail(const ParsedQuantity& left, const std::string& op, const ParsedQuantity& right) {
     const bool always_there = left.word == "plate_bytes" || left.word == "region_pixels";
     return !left.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");

@@ -1,4 +1,4 @@
-// Checks against made-up measurements whose right answers are plain.
+// Assertions on synthetic measurements with known answers.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -68,7 +68,7 @@ TEST(Quantities, AreReadFromTheRunTheyName) {
     EXPECT_FALSE(verdict("plate_bytes(rose) > 0"));
 }
 
-TEST(Assertions, OnAnRmseThatTheReferencesOwnErrorMayMakeDoNotPass) {
+TEST(Assertions, RmseWithinReferenceErrorDoesNotPass) {
     Metrics m = measured();
     m.references.resize(1);
     m.references[0].s = 32, m.references[0].region = "H", m.references[0].quadrature_error = 0.1,
@@ -91,7 +91,7 @@ TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
     EXPECT_EQ(result.text, "rmse.H(b, n=4) < rmse.H(a, n=4) (medians over seeds)");
 }
 
-TEST(Assertions, AreSkippedWhereASeedThatTheyNeedWasNotRun) {
+TEST(Assertions, AreSkippedWithoutTheSeedsTheyNeed) {
     const auto all = two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}, {"fireflies(a) == 5", false},
         {"furnace(white) == 0.27", true}, {"region_pixels(H) == 8", false}, {"1 > furnace(white)", true}});
     const auto skipped = [&](const Metrics& m) {

@@ -1,4 +1,4 @@
-// A metric is a reader of pixels, one by one, and then a value: the two lists of metrics are expanded to readers here.
+// A metric reads pixels one by one and then returns a value; the two lists of metrics are expanded to readers here.
 // Sums in double. Bands are quantiles over seeds, 5, 50 and 95 %; slopes are least squares of log RMSE on log N.
 #include "metrics/compute.h"
 
@@ -18,7 +18,7 @@ std::size_t index_of(int i, int j, int width) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
 }
 
-/// Mean of f(pixel) over a box, row by row.
+/// Returns the mean of f(pixel) over a box, row by row.
 template <class Call> double box_mean(int width, const Box& box, Call&& f) {
     double sum = 0;
     for (int j = box.y0; j <= box.y1; ++j)
@@ -150,7 +150,7 @@ std::vector<double> over_seeds(const std::vector<RunMetrics>& runs, const RunKey
     return values;
 }
 
-/// RMSE and var read the second moment; where the tail of the samples is heavy it has no expectation.
+/// RMSE and var depend on the second moment, which has no expectation if the tail of the samples is heavy.
 bool heavy(const RunMetrics& run, const std::string& metric) {
     const std::size_t dot = metric.find('.');
     if (dot == std::string::npos) return false;
@@ -189,10 +189,10 @@ std::vector<SeedSpread> bands(
 namespace {
 
 struct Line {
-    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN where there are none
+    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN if there are none
 };
 
-/// Least squares of log y on log x.
+/// Fits log y against log x by least squares.
 Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y) {
     const double count = static_cast<double>(n.size());
     double sx = 0, sy = 0, sxx = 0, sxy = 0;

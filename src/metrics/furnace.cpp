@@ -1,5 +1,5 @@
-// A white sky of radiance 1 over one surface seen from straight above: the mean of X is its albedo. One pixel's
-// samples, all kept, for the tail.
+// A sky of radiance 1 over one surface seen from directly above: the mean of X is its albedo. All samples of one pixel
+// are kept, for the tail.
 #include "metrics/furnace.h"
 
 #include <algorithm>
@@ -68,8 +68,8 @@ std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Publishe
     return out;
 }
 
-// ---- Sites at the origin with the world's axes for a frame, under a fill of radiance 1 and no other light. Each has
-// its own index of a pixel, so its own random numbers.
+// ---- Shading points at the origin with the world's axes as frame, under a fill of radiance 1 and no other light; each
+// has its own pixel index, so its own random numbers.
 
 Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only) {
     Surface surface = surface_of(shape.material, scene.s());
@@ -101,7 +101,7 @@ ShadingPoints furnace_points(const Surface& surface, std::size_t count, double c
     return shading_points;
 }
 
-// ---- Four million samples over the region's pixels, 256 a pixel at most; of them all the largest.
+// ---- Draws four million samples over the region's pixels, at most 256 per pixel, and keeps the largest of all.
 
 TailPlan tail_plan(const Box& box) {
     constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;

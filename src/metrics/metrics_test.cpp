@@ -1,4 +1,4 @@
-// On 24 runs of two arms, two n, two s and three seeds, which are in no order.
+// 24 runs of two arms, two n, two s and three seeds, in no order.
 #include <gtest/gtest.h>
 
 #include "metrics/metrics.h"

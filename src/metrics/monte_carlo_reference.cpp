@@ -1,6 +1,6 @@
-// The article's reference: the lobe under the fill by the lobe's own arm, each light by area, both by the kernels,
-// added up. Its error is the standard error, and all of a lobe's light where so few samples would meet it that none may
-// have.
+// The article's reference: the lobe under the fill by the lobe's own sampler, each light by area, both by the kernels,
+// added. Its error is the standard error, plus all of a lobe's light if so few samples would meet it that there may be
+// none.
 #include "metrics/monte_carlo_reference.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace crescent::inline metrics {
 
 namespace {
 
-/// The same shading points with lights that turn X into the wanted part: light k by itself, or the fill on the lobe
-/// alone. The other lights still stand before it, but carry nothing and are never aimed at.
+/// Returns the same shading points with lights that turn X into the requested part: light k alone, or the fill on the
+/// lobe alone. The other lights still hide what is behind them, but have radiance 0 and are never aimed at.
 ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size_t k) {
     ShadingPoints shading_points = all;
     const auto tinted = [&](const Rgb& light, std::size_t i) {
@@ -28,8 +28,8 @@ ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size
         light.power = this_one ? 1 : 0;
         for (auto* array : {&light.d, &light.s}) std::fill(array->begin(), array->end(), 0.0f);
         for (std::size_t i = 0; this_one && i < shading_points.pixel.size(); ++i) {
-            light.d[i] = as_it_was.d[i] -
-                shading_points.fill_d[i];  // L_key - L_fill: the light stands in for the fill behind it
+            light.d[i] =
+                as_it_was.d[i] - shading_points.fill_d[i];  // L_key - L_fill: the light replaces the fill behind it
             const double full = tinted(scene.lights()[k].radiance, i), over = full - tinted(scene.fill(), i);
             light.s[i] = full > 0 ? static_cast<float>(static_cast<double>(as_it_was.s[i]) * over / full)
                                   : -shading_points.fill_s[i];
@@ -51,7 +51,7 @@ ShadingPoints only_lobe(const ShadingPoints& all) {
 
 double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0; }
 
-/// The centre of light k from shading point i, in its local frame, and the radius of a ball that holds it.
+/// Returns the centre of light k from shading point i, in its local frame, and the radius of a ball that contains it.
 std::pair<Vec3d, double> ball_of(const ShadingPoints& shading_points, std::size_t i, std::size_t k) {
     if (k < shading_points.disks.size()) {
         const DiskArrays& disk = shading_points.disks[k];
@@ -66,8 +66,8 @@ std::pair<Vec3d, double> ball_of(const ShadingPoints& shading_points, std::size_
     return {light.a, radius};
 }
 
-/// May the lobe of shading point i peak in light k, and be so narrow against it that fewer than ten of n samples would
-/// meet it?
+/// Returns whether the lobe of shading point i may peak in light k, and be so narrow that fewer than ten of n samples
+/// would meet it.
 bool may_be_missed(const ShadingPoints& shading_points, std::size_t i, std::size_t k, double n) {
     const auto [c, radius] = ball_of(shading_points, i, k);
     const Vec3d wo = {shading_points.wox[i], shading_points.woy[i], shading_points.woz[i]};
@@ -81,7 +81,7 @@ bool may_be_missed(const ShadingPoints& shading_points, std::size_t i, std::size
         n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
 }
 
-/// The article's reference over one group of shading points.
+/// Computes the article's reference over one group of shading points.
 class MonteCarloPixels {
 public:
     MonteCarloPixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& shading_points,
@@ -138,7 +138,7 @@ private:
 
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     constexpr std::uint32_t salt = 0x4ef1ce;
-    constexpr std::uint32_t longest_series = 4096;  // the most that an experiment's `seeds` can be
+    constexpr std::uint32_t longest_series = 4096;  // the largest value of an experiment's `seeds`
     const auto drawn_from = [&](std::uint32_t seed) {
         for (std::uint32_t a = 0; a < longest_series; ++a)
             if (seed_of(experiment.seed, a) == seed) return true;

@@ -13,8 +13,8 @@ struct JunitCase {
 
     std::string group, name;
     State state = State::passed;
-    std::string message, text;      // of all but what passed; text: in full, "" where the message is all
-    std::optional<double> seconds;  // where it varies from run to run and is asked for all the same
+    std::string message, text;      // of all except passed cases; text: in full, "" if the message is all
+    std::optional<double> seconds;  // if it varies from run to run and is still requested
 };
 
 struct JunitSuite {
@@ -23,7 +23,7 @@ struct JunitSuite {
     std::vector<JunitCase> cases;
 };
 
-/// The file. Any text may stand in it: it is escaped here. Equal suites give equal bytes.
+/// Returns the file. Any text is allowed in it: it is escaped here. Equal suites give equal bytes.
 std::string junit_text(const JunitSuite& suite);
 
 }  // namespace crescent::inline output

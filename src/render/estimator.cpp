@@ -1,5 +1,5 @@
-// A kernel gives sums over a tile's shading points for each sample count; they become pixels here. Tiles go to threads
-// in any order, and what they write does not meet: the same bits however many threads there are.
+// A kernel returns sums over a tile's shading points for each sample count; this file turns them into pixels. Threads
+// take tiles in any order and write to separate pixels, so the bits do not depend on the number of threads.
 #include "render/estimator.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) 
         call);
 }
 
-/// Sums of one shading point over its film's n samples -> the film's pixel.
+/// Converts the sums of one shading point over its film's n samples to the film's pixel.
 class FilmResolve {
 public:
     FilmResolve(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film)
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// x / n: by a product, which is faster, where that has the same bits.
+    /// Returns x / n, by the faster product if that has the same bits.
     double over_n(double x) const { return is_power_of_2_ ? x * inverse_n_ : x / n_; }
 
     Rgb radiance(std::size_t i) const {
@@ -94,7 +94,7 @@ void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, 
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         if (monitor.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
         const double units = work(k);
-        if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
+        if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be incomplete
         monitor.advance(units);
         if (checkpoint) checkpoint->add(k, units);
     });
@@ -113,7 +113,7 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));
     PerThread<std::vector<Moments>> scratch(
-        [&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
+        [&] { return std::vector<Moments>(n.size()); });  // reused by all tiles of a thread
     for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
@@ -159,12 +159,12 @@ Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& a
 
 namespace {
 
-/// The largest `count` of what many threads give, whatever their order.
+/// Keeps the largest `count` values of all threads; the result does not depend on their order.
 class Largest {
 public:
     explicit Largest(std::size_t count) : count_(count) {}
 
-    /// Changes `samples`. NaN is counted by the kernels and has no size.
+    /// Changes `samples`. Drops NaN, which the kernels count.
     void add(std::vector<float>& samples) {
         const float least = least_.load(std::memory_order_relaxed);
         const std::size_t drawn = samples.size();
@@ -188,7 +188,8 @@ public:
 private:
     std::size_t count_;
     Mutex lock_;
-    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // nothing up to this is among them any more
+    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // values up to this one are no longer among
+                                                                          // the largest
     std::vector<float> all_;
     std::uint64_t drawn_ = 0;
 };
@@ -216,8 +217,8 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
 
 }  // namespace crescent::inline render
 
-// ---- The draws of many shading points are fetched in one batch, and then handed one after another to the scalar
-// kernel as if an arm had drawn them. A draw that cannot be used becomes a NaN pdf, which kernels count as bad.
+// ---- Fetches the draws of many shading points in one batch and passes them to the scalar kernel one by one; an
+// unusable draw becomes a NaN pdf, which kernels count as bad.
 
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
@@ -226,19 +227,19 @@ namespace crescent::inline render {
 
 namespace {
 
-/// Rows that are fetched at once, which stay in a core's cache; a shading point of more samples is fetched in parts.
-/// The same for any number of threads.
+/// Number of rows fetched at once: they fit a core's cache. A shading point with more samples is fetched in parts. Does
+/// not depend on the number of threads.
 constexpr std::uint64_t longest_batch = 8192;
 
-/// The arm of the kernels: hands out what was drawn, sample after sample.
+/// The sampler of these kernels: returns the fetched draws, sample after sample.
 template <class F> struct Prefetched {
     mutable const Drawn<F>* next;
     explicit Prefetched(const Drawn<F>* first) : next(first) {}
     Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> /*u*/) const { return *next++; }
 };
 
-/// Usable are a direction of unit length to 1e-4 and a pdf that is above 0 and finite also in single precision, in
-/// which the estimate is made. pdf 0: nothing was drawn.
+/// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
+/// precision, in which the estimate is computed. pdf 0: nothing was drawn.
 Drawn<float> usable(const Vec3<double>& wi, double p) {
     if (p == 0) return {{0, 0, 1}, {0}};
     const double length2 = wi.x * wi.x + wi.y * wi.y + wi.z * wi.z;
@@ -248,8 +249,8 @@ Drawn<float> usable(const Vec3<double>& wi, double p) {
     return {{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}, {pdf}};
 }
 
-/// Appends the random numbers of `n` samples of a pixel from `first` on, `count` a sample: the first two are those of
-/// every arm, the rest come from blocks that no arm uses.
+/// Appends the random numbers of `n` samples of a pixel from `first` on, `count` per sample. The first two are those of
+/// every built-in sampler; the rest come from blocks that no built-in sampler uses.
 void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, std::uint64_t n, std::size_t count,
     std::vector<double>& u) {
     const std::size_t from = u.size();
@@ -262,7 +263,7 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
             if (k + 1 < count) row[1] = static_cast<double>(unit_float<float>(y));
             row += count;
         };
-        for (std::uint64_t j = first; j < first + n;) {  // as crescent::draw(), two samples from one hash
+        for (std::uint64_t j = first; j < first + n;) {  // like crescent::draw(): two samples from one hash
             const auto h = draws<std::uint32_t>(pixel, static_cast<std::uint32_t>(j >> 1), block, seed);
             if (!(j & 1)) put(h.x, h.y), ++j;
             if (j < first + n) put(h.z, h.w), ++j;

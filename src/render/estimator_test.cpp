@@ -1,4 +1,4 @@
-// Films are compared by their hashes, on a scene of 67 x 45 pixels: no whole number of packs or tiles.
+// Films are compared by their hashes, on a scene of 67 x 45 pixels, which is not a multiple of the pack or tile size.
 #include "render/estimator.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::vector<std::string> hashes(const std::vector<Film>& films) {
     return out;
 }
 
-TEST(SameBits, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
+TEST(SameBits, EveryArmOnEveryInstructionSet) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     for (const std::string& arm : all_arms()) {
@@ -34,7 +34,7 @@ TEST(SameBits, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
     }
 }
 
-TEST(SameBits, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
+TEST(SameBits, EveryLobeOnEveryInstructionSet) {
     ProgressMonitor monitor;
     for (const LobeInfo& lobe : lobe_infos()) {
         const Scene scene(
@@ -73,8 +73,9 @@ TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
         EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", monitor)[0]), hash(film)) << "n = " << film.n;
 }
 
-/// Samples of every shading point of the test scene beside the moments that the kernel made of them.
-TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
+/// The samples of every shading point of the test scene are compared with the moments that the kernel computed from
+/// them.
+TEST(Moments, MatchTheSamplesAtManySamples) {
     const Scene scene(test::small_scene());
     constexpr std::uint64_t n = 65536;
     for (ShadingPoints shading_points : shading_points_of(scene, {30, 20, 34, 23}, nullptr)) {
@@ -114,7 +115,7 @@ TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
     EXPECT_GT(above_n, 0u);  // a pair of directions may meet a light twice
 }
 
-TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
+TEST(Films, VarianceIsNaNForNaNAndZeroForZeros) {
     const Scene scene(test::small_scene());
     const ShadingPoints shading_points = shading_points_of(scene, {30, 20, 34, 23}, nullptr).front();
     Moments moments;
@@ -134,7 +135,7 @@ TEST(Estimator, StopsWhenAsked) {
     EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", monitor), Interrupted);
 }
 
-/// Asks to stop a little after the work has begun, from another thread, as a signal does.
+/// Requests a stop from another thread shortly after the work has begun, as a signal does.
 TEST(Estimator, StopsInMidWorkWithinATile) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
@@ -149,7 +150,7 @@ TEST(Estimator, StopsInMidWorkWithinATile) {
     other.join();
 }
 
-TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
+TEST(LargestSamples, MatchTheSamplesInDescendingOrder) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     constexpr std::uint64_t n = 40;
@@ -169,7 +170,7 @@ TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     EXPECT_EQ(largest, all);
 }
 
-TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {
+TEST(InstructionSets, UnknownNameSuggestsTheNearest) {
     try {
         kernels_for("avx3");
         FAIL();

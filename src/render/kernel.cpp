@@ -1,5 +1,5 @@
-// The instruction sets are the list of isas.h, each compiled in a file of its own; which of them run here is asked of
-// the machine once.
+// Each instruction set of isas.h is compiled in a file of its own; the machine is queried once for those that it
+// supports.
 #include "render/kernel.h"
 
 #include "base/errors.h"
@@ -29,7 +29,7 @@ namespace {
 struct Isa {
     const char* name;
     bool here;
-    KernelTable (*kernels)();  // compiled for this set: called where the machine has it alone
+    KernelTable (*kernels)();  // compiled for this set: called only if the machine has it
 };
 
 const std::vector<Isa>& built() {

@@ -1,9 +1,8 @@
-// The estimator, once, for any number type: lanes are pixels, samples follow one another, one pass gives every sample
-// count. Included once an instruction set by kernel_<isa>.cpp, in that set's own namespace.
+// The estimator for any number type: lanes are pixels, samples follow one another, one pass gives every sample count.
+// kernel_<isa>.cpp includes it once for each instruction set, in that set's own namespace.
 //
-// Sums run in float over at most 16 samples (relative error < 1e-6) and in double from there on. Blocks begin at
-// multiples of 16 whatever the sample counts, so a sample count is the same prefix whichever other sample counts are
-// asked for.
+// Sums run in float over at most 16 samples (relative error < 1e-6) and in double after that. Blocks begin at multiples
+// of 16 for all sample counts, so the result at a sample count does not depend on the other sample counts.
 #pragma once
 
 #include <concepts>
@@ -18,8 +17,8 @@ namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
 
-/// What a kernel asks of a scene's emitters beside the fill: room in its memory, the emitters as one pack of pixels
-/// sees them, what a sample gathers from them on top of the fill, and totals in double of what was gathered.
+/// What a kernel needs from a scene's emitters other than the fill: room in its memory, the emitters as one pack of
+/// pixels sees them, what a sample gathers from them on top of the fill, and totals in double.
 template <class E, class F>
 concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t, typename E::Room&> &&
     std::constructible_from<typename E::Totals, typename E::Room&> &&
@@ -30,8 +29,8 @@ concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t,
         totals.write(seen, out);
     };
 
-/// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
-/// only samples that meet an emitter touch, so that it can live in registers.
+/// The sums of one pack of pixels: those of the current block and those over all samples. Sums that only samples which
+/// meet an emitter change are kept elsewhere, so that these can stay in registers.
 template <class F> struct RunningSums {
     F g = number<F>(0), g_lobe = number<F>(0);
     F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
@@ -41,8 +40,8 @@ template <class F> struct RunningSums {
     UintOf<F> horizon{0u}, bad{0u};
 };
 
-/// A pack's constants that every sample reads. By value, so that they stay in registers: what `gather` can reach must
-/// be loaded again after each call.
+/// A pack's constants that every sample reads. Passed by value, so that they stay in registers: what `gather` can reach
+/// must be loaded again after each call.
 template <class E, class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s;
@@ -50,7 +49,7 @@ template <class E, class F> struct Constants {
     typename E::First first;
 };
 
-/// One pack of pixels: its emitters and the step that takes one sample.
+/// One pack of pixels: its emitters and the function that takes one sample.
 template <class A, class L, class E, class F> struct Lane : E {
     static_assert(Emitters<E, F>);
     using U = UintOf<F>;
@@ -69,7 +68,7 @@ template <class A, class L, class E, class F> struct Lane : E {
             load_lanes<F>(shading_points.pixel, at), this->first()};
     }
 
-    /// X of one drawn direction, adding what it carries to the sums.
+    /// Returns X of one drawn direction and adds its contribution to the sums.
     template <class D> [[gnu::always_inline]] F accumulate(
         RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
@@ -99,7 +98,7 @@ template <class A, class L, class E, class F> struct Lane : E {
                                   : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
             const auto a = arm.template sample_technique<0>(c.wo, u);
             const auto b = arm.template sample_technique<1>(c.wo, v);
-            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
+            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // sums depend on the order
             x = x + accumulate(to, c, brdf, b, arm.template weight<1>(c.wo, b));
         } else {
             x = accumulate(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
@@ -108,8 +107,8 @@ template <class A, class L, class E, class F> struct Lane : E {
         to.off = to.off + off;
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
-        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
-        // arises from nothing that a shading point holds (shading_points.cpp).
+        // Only NaN, infinite and negative numbers have bits from 0x7f800000 up. -0, which is not negative, cannot arise
+        // from the values of a shading point (shading_points.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
         if (call.samples) record_sample(x, call.samples, j, call.sample_counts.back());
     }
@@ -127,7 +126,7 @@ template <class F> struct Totals {
     static constexpr std::size_t count = Lanes<F>::count;
     double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
 
-    /// Takes the block's sums over and clears them.
+    /// Adds the block's sums and clears them.
     void take(RunningSums<F>& p) {
         add_lanes(p.g, g);
         add_lanes(p.g_lobe, g_lobe);
@@ -135,7 +134,7 @@ template <class F> struct Totals {
         add_lanes(p.square, square);
         p.g = p.g_lobe = p.off = p.square = number<F>(0);
     }
-    /// Takes the second moment about the mean of the n samples so far from here on, where the block's sums are clear.
+    /// Moves the pivot of the second moment to the mean of the n samples so far. Requires that the block's sums are 0.
     [[gnu::noinline]] F turn(F about, double n) {
         float pivot[count];
         store(about, pivot);
@@ -149,7 +148,7 @@ template <class F> struct Totals {
         }
         return load_as<F>(pivot);
     }
-    /// Sum of (X - mean X)^2 over the n samples of the blocks and of the one that is not full.
+    /// Writes the sum of (X - mean X)^2 over the n samples of the full blocks and of the partial one.
     void spread(const RunningSums<F>& p, double n, double* out) const {
         double first[count];
         add_lanes(p.off, off, first);
@@ -174,7 +173,7 @@ template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& e
     store(p.bad, out.bad.data() + at);
 }
 
-/// One pack of pixels through all its samples; make(shading point) gives the arm.
+/// Runs one pack of pixels through all its samples; make(shading point) returns the sampler.
 template <class A, class L, class E, class F, class Make>
 void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
     using U = UintOf<F>;
@@ -195,15 +194,15 @@ void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& roo
             const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
             if (!(j & 1)) {
                 lane.step(gathered, c, arm, brdf, h, false, j, call);
-                if (j == 0) {  // X - pivot was X, the pivot being 0
+                if (j == 0) {  // X - pivot is X because the pivot is 0
                     gathered.pivot = gathered.off;
                     gathered.off = gathered.square = number<F>(0);
                 }
                 if (++j == end) break;
             }
             lane.step(gathered, c, arm, brdf, h, true, j, call);
-            if (j == 1) {  // X_1 - X_0 is the sum so far; about the smaller of the two it is its size, and the square
-                           // is the same
+            if (j == 1) {  // X_1 - X_0 is the sum so far; relative to the smaller of the two it is its size, and the
+                           // square is unchanged
                 gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
                 gathered.off = abs(gathered.off);
             }
@@ -228,7 +227,7 @@ template <class A, class L, class E, class F> void estimate(const KernelCall& ca
             call, at, room, [](const ShadingPoint<F>& shading_point) { return A(shading_point); });
 }
 
-/// One arm's kernels, [lobe + 1].
+/// The kernels of one sampler, [lobe + 1].
 template <class F, template <class> class A, template <class> class... L>
 constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
     return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};

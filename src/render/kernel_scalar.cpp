@@ -1,4 +1,4 @@
-// The kernels for one plain float at a time: no intrinsics; the others are compared with it.
+// The kernels for one float at a time, without intrinsics; the other kernels are compared with them.
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
 

@@ -1,5 +1,5 @@
 // One shading point of one pixel, in single precision and in the kernels' order of operations: X of a sample has the
-// bits that the film's has. What is drawn of it besides, directions and rims, is in double.
+// bits that it has in the film. Directions and outlines for drawing are in double.
 #include "render/pixel.h"
 
 #include <cmath>
@@ -55,7 +55,7 @@ struct Locals {
     const std::vector<LocalLight<float>>& others;
 };
 
-/// As the kernels ask it of what an arm drew: the nearest light first, then what stands before it.
+/// In the order of the kernels: the nearest light first, then the bodies before it.
 template <class D> int met_by(const ShadingPoints& shading_points, const Locals& locals, const D& drawn) {
     const auto& [disks, others] = locals;
     const Vec3f wi = drawn.wi;
@@ -83,7 +83,7 @@ template <class D> int met_by(const ShadingPoints& shading_points, const Locals&
     return met;
 }
 
-/// f L of Lambert and of the lobe, as Y: X = (cos/p) (d + lobe s).
+/// f L of the Lambert part and of the lobe, as Y: X = (cos/p) (d + lobe s).
 struct Worth {
     float d, s;
 };
@@ -95,13 +95,13 @@ Worth worth(const ShadingPoints& shading_points, int disk) {
     return {other.d[0], other.s[0]};
 }
 
-/// f, per sr, of light that is `light` bright; where there is none, of grey light.
+/// Returns f, per sr, for light of luminance `light`; without light, for grey light.
 double reflected(const ShadingPoints& shading_points, const Worth& w, float lobe, double light) {
     if (light > 0) return double(w.d + lobe * w.s) / light;
     return double(shading_points.diffuse[0]) / pi + double(shading_points.rho_s[0] * lobe);
 }
 
-/// Makes X of a direction, in the kernels' own order of operations.
+/// Computes X of a direction, in the kernels' own order of operations.
 class Carrier {
 public:
     Carrier(const ShadingPoints& shading_points, const Locals& disks, const std::vector<PixelLight>& seen, double fill)
@@ -128,7 +128,7 @@ private:
     double fill_;
 };
 
-/// Calls work.template operator()<A>() for the arm of that name.
+/// Calls work.template operator()<A>() for the sampler of that name.
 template <class Work> void with_arm(std::string_view sampler, Work&& work) {
     bool found = false;
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {

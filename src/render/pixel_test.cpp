@@ -1,4 +1,4 @@
-// An opened pixel against the kernels: the same X, bit for bit, from every arm, and the film's own Y.
+// Compares the samples of one pixel with the kernels: the same X, bit for bit, for every sampler, and the film's own Y.
 #include "render/pixel.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t n = 48;
 
-/// Pixels of the test scene: the ball's highlight, its side, the block, the ground and its shadow.
+/// Returns pixels of the test scene: the ball's highlight, its side, the block, the ground and its shadow.
 std::vector<std::pair<int, int>> pixels(const Scene& scene) {
     std::vector<std::pair<int, int>> out;
     for (int j = 2; j < scene.image().height; j += 5)

@@ -1,6 +1,6 @@
-// Positions are kept in float from the scene's origin, directions in the local frame, a group of shading points for
-// each lobe. Arrays end with copies of the last shading point, so that every pack is full; `count` tells the shading
-// points that are meant.
+// Positions are kept in float relative to the scene's origin, directions in the local frame, one group of shading
+// points for each lobe. Arrays end with copies of the last shading point, so that every pack is full; `count` is the
+// number without padding.
 #include "render/shading_points.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::array<float, 3> single(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Numbers of a light that is no disk, in the order of LocalLight.
+/// Stores the numbers of a light that is not a disk, in the order of LocalLight.
 void put_light(LightArrays& to, std::size_t i, const Light& light, Vec3d x, const Frame<double>& frame) {
     with_light_kind(to.kind, [&]<class Kind>() {
         const LightNumbers n = std::get<Kind>(light.form).numbers(x, frame);
@@ -41,7 +41,7 @@ void put_light(LightArrays& to, std::size_t i, const Light& light, Vec3d x, cons
     });
 }
 
-/// What light of a colour is worth, never -0, so that no X is.
+/// Returns the luminance as float, never -0, so that X is never -0.
 float worth(double y) { return static_cast<float>(y + 0.0); }
 
 }  // namespace
@@ -53,7 +53,7 @@ OccluderF occluder_about(const Occluder& o, Vec3d origin) {
 }
 
 std::vector<TileBox> tiles_of(int width, int height) {
-    constexpr int side = 64;  // pixels: small enough to share out evenly, large enough to fill packs
+    constexpr int side = 64;  // pixels: small enough to distribute evenly, large enough to fill packs
     std::vector<TileBox> tiles;
     for (int y = 0; y < height; y += side)
         for (int x = 0; x < width; x += side)
@@ -182,7 +182,7 @@ void ShadingPoints::cull_occluders(const Scene& scene) {
     const Extent extent = {
         scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_points made them
+    for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_points created them
         const bool clear = std::all_of(scene.lights().begin(), scene.lights().end(),
             [&](const Light& light) { return is_separated(scene.occluders()[k], extent, light.body()); });
         if (!clear) occluders[kept++] = occluders[k];
@@ -192,7 +192,7 @@ void ShadingPoints::cull_occluders(const Scene& scene) {
 
 namespace {
 
-/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then at hand.
+/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then cached.
 class Sorter {
 public:
     Sorter(const Scene& scene, const TileBox& tile)

@@ -1,5 +1,5 @@
-// A tile's record: Head, its counts, then its rows plane by plane, as they stand in memory. Tiles wait to be written
-// until checkpoint_after_s have passed: a short run writes nothing. A record of another size is passed over.
+// A tile's record: Head, its counts, then its rows plane by plane, as they are in memory. Tiles are not written until
+// checkpoint_after_s have passed, so a short run writes nothing. Records of another size are skipped.
 #include "render/tiles.h"
 
 #include <cstring>
@@ -11,7 +11,7 @@ namespace crescent::inline render {
 
 namespace {
 
-/// What stands before the counts and pixels of a tile.
+/// The head of a record, before the counts and pixels of a tile.
 struct Head {
     std::uint64_t tile;
     double units;
@@ -85,12 +85,12 @@ void TileCheckpoint::write(std::size_t tile) {
     journal_.append(parts);
 }
 
-// ---- Points of a tile are made when they are asked for first, under that tile's lock. Of a scene at another s only s
-// and alpha change: they are copied from the first one's.
+// ---- Points of a tile are created on first use, under that tile's lock; for a scene at another s only s and alpha
+// change, so they are copied from the first scene's.
 
 struct TiledScene::Kept {
     Mutex lock;
-    std::shared_ptr<const Points> points;  // null: not asked for yet
+    std::shared_ptr<const Points> points;  // null: not created yet
 };
 
 TiledScene::TiledScene(Scene scene)

@@ -1,4 +1,4 @@
-// Shading points that arms, seeds and exponents share are those that each of them would make.
+// Shading points shared by samplers, seeds and exponents equal those that each of them would create.
 #include <gtest/gtest.h>
 
 #include "render/estimator.h"
@@ -8,7 +8,7 @@
 namespace crescent {
 namespace {
 
-/// With a recessed panel, whose sides have no lobe and whose back follows the exponent of the scene.
+/// Returns a scene with a recessed panel, whose sides have no lobe and whose back follows the exponent of the scene.
 Scene scene_of_three_surfaces() {
     Experiment e = test::small_scene();
     Shape panel = *e.shape_of_s();

@@ -1,5 +1,5 @@
-// The variance of a film against the two-pass variance of the very samples, for every arm, where samples hardly differ
-// (small area lights) and where they differ by orders of magnitude (an arm that aims badly).
+// The variance of a film against the two-pass variance of its samples, for every sampler: where samples hardly differ
+// (small area lights) and where they differ by orders of magnitude (a sampler that fits badly).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace crescent::inline render {
 namespace {
 
-/// The test scene with area lights of another size, and as bright as they were.
+/// Returns the test scene with area lights of another size and the same radiance.
 Scene scene_with_area_lights(double radius) {
     Experiment e = test::small_scene();
     for (DiskLight& disk : e.disks) {
@@ -24,7 +24,7 @@ Scene scene_with_area_lights(double radius) {
 /// Pixels of the block and its shadow, of the ball's side, and of the ground at the horizon.
 constexpr TileBox boxes[] = {{30, 8, 34, 10}, {24, 24, 28, 26}, {0, 31, 67, 32}};
 
-/// Where a variance is a normal number in a float.
+/// The smallest variance at which all values are normal floats.
 constexpr double least = 1e-37;
 
 void expect_two_pass(const ShadingPoints& shading_points, const std::string& arm, std::uint64_t n, double radius) {
@@ -37,7 +37,7 @@ void expect_two_pass(const ShadingPoints& shading_points, const std::string& arm
     }
 }
 
-TEST(VarianceConformance, EveryArmHasTheTwoPassVarianceOfItsSamples) {
+TEST(VarianceConformance, EveryArmHasItsTwoPassVariance) {
     for (const double radius : {0.3, 1e-2, 1e-3, 1e-4, 1e-5}) {
         const Scene scene = scene_with_area_lights(radius);
         for (const TileBox& box : boxes)
@@ -67,7 +67,7 @@ TEST(VarianceConformance, SamplesThatAreAllAlikeHaveNone) {
     e.disks.clear();
     const Scene scene(e);
     ProgressMonitor monitor;
-    const Film film = estimate_films(scene, "light-area", {100}, 1, "", monitor)[0];  // nothing to aim at: every X is 0
+    const Film film = estimate_films(scene, "light-area", {100}, 1, "", monitor)[0];  // no light: every X is 0
     for (const float v : film.var) EXPECT_EQ(v, 0);
 }
 

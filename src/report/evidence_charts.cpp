@@ -1,5 +1,5 @@
-// Furnaces are grouped by arithmetic and bits of u, one panel each; what lies above the axis is held at its top. Lost
-// light stands beside (1 - cos theta_R)/2 with bars of two standard errors, rejections with their intervals.
+// Furnaces are grouped by arithmetic and bits of u, one panel each; values above the axis are drawn at its top. Lost
+// light is compared with (1 - cos theta_R)/2 with bars of two standard errors, rejections with their intervals.
 #include "report/evidence_charts.h"
 
 #include "report/wording.h"
@@ -16,7 +16,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// What one panel shows: an arithmetic and a resolution of u.
+/// One panel: an arithmetic and a resolution of u.
 struct Series {
     std::string arithmetic;
     int u_bits = 0;
@@ -89,7 +89,7 @@ std::string panel(const Page& page, const Series& s) {
         "</div>";
 }
 
-/// The sample count of the series nearest to n, on a log scale.
+/// Returns the sample count of the series nearest to n, on a log scale.
 const FurnaceQuantiles* nearest_sample_count(const Series& s, double n) {
     const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(math::log(static_cast<double>(q->n) / n)); };
     return *std::min_element(

@@ -24,7 +24,7 @@ Json tail_json(const Tail& tail) {
 Json json_of(double x) { return number(x); }
 Json json_of(std::uint64_t count) { return count; }
 
-/// Every metric of a region or of the frame.
+/// Adds every metric of a region or of the frame.
 template <class Of> void add_metrics(Json& out, const Of& of) {
     for_each_metric(
         of, [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
@@ -120,7 +120,7 @@ Json evidence_json(const Evidence& e) {
         {"rejections", list(e.rejections, rejection_json)}};
 }
 
-/// As a file of published figures has them.
+/// In the form of a file of published values.
 Json published_json(const Published& p) {
     Json out = {{"source", p.source}, {"runs", Json::array()}, {"furnaces", Json::object()}};
     if (p.seed) out["seed"] = *p.seed;
@@ -132,7 +132,7 @@ Json published_json(const Published& p) {
     return out;
 }
 
-/// The experiment in full, so that parts of its seeds can be joined without its files.
+/// Returns the experiment in full, so that parts of its seeds can be joined without its files.
 Json experiment_json(const ReportInputs& in) {
     Json out = {{"file", in.provenance.experiment_file}, {"hash", in.provenance.experiment_hash}};
     if (in.provenance.experiment_text.empty()) return out;
@@ -188,8 +188,8 @@ std::string metrics_json(const ReportInputs& in) {
     return text(out);
 }
 
-// ---- metrics.csv: every run in long form, one number a row, in RFC 4180 (CRLF, quotes doubled). The region is empty
-// for the metrics of the whole frame; a column follows for each key that --set gave, named as --set named it,
+// ---- metrics.csv: every run in long form, one number per row, in RFC 4180 (CRLF, quotes doubled). The region is empty
+// for the metrics of the whole frame; a column follows for each key that --set gave, with the name given to --set,
 // `set.seed` and `set.n` for the two keys that are columns already. Units are those of metrics/metrics.h.
 
 namespace {
@@ -219,8 +219,8 @@ void add_region(Rows& rows, const RegionMetrics& r) {
     rows.add("tail_exceedances", r.region, std::uint64_t{r.tail->exceedances});
 }
 
-/// What --set gave, key by key in the order of first mention; of a key that was given twice the last value, which
-/// holds. The number of seeds is left out: each row is of one seed.
+/// Returns what --set gave, key by key in the order of first mention, with the last value of each key. The number of
+/// seeds is omitted, because each row is of one seed.
 std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& experiment) {
     std::vector<std::pair<std::string, std::string>> out;
     for (const std::string& text : experiment.overrides) {
@@ -234,7 +234,7 @@ std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& 
     return out;
 }
 
-/// A key's column: the key as it was given, but for one that would be the second column of its name.
+/// Returns a key's column: the key as given, unless it would be the second column of its name.
 std::string column_of(const std::string& path) {
     return std::ranges::find(fixed_columns, path) == fixed_columns.end() ? path : "set." + path;
 }
@@ -258,7 +258,8 @@ std::string metrics_csv(const ReportInputs& in) {
     return rows.out;
 }
 
-// ---- junit.xml: one test case an assertion, for build servers. No times and no dates: equal runs give equal bytes.
+// ---- junit.xml: one test case per assertion, for build servers; no times and no dates, so that equal runs give equal
+// bytes.
 
 namespace {
 
@@ -285,7 +286,7 @@ std::string junit_xml(const ReportInputs& in) {
     return junit_text(suite);
 }
 
-// ---- timing.json: what varies between equal runs (seconds, threads, instruction set, date), apart from the numbers.
+// ---- timing.json: what varies between equal runs (seconds, threads, instruction set, date).
 
 namespace {
 

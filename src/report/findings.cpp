@@ -1,5 +1,5 @@
-// Look-ups by arm, N and s, s and seed the experiment's own where none are given. Bands of n seeds of two equal arms
-// lie apart by chance with probability 2 / (2n choose n), at most 1: every choice of n out of 2n is as likely.
+// Look-ups by arm, N and s; the defaults of s and seed are the experiment's own. Bands of n seeds of two equal arms are
+// disjoint with probability 2 / (2n choose n), at most 1, because every choice of n out of 2n is equally likely.
 #include "report/findings.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ RatioOfErrors compare(const std::string& a, double value_a, const std::string& b
 }
 
 double chance_of_parted_bands(int seeds) {
-    double chance = 2;  // 2 / (2n choose n): which of 2n values are one arm's is drawn at random
+    double chance = 2;  // 2 / (2n choose n): each choice of n out of 2n values is equally likely
     for (int k = 1; k <= seeds; ++k) chance *= static_cast<double>(k) / (seeds + k);
     return std::min(chance, 1.0);
 }

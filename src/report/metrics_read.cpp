@@ -1,5 +1,5 @@
-// metrics.json -> what it was written from. Doubles are written in the shortest form that reads back the same, so every
-// number is the one that was measured. The experiment is in the provenance as text; its hash shows that it is whole.
+// Reads a metrics.json back into its inputs. Doubles are written in the shortest form that reads back the same, so
+// every number is the measured one. The experiment is in the provenance as text; its hash verifies it.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +14,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// What number() wrote.
+/// Parses the output of number().
 double number_of(const Json& json) {
     if (!json.is_string()) return json.get<double>();
     for (const double x : {HUGE_VAL, -HUGE_VAL, std::nan("")})

@@ -1,4 +1,4 @@
-// Every metric over seeds: the published value, the measured one, the band, and where in it the published value falls.
+// Every metric over seeds: the published value, the measured one, the band, and the place of the published value in it.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -57,7 +57,7 @@ std::vector<html::Cell> header(bool published) {
     return head;
 }
 
-/// Metrics in the order they are told; whatever else was measured follows, without the whole frame.
+/// Returns the metrics in a fixed order, then all others, without the whole frame.
 std::vector<std::string> metrics_in_order(const Page& page) {
     std::vector<std::string> order = headline_metrics(page.in.experiment);
     std::set<std::string> seen(order.begin(), order.end());
@@ -66,7 +66,7 @@ std::vector<std::string> metrics_in_order(const Page& page) {
     return order;
 }
 
-/// What the command line changed of the experiment whose figures were published; "" where nothing.
+/// Returns what the command line changed of the experiment with published values; "" if nothing.
 std::string changes(const Experiment& e) {
     std::string list;
     for (const std::string& change : e.overrides)
@@ -102,8 +102,8 @@ PageSection published(Page& page) {
             page.figures.plates(PlateKind::meters)};
 }
 
-// ---- Three explanations of the article that do not hold, each with the measurement that says so. A point without its
-// measurement is left out.
+// ---- Three explanations of the article that do not hold, each with the measurement that shows it; points without a
+// measurement are omitted.
 
 namespace {
 
@@ -152,7 +152,7 @@ std::string intro(const Page& page) {
 
 std::string furnace_point(Page& page) {
     const Evidence& e = page.in.evidence;
-    if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert nothing falls short
+    if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert the furnace is not too low
     const double k = (e.s - 1) / (e.s + 1);
     const M weight = row({frac(row({mn("2"), sub(mi("ρ"), mi("d"))}), row({mi("s"), mo("+"), mn("1")})),
         sup(mi("u"), row({mo("−"), mi("k")}))});
@@ -197,15 +197,15 @@ std::string rejection_point(Page& page) {
 }  // namespace
 
 PageSection where_wrong(Page& page) {
-    std::string points = furnace_point(page);  // one after the other: figures are numbered as they come
+    std::string points = furnace_point(page);  // one after the other: figures are numbered in order
     points += lost_point(page);
     points += rejection_point(page);
     if (points.empty()) return {};
     return {"wrong", "Where the note is wrong", html::p(intro(page)) + points};
 }
 
-// ---- Published values that the bands of this run do not hold, and what stands between the two. The reasons that are
-// given are those for which this run has the numbers; docs/scene.md tells how the geometry was inferred.
+// ---- Published values outside the bands of this run, and possible reasons; only reasons for which this run has the
+// numbers are given. docs/scene.md explains how the geometry was inferred.
 
 namespace {
 
@@ -221,7 +221,7 @@ std::optional<double> relative(const SeedSpread* b) {
     return b->band.median / *b->published - 1;
 }
 
-/// "18 to 22 % below", for deviations of one sign; empty where the signs differ or nothing was published.
+/// Returns "18 to 22 % below", for deviations of one sign; empty if the signs differ or nothing was published.
 std::string spread(const std::vector<double>& all) {
     if (all.empty()) return {};
     const auto [low, high] = std::minmax_element(all.begin(), all.end());
@@ -233,7 +233,7 @@ std::string spread(const std::vector<double>& all) {
     return range + " % " + (*low < 0 ? "below" : "above");
 }
 
-/// The broad arms in the highlight, and why the geometry cannot simply be changed to meet them.
+/// The broad arms in the highlight, and why the geometry cannot simply be changed to match them.
 std::string highlight_remark(const Page& page, const std::string& region) {
     std::string parts;
     bool below = true;
@@ -273,7 +273,7 @@ std::string exponent_remark(const Page& page, const std::string& metric) {
     return fmt::format("For {}, {}: {}.", escape(control->arm), metric_html(metric), values);
 }
 
-/// Largest departure of log RMSE from the -1/2 law, as a fraction.
+/// Returns the largest deviation of log RMSE from a slope of -1/2, as a fraction.
 double departure(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse) {
     double mean = 0, worst = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
@@ -294,7 +294,7 @@ std::vector<double> ladder_of(const Page& page, const ArmPlan& arm, const std::s
     return out;
 }
 
-/// A published ladder smoother than most seeds give, for an arm with a heavy tail.
+/// A published ladder that is smoother than that of most seeds, for an arm with a heavy tail.
 std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const std::string& region) {
     std::vector<double> published;
     for (const std::uint64_t n : narrow.n)
@@ -316,7 +316,7 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
         escape(narrow.name), escape(region), percent(limit, 2), of, close);
 }
 
-/// A published rise of RMSE with N, for an arm whose square has no expectation.
+/// A published rise of RMSE with N, for an arm whose square has no finite expectation.
 std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::string& region) {
     for (std::size_t i = 1; i < narrow.n.size(); ++i) {
         const SeedSpread *a = page.find.band(narrow.name, narrow.n[i - 1], "rmse." + region),

@@ -1,5 +1,5 @@
-// The arms side by side at one N, and the two ways in which they fail: the broad density on a small light, the narrow
-// one on a broad integrand. Which region shows which is found from the numbers.
+// The arms at one N, and the two ways in which they fail: the broad density on a small light, the narrow one on a broad
+// integrand. The numbers determine which region shows which.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// The arm's name, and what is to be known of it beside its numbers.
+/// Returns the arm's name and the remarks on its numbers.
 std::string column_title(const ArmPlan& arm, const Experiment& e) {
     std::string out = escape(arm.name);
     if (techniques_of(arm) > 1) out += fmt::format("<small>{} rays a sample</small>", techniques_of(arm));
@@ -45,7 +45,7 @@ std::string frame_footnote(const Page& page, std::uint64_t n) {
         "\n";
 }
 
-/// One sentence for each other arm whose density is about the normal: how it compares with the best of them.
+/// Returns one sentence for each other arm whose density is about the normal: how it compares with the best of them.
 std::string broad_arms_sentence(const Page& page, const ArmPair& pair, const std::string& region) {
     std::string out;
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
@@ -87,7 +87,7 @@ reads {mean_narrow} with {narrow} and {mean_broad} with {broad}.{lost}</p>
 whatever the material.</p>
 )";
 
-/// Of the two failures, those that this run does not show.
+/// Returns those of the two failures that this run does not show.
 std::string failures_not_seen(const Page& page, const ArmPair& pair) {
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
     std::string out;
@@ -164,7 +164,8 @@ PageSection failure_b(Page& page) {
         out + page.figures.plates(PlateKind::surround)};
 }
 
-// ---- RMSE against N with the fitted slope, and the exponent control. Ladders are prefixes of one stream of samples.
+// ---- RMSE against N with the fitted slope, and the exponent control; the sample counts are prefixes of one stream of
+// samples.
 
 namespace {
 
@@ -210,7 +211,7 @@ std::vector<Point> published_of(const Page& page, const Ladder& l) {
     return points;
 }
 
-/// RMSE = c N^(-1/2) through the first point, over the whole axis.
+/// Returns RMSE = c N^(-1/2) through the first point, over the whole axis.
 std::vector<Point> guide(const Point& first, const Axis& x) {
     return {{x.low, first.y * std::sqrt(first.x / x.low)}, {x.high, first.y * std::sqrt(first.x / x.high)}};
 }
@@ -296,7 +297,7 @@ PageSection exponent(Page& page) {
             table + page.figures.plates(PlateKind::exponent)};
 }
 
-// ---- White furnaces: an arm alone on a surface that reflects a known share of a light that is one everywhere.
+// ---- White furnaces: one arm on a surface that reflects a known share of a light of radiance 1 from everywhere.
 
 namespace {
 

@@ -27,7 +27,8 @@ std::string value_of(bool x) { return x ? "yes" : "no"; }
 std::string value_of(const Vec3d& v) { return vec(v); }
 std::string value_of(const std::optional<Rgb>& c) { return c ? rgb(*c) : ""; }
 
-/// "centre (0, 1, 0), radius 0.5": the parameters of the kind that `any` holds; those that are not given are left out.
+/// Returns "centre (0, 1, 0), radius 0.5", the parameters of the kind that `any` holds, without those that are not
+/// given.
 template <class Any> std::string parameters_of(const Any& any) {
     return std::visit(
         []<class Kind>(const Kind& kind) {
@@ -96,7 +97,7 @@ PageSection scene(Page& page) {
     return {"scene", "The scene", out};
 }
 
-// ---- The densities of the arms with the maps that draw from them, as the arms' own files state them.
+// ---- The densities of the arms with the maps that draw from them, as stated in the samplers' own files.
 
 namespace {
 
@@ -120,19 +121,19 @@ std::string sample_counts(const ArmPlan& arm) {
     return html::join(all);
 }
 
-/// What draws in place of a built-in arm.
+/// Returns what draws in place of a built-in sampler.
 std::string source_of(const ArmPlan& arm) {
     if (arm.plugin) return "that of the plugin " + html::code(*arm.plugin);
     return "that of the program " + html::code(arm.exec.value_or(""));
 }
 
-/// One density about one direction: a polar angle is all that there is to it.
+/// Returns whether the density depends only on the polar angle about one direction.
 bool plain(const ArmPlan& arm) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
     return info && info->about != PdfAxis::none;
 }
 
-/// The arm's name, with its sampler where that is another, and what light it cannot reach.
+/// Returns the arm's name, with its sampler if that differs, and the light that it cannot reach.
 std::string name_of(const ArmPlan& arm, const SamplerInfo& info, bool fill) {
     std::string out = escape(arm.name == arm.sampler ? std::string(info.label) : arm.name);
     if (arm.name != arm.sampler) out += ", sampler " + html::code(arm.sampler);
@@ -230,7 +231,7 @@ std::string regions_sentence(const Experiment& e) {
         e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
 }
 
-/// The lobes of the scene's glossy surfaces, in the list's order.
+/// Returns the lobes of the scene's glossy surfaces, in the list's order.
 std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
     std::vector<const LobeInfo*> out;
     for (const LobeInfo& lobe : lobe_infos())
@@ -283,8 +284,7 @@ PageSection estimator_equation(Page& page) {
     return {"estimator", "The estimator", out};
 }
 
-// ---- What everything is measured against, and how much it would matter to use the Monte Carlo reference of the
-// article instead.
+// ---- The reference, and the effect of using the Monte Carlo reference of the article instead.
 
 namespace {
 
@@ -303,7 +303,7 @@ two lie apart, what the random one claims as its standard error, and by how much
 other one were used.</p>
 )";
 
-/// Where the reference's own error is too large a part of an RMSE.
+/// Returns where the reference's own error is too large a part of an RMSE.
 std::string not_good_enough(const std::vector<ReferenceQuality>& all) {
     std::string out;
     for (const ReferenceQuality& r : all)

@@ -1,5 +1,6 @@
-// What a run says on the terminal, at most 80 columns: whether all held, the headline figures (published, measured at
-// the published seed, median and 5-95 % over seeds), the hashes of the films, bad samples, speed, where to look.
+// The terminal output of a run, at most 80 columns: whether all assertions held, the headline values (published,
+// measured at the published seed, median and 5-95 % over seeds), the hashes of the films, bad samples, speed, the
+// files.
 #include <algorithm>
 #include <map>
 
@@ -32,7 +33,7 @@ std::string failures_line(const std::vector<const AssertionResult*>& failed, std
     return clip(head + failed.front()->name, columns - more.size()) + more;
 }
 
-/// How many were skipped, a line for each reason.
+/// Returns how many were skipped, one line for each reason.
 std::string skipped_lines(const std::vector<AssertionResult>& all) {
     std::map<std::string, std::uint64_t> reasons;
     for (const AssertionResult& a : all)
@@ -94,7 +95,7 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     return fmt::format("\n{}\n{}", paint(bold, head), rows);
 }
 
-/// The hashes of the films; a film's name without s where s says nothing of its arm.
+/// Returns the hashes of the films; a film's name omits s if its arm does not depend on it.
 std::map<std::string, std::string> hashes_shown(const ReportInputs& in) {
     std::map<std::string, std::string> out = in.metrics.film_hashes;
     for (const RunMetrics& run : in.metrics.runs) {

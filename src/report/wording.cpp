@@ -1,6 +1,6 @@
-// An arm's side follows from the axis that SamplerInfo gives its density; one that combines others has none. Of those
-// about the normal the one with most sample counts in common with the mirror's is taken, of equals the one with the
-// least sum of ln RMSE over the regions, at the headline N where both ran, else at the largest they share.
+// An arm's side follows from the axis that SamplerInfo gives its density; an arm that combines others has none. Of the
+// arms about the normal, the one with most sample counts in common with the mirror's is taken; among equals, the one
+// with the least sum of ln RMSE over the regions, at the headline N if both ran it, else at the largest they share.
 #include "report/wording.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// Sum of log RMSE over the regions; infinite where a run or an error is missing.
+/// Returns the sum of log RMSE over the regions; infinite if a run or an error is missing.
 double error_of(const Page& page, const ArmPlan& arm, std::uint64_t n) {
     double sum = 0;
     for (const Region& region : page.in.experiment.regions) {
@@ -105,8 +105,8 @@ std::string bias_words(const Experiment& experiment) {
     return out;
 }
 
-// ---- Sentences that compare two arms. They are put together from the values, so that they turn round when the values
-// do, and they rank nothing whose intervals overlap or whose tail leaves no interval.
+// ---- Sentences that compare two arms are made from the values and follow their order; they rank nothing if intervals
+// overlap or a heavy tail leaves no interval.
 
 namespace {
 

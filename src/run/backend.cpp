@@ -1,5 +1,5 @@
-// The CPU hands a job on to estimate_films(). The list of kinds is a static of its function, so that it is there for
-// whoever registers before main.
+// The CPU passes a job on to estimate_films(). The list of kinds is a static of its function, so that it exists for
+// registrations before main.
 #include "run/backend.h"
 
 #include "render/estimator.h"
@@ -38,7 +38,7 @@ std::shared_ptr<const BackendKind> find_backend(const std::string& name) {
 
 }  // namespace crescent::inline runs
 
-// ---- The maker is a static of its function, so that an initialiser of another file may be the first to ask for it.
+// ---- The hook is a static of its function, so that an initialiser of another file may use it first.
 
 namespace crescent {
 

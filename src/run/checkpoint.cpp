@@ -40,16 +40,15 @@ std::string mark_of(const std::string& path) {
         static_cast<std::int64_t>(written.time_since_epoch().count()));
 }
 
-/// Which files the program and, where it is another one, the library with this code are, and of when: what another
-/// build kept is not for this one.
+/// Identifies the files of the program and of the library with this code, with their times: what another build kept is
+/// not used.
 std::string build_mark() {
     Dl_info about{};
     const bool known = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
     return mark_of(program_file()) + " " + mark_of(known ? about.dli_fname : "");
 }
 
-/// CBOR, which holds every double as it is, NaN and infinities too.
-/// None where the record is something else.
+/// CBOR keeps every double exactly, including NaN and infinities. Returns none if the record is something else.
 std::vector<RunMetrics> metrics_of(Journal::Bytes record) {
     const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
     try {
@@ -67,7 +66,7 @@ std::string key_of(const Experiment& experiment, const std::string& work) {
         "{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), work, marks_of(experiment));
 }
 
-/// A folder of the run's own: a link that stands there leads elsewhere, and nothing is kept.
+/// The run's folder must be its own: if a link there leads elsewhere, nothing is kept.
 bool leads_elsewhere(const std::string& folder) {
     std::error_code ignored;
     return fs::is_symlink(fs::symlink_status(folder, ignored));

@@ -1,5 +1,6 @@
-// Results are put into the plan's order; tails run beside evidence and furnaces; then hashes, bands, ladders and the
-// comparison of references are made of the films and metrics, and the assertions that need no plate are checked.
+// Results are sorted into the plan's order; tails are computed in parallel with article checks and furnaces; then
+// hashes, bands, ladders and the comparison of references are made of the films and metrics, and the assertions that
+// need no plate are checked.
 #include "run/collect.h"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ const Published* figures_of(const Experiment& experiment) {
     return experiment.figures ? &*experiment.figures : nullptr;
 }
 
-/// Results in the plan's order, whatever order they came in.
+/// Sorts results into the plan's order.
 void sort_results(const RunPlan& plan, std::vector<JobResult>& results) {
     const auto place = [&](const JobResult& r) {
         return std::ranges::find_if(plan.jobs, [&](const Job& job) {
@@ -49,8 +50,8 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
     }
 }
 
-/// The tail index of each region's samples, of the stream of the experiment's own seed whichever part of its series
-/// this is. It belongs to an arm and exponent, not to N: it is given with every N of the first seed.
+/// The tail index of each region's samples, from the stream of the experiment's own seed for every part of its series.
+/// It depends on arm and exponent, not on N, and is stored with every N of the first seed.
 void add_tails(
     const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& monitor, Metrics& metrics) {
     const std::vector<Job> jobs = jobs_of(plan.whole, plan.whole.seed);
@@ -154,7 +155,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
-        stage("tails, furnaces and evidence", [&] {  // none of them waits for another
+        stage("tails, furnaces and evidence", [&] {  // these do not depend on each other
             side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
                 [&] {
                     out.evidence = measure_evidence(plan.whole, with.isa, monitor);

@@ -1,6 +1,6 @@
-// Primary rays are traced once for all jobs, shading points kept where memory allows. A job whose metrics are in the
-// checkpoint and whose films are not kept computes nothing; else the back end makes its films, which are measured
-// side by side.
+// Primary rays are traced once for all jobs, shading points are kept if memory allows. A job whose metrics are in the
+// checkpoint and whose films are not kept is skipped; else the back end computes its films, which are measured in
+// parallel.
 #include "run/execute.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// A program is spoken to by samplers/pipe.h, one question after another under a lock and with no limit to the whole; a
-// library is opened by samplers/plugin.h. A wrapper around either puts the arm's name into what it throws.
+// samplers/pipe.h communicates with a program, one query after another under a lock and without a total limit;
+// samplers/plugin.h opens a library. A wrapper around either adds the arm's name to exceptions.
 #include "run/external_samplers.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-/// A program answers one question after another.
+/// A program answers one query after another.
 class Program : public ExternalSampler {
 public:
     explicit Program(std::shared_ptr<const SamplerAdapter> program) : program_(std::move(program)) {}
@@ -52,7 +52,7 @@ private:
     mutable std::mutex lock_;
 };
 
-/// What it throws names the arm.
+/// Adds the arm's name to exceptions.
 class Named : public ExternalSampler {
 public:
     Named(std::string arm, std::shared_ptr<const ExternalSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
@@ -80,7 +80,7 @@ private:
     std::shared_ptr<const ExternalSampler> of_;
 };
 
-/// An estimate divides f cos by the density of the draw: what has none cannot be an arm.
+/// An estimate divides f cos by the density of the draw: a sampler without one cannot be used as an arm.
 void refuse(const Traits& traits) {
     if (traits.delta) throw OutputError("it has delta parts, which have no density to divide by");
     if (!traits.has_pdf) throw OutputError("it has no pdf to divide by");

@@ -1,6 +1,6 @@
 // What does not depend on the seed must agree in all parts, and rows of one seed wherever two parts have it. Film
-// hashes, and what compares references by films, are of a run's first seed: they are those of the part that begins
-// with it. Tails are of the experiment's own seed in every part and are given with the first seed.
+// hashes, and values that compare references by films, are of a run's first seed: they come from the part that begins
+// with it. Tails are of the experiment's own seed in every part and are stored with the first seed.
 #include "run/join.h"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ std::map<std::string, std::string> values_in(const std::string& text) {
     return out;
 }
 
-/// Where two experiments differ: "; ball.s is 32 there and 64 here".
+/// Returns where two experiments differ: "; ball.s is 32 there and 64 here".
 std::string difference(const std::string& there, const std::string& here) {
     const auto a = values_in(there), b = values_in(here);
     std::set<std::string> keys;
@@ -86,14 +86,14 @@ void check_same(const Part& first, const Part& part, const std::string& what, co
         refuse(first, part, fmt::format("{} differs; expected the same value, bit for bit", what));
 }
 
-/// What references are apart from the films that they were compared by.
+/// Returns the references without the films that they were compared by.
 Json of_no_film(Json references) {
     for (Json& reference : references)
         for (const char* key : {"rmse_unlike", "error_share"}) reference.erase(key);
     return references;
 }
 
-/// Hashes of references: their names are those of no run.
+/// Hashes of references, whose names are not those of runs.
 Json reference_hashes(const Part& part) {
     Json out = part.json.at("films");
     for (const RunMetrics& run : part.file.metrics.runs) out.erase(to_string(run.key));
@@ -121,7 +121,7 @@ void check_alike(const Part& first, const Part& part) {
 
 using TailKey = std::tuple<std::string, double, std::string>;  // arm, s, region
 
-/// Runs of all parts by their seed, tails apart.
+/// Runs of all parts by their seed, without tails.
 class Rows {
 public:
     void add(const Part& part) {
@@ -179,7 +179,7 @@ private:
     std::map<TailKey, KnownTail> tails_;
 };
 
-/// Claims of the back end, which follow the experiment's own: one that fails in any part fails.
+/// Assertions of the back end, which follow the experiment's own; if one fails in any part, it fails.
 std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
     std::vector<AssertionResult> out;
     for (const Part& part : parts) {

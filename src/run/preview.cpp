@@ -9,7 +9,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-/// What is seen and measured, without those who measure it.
+/// Returns the scene and references of the experiment without its arms.
 Experiment without_arms(Experiment e) {
     e.arms.clear();
     e.exponent.reset();

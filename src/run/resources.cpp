@@ -1,5 +1,5 @@
-// Four bytes a pixel for each plane of each film and reference held, 12 more a pixel, the hits of images up to 2^20
-// pixels, 150 MB for the program. The image that is suggested fits into 90 % of the memory that is there.
+// Four bytes per pixel for each plane of each film and reference held, 12 more per pixel, the hits of images up to 2^20
+// pixels, 150 MB for the program. The suggested image fits into 90 % of the available memory.
 #include "run/resources.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace crescent::inline runs {
 namespace {
 
 constexpr double for_itself = 150e6;  // code, fonts, plates, the report; measured on the gallery at 64 x 36
-// A pixel: Scene::remember_primaries' 4, shape map, shading point counts and rows on their way to a file.
+// Per pixel: Scene::remember_primaries' 4, shape map, shading point counts and rows being written to a file.
 constexpr double working_bytes = 12;
 
 double pixels_that_fit(double pixels, double needed, double available) {

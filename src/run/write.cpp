@@ -1,5 +1,5 @@
-// EXR files are written beside the drawing of plates; then plates, the assertions on them, metrics.json, metrics.csv,
-// junit.xml and report.html, and last timing.json, with the date. Times in seconds.
+// EXR files are written in parallel with the drawing of plates; then plates, the assertions on them, metrics.json,
+// metrics.csv, junit.xml and report.html, and last timing.json, with the date. Times in seconds.
 #include "run/write.h"
 
 #include <fmt/chrono.h>
@@ -35,7 +35,7 @@ std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attrib
     return encode_png(draw_plate(plan, in), text);
 }
 
-/// One file an arm and exponent, sample counts as parts.
+/// One file per arm and exponent, sample counts as parts.
 void write_films(const Measured& m, Staging& staging, const ProgressMonitor& monitor) {
     std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
     for (const auto& [key, film] : m.films) {
@@ -56,7 +56,7 @@ void write_references(const Measured& m, Staging& staging) {
     if (!parts.empty()) write_exr(staging.path(fmt::format("films/{}.exr", reference_file)), parts, attributes_of(m));
 }
 
-/// Each as PNG; those of lines alone as SVG too.
+/// Writes each as PNG; those that consist only of lines as SVG too.
 void write_plates(const Measured& m, Staging& staging) {
     for (const auto& [name, png] : m.plates) staging.write("plates/" + name + ".png", png);
     const std::vector<PlatePlan>& plans = m.experiment.plates;
@@ -67,7 +67,7 @@ void write_plates(const Measured& m, Staging& staging) {
         if (!svg[k].empty()) staging.write("plates/" + plans[k].name + ".svg", svg[k]);
 }
 
-/// The experiment's own assertions stand first; those of the back end stay as they are.
+/// The experiment's own assertions come first; those of the back end are unchanged.
 void check_plates(Measured& m) {
     PlateBytes bytes;
     for (const auto& [name, png] : m.plates) bytes[name] = png.size();

@@ -1,7 +1,7 @@
 // beckmann-d: a Beckmann normal by the distribution D(m) (n.m), mirrored to wi.
 //   tan^2 = -alpha^2 log(1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (25), (28), (29), (14).
-// D as density over the drawn u1: D cos = (1 - u1) / (pi alpha^2 cos^3), which costs no second pass over m.
+// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (25), (28), (29), (14). D as
+// density over the drawn u1: D cos = (1 - u1) / (pi alpha^2 cos^3), which needs no second evaluation at m.
 #pragma once
 
 #include "samplers/halfway.h"
@@ -21,7 +21,7 @@ template <class F> struct BeckmannD {
         .axis = "the normal $n$",
         .check_cases = check_cases,
         .gl = {2e-5, "as blinn"}};
-    /// n.m is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. Where exp(-tan^2 /
+    /// n.m is smallest for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. If exp(-tan^2 /
     /// alpha^2) is less than the smallest double there, p is 0 where Lambert is not.
     static ExpectedBehaviour theory(const CasePoint& at) {
         const double least = math::cos((at.theta_deg + 90) * pi / 360);

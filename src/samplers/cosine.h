@@ -1,4 +1,4 @@
-// cosine: the hemisphere of n by projected solid angle, right for Lambert under even light.
+// cosine: the hemisphere of n by projected solid angle, exact for Lambert under constant light.
 //   p = (n.w)/pi;  cos = sqrt(u1), phi = 2 pi u2, about n.
 #pragma once
 

@@ -1,5 +1,5 @@
-// ggx-bounded-vndf: as ggx-vndf, on a smaller cap that holds all normals whose mirrored direction is above the horizon,
-// so that fewer directions are drawn below it.
+// ggx-bounded-vndf: like ggx-vndf, on a smaller cap that contains all normals whose mirrored direction is above the
+// horizon, so that fewer directions are drawn below it.
 //   p = D(m) / (2 (k wo.z + t)),  t = sqrt(alpha^2 (wo.x^2 + wo.y^2) + wo.z^2);  ggx-vndf is k = 1
 //   k = (1 - alpha^2) s^2 / (s^2 + alpha^2 wo.z^2),  s = 1 + sqrt(wo.x^2 + wo.y^2)
 // Eto & Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", SIGGRAPH Asia Technical Communications, eqs
@@ -44,7 +44,7 @@ template <class F> struct GgxBoundedVndf {
 
 private:
     struct Bound {
-        F k, rest;  // rest: 1 - k, of which nothing cancels for a small alpha
+        F k, rest;  // rest: 1 - k, without cancellation for a small alpha
     };
     Bound bound_at(Vec3<F> wo) const {
         const F a2 = sqr(ggx.alpha), s2 = sqr(number<F>(1) + sqrt(wo.x * wo.x + wo.y * wo.y)), z2 = sqr(wo.z);

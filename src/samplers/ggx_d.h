@@ -1,8 +1,7 @@
 // ggx-d: a GGX normal by the distribution D(m) (n.m), mirrored to wi.
 //   tan^2 = alpha^2 u1 / (1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (33), (35), (36), (14).
-// D as density over the drawn u1: D cos = (1 - u1 + alpha^2 u1)^2 cos / (pi alpha^2), which costs no second pass over
-// m.
+// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (33), (35), (36), (14). D as
+// density over the drawn u1: D cos = (1 - u1 + alpha^2 u1)^2 cos / (pi alpha^2), which needs no second evaluation at m.
 #pragma once
 
 #include "samplers/halfway.h"

@@ -1,4 +1,4 @@
-// ggx-vndf: a GGX normal among those that wo sees, mirrored to wi.
+// ggx-vndf: a GGX normal among those visible from wo, mirrored to wi.
 //   p = G1(wo) D(m) max(wo.m, 0) / wo.z / (4 wo.m) = G1(wo) D(m) / (4 wo.z).
 // Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eq. (3) and (17); the draw by a spherical
 // cap in the stretched space: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8),

@@ -1,5 +1,5 @@
-// The table is made from the types of arms/all.h at first use: name, manual, techniques and theory are theirs. What a
-// manual's formulas may say is checked as it compiles.
+// The table is made from the types of samplers/all.h at first use: name, documentation, techniques and theory. The
+// formulas are checked at compile time.
 #include "samplers/info.h"
 
 #include "math/functions.h"

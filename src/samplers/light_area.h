@@ -1,7 +1,7 @@
-// light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times the largest area
-// that it shows, pi r^2 of a disk. A point y is even over the light's area A (of a ball, over what x sees of it):
+// light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times its largest projected area,
+// pi r^2 for a disk. A point y is uniform over the light's area A (for a ball, over the part visible from x):
 //   p_A = 1/A;  p = p_A |y - x|^2 / cos(light).  Of a disk y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2).
-// Other kinds of light: scene/lights/. It reaches nothing but the lights: under a fill it is wrong by the fill, unless
+// Other kinds of light: scene/lights/. It reaches only the lights: under a fill it is biased by the fill, unless
 // another technique adds that.
 #pragma once
 
@@ -28,10 +28,10 @@ template <class F> struct LightArea {
     const LocalLight<F>* others;  // after the disks
     int other_count;
 
-    /// A disk with what does not change from sample to sample.
+    /// A disk with the values that are constant over samples.
     struct Aim {
         Vec3<F> center, t, b;  // t and b span the disk: as long as its radius
-        F scale;               // p = scale |y|^3: r^2 / cos(light) = |y|^3 / |c.n|; 0 where no emitting side faces x
+        F scale;               // p = scale |y|^3: r^2 / cos(light) = |y|^3 / |c.n|; 0 if no emitting side faces x
 
         Aim() = default;
         explicit Aim(const LocalDisk<F>& d) {
@@ -42,7 +42,7 @@ template <class F> struct LightArea {
                 lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
         }
     };
-    Aim first;  // most scenes have but one
+    Aim first;  // most scenes have only one
 
     explicit LightArea(const ShadingPoint<F>& shading_point)
         : disks(shading_point.disks),
@@ -82,7 +82,7 @@ template <class F> struct LightArea {
             below = above;
         }
         const auto some = drawn.pdf.v > zero;
-        // Disks may stand one behind another: every one that wi meets could have drawn it.
+        // Disks may lie one behind another: every one that wi meets could have drawn it.
         drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, own), zero);
         return {drawn, own, some};
     }
@@ -92,9 +92,8 @@ template <class F> struct LightArea {
     }
 
 private:
-    /// The density with which the disks but for one draw wi. The question whether wi meets a disk is that of the
-    /// estimator (meets_disk in estimator/disk_hit.h), bit for bit, so that no sample is worth a disk and weighed as if
-    /// it met none.
+    /// Returns the density with which the disks except one draw wi. Whether wi meets a disk is tested as in the
+    /// estimator (meets_disk in render/disk_hit.h), bit for bit, so that value and density of a sample are consistent.
     [[gnu::always_inline]] F density_of_others(Vec3<F> wi, F but) const {
         F sum = number<F>(0);
         for (int k = 0; k < count; ++k) {

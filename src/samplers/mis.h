@@ -1,8 +1,8 @@
 // Two-sample multiple importance sampling: one direction from the BRDF's mixture, one from the lights (by area), both
-// added, each weighed by what the other technique would have done there.
+// added, each weighted by the densities of both techniques.
 //   X = w_1 f L cos / p_1 + w_2 f L cos / p_2,  w_1 + w_2 = 1 wherever p_1 + p_2 > 0.
-// Veach & Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering": one sample from each.
-// N counts pairs.
+// Veach & Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering": one sample from each. N
+// counts pairs.
 #pragma once
 
 #include "samplers/light_area.h"
@@ -39,7 +39,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
 //   w_i = p_i / (p_1 + p_2)      Veach & Guibas 1995, eq. (11) with one sample from each.
 
 struct BalanceHeuristic {
-    /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and weighs 0.
+    /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and has weight 0.
     template <class F> static F weight(F own, F other) {
         const auto drawn = own > number<F>(0);
         return select(drawn, number<F>(1) / (number<F>(1) + other / select(drawn, own, number<F>(1))), number<F>(0));

@@ -1,7 +1,7 @@
 // mixture: one sample from two techniques, chosen by u1: the lobe (phong, about R) with probability q, else cosine.
 //   q = min(rho_s / (rho_s + Y(rho_d)), 9/10), and 0 on a surface without a lobe;
 //   p = q p_phong + (1 - q) p_cosine;  u1 in [0, q) is stretched to [0, 1) for the lobe, the rest for the cosine.
-// The cosine keeps a tenth at least, so that no direction above the horizon is out of reach: defensive mixture,
+// The cosine keeps at least a tenth, so that every direction above the horizon is reached: defensive mixture,
 // Hesterberg 1995, "Weighted Average Importance Sampling and Defensive Mixture Distributions".
 #pragma once
 

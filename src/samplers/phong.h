@@ -1,5 +1,5 @@
-// phong: a cosine-power lobe about R = reflect(-wo, n). Part of it may lie under the horizon of n: such samples weigh
-// 0 and count; p is not renormalised.
+// phong: a cosine-power lobe about R = reflect(-wo, n). Part of it may lie below the horizon of n: such samples have
+// weight 0 and count; p is not renormalised.
 //   p = (s+1)/(2 pi) (w.R)_+^s;  cos = u1^(1/(s+1)), phi = 2 pi u2, about R.
 // On the drawn direction (w.R)^s = u1 / cos: the density costs a division, not a second power.
 #pragma once
@@ -23,7 +23,7 @@ template <class F> struct Phong {
         .needs_s = true,
         .check_cases = check_cases,
         .gl = {7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"}};
-    /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and past 90 deg from R no samples at
+    /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and beyond 90 deg from R no samples at
     /// all.
     static ExpectedBehaviour theory(const CasePoint& at) {
         if (!(at.rho_d > 0)) return {.bounded = true};
@@ -31,7 +31,7 @@ template <class F> struct Phong {
         ExpectedBehaviour t;
         t.lost = (1 - math::cos(at.theta_deg * pi / 180)) / 2;
         t.lost_of = at.rho_d;
-        t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light lies below
+        t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light is below
         t.tail_k = tilted ? at.s / (at.s + 1) : (at.s - 1) / (at.s + 1);
         if (tilted) t.wrong = "support";
         t.why = tilted
@@ -51,7 +51,7 @@ template <class F> struct Phong {
         const F sin = sqrt(lobe.one_minus * (number<F>(1) + cos));
         const SinCos<F> phi = sincos_turns(u.y);
         const Frame<F> about = frame_about(mirror(wo));
-        const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 is 0, not 0/0
+        const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 gives 0, not 0/0
         return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * along}};
     }
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {

@@ -1,4 +1,4 @@
-// Random bodies between random points and disks: what is said to hide nothing is crossed by none of 200 segments.
+// Random bodies between random points and disks: none of 200 segments crosses a body that is reported to hide nothing.
 #include "scene/shadow.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ Obstacle some_obstacle(Kind kind, PrimarySample& next) {
     return s;
 }
 
-/// Of random segments from the points to the disk, those that the body crosses.
+/// Returns the number of random segments from the points to the disk that the body crosses.
 int hidden_segments(const Obstacle& s, PrimarySample& next, int segments) {
     const Frame<double> frame = frame_about(s.disk.normal);
     int hidden_ones = 0;
@@ -83,7 +83,7 @@ TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
             clear += parted;
             unclear += !parted && hidden_ones == 0;
         }
-        // It is worth asking: most of what hides nothing is seen to hide nothing.
+        // The test is useful: most bodies that hide nothing are recognised.
         EXPECT_GT(in_the_way, 20) << static_cast<int>(kind);
         EXPECT_GT(clear, 4 * unclear) << static_cast<int>(kind);
     }
@@ -103,7 +103,7 @@ TEST(PassesBy, IsNeverSaidOfABodyThatHidesSome) {
             clear += passes;
         }
         EXPECT_GT(in_the_way, 20) << static_cast<int>(kind);
-        EXPECT_EQ(clear > 200, kind != Kind::plane) << static_cast<int>(kind);  // no ball holds a plane
+        EXPECT_EQ(clear > 200, kind != Kind::plane) << static_cast<int>(kind);  // no ball contains a plane
     }
 }
 

@@ -1,5 +1,5 @@
-// Adapters on small classes of our own, of the shape that pbrt-v4, Nori and OpenPBR have; right ones are right, and a
-// pdf that is 3 % off is found through each.
+// Adapters on small classes with the interfaces of pbrt-v4, Nori and OpenPBR: correct ones pass, and a pdf that is 3 %
+// off is found through each.
 #include <gtest/gtest.h>
 
 #include "crescent/adapters/nori.h"
@@ -59,7 +59,7 @@ struct PbrtLike {
     float PDF(Vec wo, Vec wi, Mode) const { return wo.z > 0 ? 0.75f * off * cosine_pdf(wi) : 0; }
 };
 
-/// As some classes of pbrt are: what is asked for comes last, without a default.
+/// Like some classes of pbrt: the requested part is the last argument, without a default.
 enum class WoDomain { none, reflection, transmission, all };
 struct FlaggedPbrtLike : PbrtLike {
     std::optional<Sample> Sample_f(Vec wo, float uc, Point u, Mode mode, WoDomain asked) const {
@@ -135,7 +135,7 @@ template <class Sampler> void expect(const Sampler& sampler, crescent::State sta
     EXPECT_EQ(j.state, state) << crescent::what_is_wrong(j);
 }
 
-TEST(Adapters, AClassOfPbrtsShapeIsJudgedWithItsDeltaPart) {
+TEST(Adapters, PbrtClassIsCheckedWithItsDeltaPart) {
     expect(crescent::adapters::Pbrt(PbrtLike{}), crescent::State::right);
     expect(crescent::adapters::Pbrt(PbrtLike{1.03f}), crescent::State::wrong);
     expect(crescent::adapters::Pbrt(FlaggedPbrtLike{}), crescent::State::right);
@@ -153,7 +153,7 @@ TEST(Adapters, AClassOfNorisShapeIsJudged) {
     expect(crescent::adapters::Nori(NoriLike{1.03f}), crescent::State::wrong);
 }
 
-TEST(Adapters, FunctionsOfOpenPbrsShapeAreJudgedInColour) {
+TEST(Adapters, OpenPbrFunctionsAreCheckedInColour) {
     const auto of = [](float off) {
         return crescent::adapters::OpenPbr<Vec>([off](Vec wo) { return openpbr_like::Prepared{wo, off}; });
     };

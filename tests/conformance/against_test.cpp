@@ -1,5 +1,5 @@
-// Two samplers held against each other: what is alike is not told apart, what differs is, and the ratio of variances
-// has its interval.
+// Comparison of two samplers: equal ones are not reported as different, differences are found, and the ratio of
+// variances has its interval.
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -41,12 +41,12 @@ TEST(Against, ItselfNothingIsToldApart) {
     }
 }
 
-TEST(Against, AnotherSamplerOfTheSameDistributionIsNotToldApart) {
+TEST(Against, EqualDistributionsAreNotDistinguished) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45);
     SyntheticSampler r{"cosine by rejection", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
     r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.5 / pi : 0.0; };
-    r.sample = [](Vec3d, Vec2d u) {  // another way round than the arm's
+    r.sample = [](Vec3d, Vec2d u) {  // in the opposite rotation to the built-in sampler's
         const double rad = std::sqrt(1 - u.y), phi = -2 * pi * u.x, z = std::sqrt(u.y);
         return Draw{{rad * std::cos(phi), rad * std::sin(phi), z}, z / pi, {}, {}};
     };
@@ -55,7 +55,7 @@ TEST(Against, AnotherSamplerOfTheSameDistributionIsNotToldApart) {
     EXPECT_EQ(named(j, "same_f").state, State::right) << against_text(j);
 }
 
-/// Two delta parts and nothing else: the mirror direction with q, and straight through.
+/// Only two delta parts: the mirror direction with probability q, and straight through.
 SyntheticSampler mirror_or_straight(double q) {
     SyntheticSampler r{"mirror or straight", "", {}, {}, {}};
     r.traits.numbers = 3;
@@ -73,7 +73,7 @@ SyntheticSampler mirror_or_straight(double q) {
     return r;
 }
 
-/// Mirrors `mirrored` of the draws, a delta part, and draws the cosine else.
+/// Mirrors the fraction `mirrored` of the draws, a delta part, and draws the cosine otherwise.
 SyntheticSampler part_mirror(double mirrored) {
     SyntheticSampler r{"part mirror", "", {}, {}, {}};
     r.traits.numbers = 3;
@@ -93,14 +93,14 @@ SyntheticSampler part_mirror(double mirrored) {
     return r;
 }
 
-TEST(Against, ARightVerdictStatesWhatWouldHaveBeenFound) {
+TEST(Against, PassStatesTheDetectableDifference) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45);
     const Verdict v = named(against(a, sampler_named_against("cosine", a)), "same_distribution");
     const double part = v.evidence["would_have_found"]["part"].get<double>(),
                  distance = v.evidence["would_have_found"]["distance"].get<double>();
     EXPECT_LT(part, 0.03) << v.message;
     EXPECT_LT(distance, 0.01) << v.message;
-    // What is stated is found: draws turned by 1.5 times that distance of their mean.
+    // A difference of the stated size is found: draws rotated by 1.5 times that distance of their mean.
     SyntheticSampler turned{"turned", "", {}, {}, {}};
     const double angle = 1.5 * distance / (2.0 / 3);
     turned.pdf = [=](Vec3d, Vec3d wi) { return std::max(-std::sin(angle) * wi.x + std::cos(angle) * wi.z, 0.0) / pi; };
@@ -114,8 +114,8 @@ TEST(Against, ARightVerdictStatesWhatWouldHaveBeenFound) {
     EXPECT_EQ(named(j, "same_distribution").state, State::wrong) << against_text(j);
 }
 
-/// What draws nothing else is told apart by its delta parts too.
-TEST(Against, DeltaPartsThatAreDrawnMoreOftenAreAnotherDistribution) {
+/// Samplers with only delta parts are distinguished by them.
+TEST(Against, DifferentDeltaProbabilitiesAreFound) {
     const std::vector<CheckCase> a = {make_user_case(make_adapter(part_mirror(0.5)), 45, 130)};
     const auto against_one = [&](double mirrored) {
         return against(a, sampler_against(make_adapter(part_mirror(mirrored)), a), true);
@@ -146,7 +146,7 @@ TEST(Against, ABetterOneIsSaidToBeSoWithItsInterval) {
     EXPECT_LT(back.evidence["ratio"].get<double>() * v.evidence["ratio"].get<double>(), 1.3);
 }
 
-/// 20,000 draws of cosine, w_o 45 deg, f = `albedo` / pi; p as 128 x 8 points.
+/// Returns 20,000 draws of cosine, w_o 45 deg, f = `albedo` / pi; p as 128 x 8 points.
 std::shared_ptr<const SamplerAdapter> written_samples(double albedo, bool with_f) {
     const std::string samples = testing::TempDir() + "against_samples.csv",
                       table = testing::TempDir() + "against_p.csv";
@@ -167,7 +167,7 @@ std::shared_ptr<const SamplerAdapter> written_samples(double albedo, bool with_f
     return std::make_shared<SampleFile>(samples, table);
 }
 
-/// f = `albedo` / pi (0.2 + 0.8 cos), drawn evenly over the upper half.
+/// f = `albedo` / pi (0.2 + 0.8 cos), drawn uniformly over the upper half.
 std::shared_ptr<const SamplerAdapter> even_with(double albedo) {
     SyntheticSampler r{"even", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d wi) { return wi.z > 0 ? 1 / (2 * pi) : 0.0; };
@@ -184,7 +184,7 @@ TEST(Against, AFileOfSamplesWithFIsComparedAtItsDraws) {
     EXPECT_EQ(named(right, "same_f").state, State::right) << against_text(right);
     EXPECT_FALSE(named(other, "same_f").evidence.value("same", true)) << against_text(other);
     EXPECT_EQ(named(other, "variance").state, State::skipped) << against_text(other);
-    // X_A = 0.5 (0.2 + 0.8 z) and X_B = z X_A; z^2 is even under A, z under B.
+    // X_A = 0.5 (0.2 + 0.8 z) and X_B = z X_A; z^2 is uniform under A, z under B.
     const double var_a = 0.16 * (0.5 - 4.0 / 9), mean = 0.1 + 0.8 / 3,
                  square = 4 * 0.25 * (0.04 / 3 + 0.32 / 4 + 0.64 / 5), ratio = var_a / (square - mean * mean);
     for (const CheckResult* j : {&right, &arm}) {
@@ -206,7 +206,7 @@ TEST(Against, AFileOfSamplesWithoutFSaysSo) {
     }
 }
 
-/// Lambert of `albedo`, drawn by the cosine; p is told as `told` of what is drawn.
+/// Lambert of `albedo`, drawn by the cosine; the stated p is `describe` times the true one.
 std::shared_ptr<const SamplerAdapter> lambert(double albedo, double describe = 1) {
     SyntheticSampler r{"cosine", "", {}, {}, {}};
     r.pdf = [describe](Vec3d, Vec3d wi) { return describe * std::max(wi.z, 0.0) / pi; };
@@ -218,7 +218,7 @@ std::shared_ptr<const SamplerAdapter> lambert(double albedo, double describe = 1
     return make_adapter(r);
 }
 
-TEST(Against, AnotherFIsToldAndIsWrongWhereNoneIsExpected) {
+TEST(Against, DifferentFIsReportedAndCanFail) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45), b = sampler_against(lambert(0.505), a);
     const CheckResult describe = against(a, b), expected = against(a, b, true);
     EXPECT_EQ(describe.state, State::right) << against_text(describe);
@@ -240,7 +240,7 @@ TEST(Against, AHeavyTailIsInconclusive) {
     EXPECT_EQ(v.next.kind, NextStep::Kind::heavier_pdf);
 }
 
-/// Every weight of cosine on Lambert is the albedo: what is left is rounding, and is not ranked.
+/// Every weight of cosine on Lambert is the albedo; only rounding remains, which is not ranked.
 TEST(Against, TwoSamplersWithoutVarianceAreNotRanked) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert", 45);
     for (const auto& b : {sampler_named_against("cosine", a), sampler_against(lambert(0.5), a)}) {
@@ -253,7 +253,7 @@ TEST(Against, TwoSamplersWithoutVarianceAreNotRanked) {
     EXPECT_EQ(one.evidence.value("better", "?"), "A") << one.message;
 }
 
-/// Of 48 pairs, one in twenty of which has an interval without 1 in it.
+/// Of 48 pairs, one in twenty has an interval without 1.
 TEST(Against, ItselfIsNeverBetter) {
     const std::vector<CheckCase> a = check_cases("cosine", "Lambert + GGX", 60),
                                  even = check_cases("uniform", "Lambert", 45);
@@ -264,7 +264,8 @@ TEST(Against, ItselfIsNeverBetter) {
         }
 }
 
-/// Told as 0.9 of what is drawn, p makes weights of 1.11 of the light, and a variance of an integral that is none.
+/// A p stated as 0.9 of the true one gives weights of 1.11 of the light, whose variance is not that of an estimate of
+/// the integral.
 TEST(Against, AWrongOneIsNotRanked) {
     const std::vector<CheckCase> a = check_cases("uniform", "Lambert", 45);
     const CheckResult j = against(a, sampler_against(lambert(0.5, 0.9), a));
@@ -274,7 +275,7 @@ TEST(Against, AWrongOneIsNotRanked) {
     EXPECT_FALSE(v.evidence.contains("ratio"));
 }
 
-/// A mirror coat over Lambert: q = 1/4, and what the mirror reflects.
+/// A mirror coat over Lambert: q = 1/4, and the mirror's reflectance.
 std::shared_ptr<const SamplerAdapter> coated(double mirror_reflects) {
     SyntheticSampler r{"coat", "", {}, {}, {}};
     r.traits.numbers = 3;
@@ -298,7 +299,7 @@ std::shared_ptr<const SamplerAdapter> coated(double mirror_reflects) {
     return make_adapter(r);
 }
 
-TEST(Against, DeltaPartsOfAnotherPowerAreToldAndNotRanked) {
+TEST(Against, DifferentDeltaPowersAreNotRanked) {
     const std::vector<CheckCase> a = {make_user_case(coated(0.2), 45, 0)};
     const CheckResult alike = against(a, sampler_against(coated(0.2), a)),
                       other = against(a, sampler_against(coated(0.25), a));

@@ -1,4 +1,4 @@
-// Two samplers of which one has no pdf(w), or breaks off: draws, f and weights are compared, and what broke off is
+// Two samplers of which one has no pdf(w), or terminates: draws, f and weights are compared, and the terminated one is
 // named.
 #include <cmath>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ std::shared_ptr<const SamplerAdapter> power(double k, Gives gives) {
     return make_adapter(r);
 }
 
-TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
+TEST(AgainstWithoutAPdf, OnlyDifferentDrawsAreDistinguished) {
     for (const auto& [one, other] : {std::pair(Gives::pdf, Gives::weight), {Gives::weight, Gives::pdf},
              {Gives::weight, Gives::weight}, {Gives::nothing, Gives::pdf}}) {
         const std::vector<CheckCase> a = {make_user_case(power(1.5, one), 45, 130)};
@@ -49,14 +49,14 @@ TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
     }
 }
 
-/// Under an even light Var X is of cos^k: of weights that come with the draws it is the same as by p.
-TEST(AgainstWithoutAPdf, VariancesAreRankedByTheWeightsThatComeWithTheDraws) {
+/// Under constant light Var X depends on cos^k: weights returned with the draws give the same value as p.
+TEST(AgainstWithoutAPdf, VariancesAreRankedByReturnedWeights) {
     const std::vector<CheckCase> a = {make_user_case(power(0.5, Gives::weight), 45, 130)};
     const CheckResult j = against(a, sampler_against(power(0.8, Gives::pdf), a));
     const Verdict& v = named(j, "variance");
     ASSERT_EQ(v.state, State::right) << against_text(j);
     EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.message;
-    // X is cos^(1-k) / (k+1), of p (k+1) cos^k over cos: E[X^2] = 1 / ((k+1) (3-k)), E[X] = 1/2.
+    // X is cos^(1-k) / (k+1), for p (k+1) cos^k over cos: E[X^2] = 1 / ((k+1) (3-k)), E[X] = 1/2.
     const auto variance = [](double k) { return 1 / ((k + 1) * (3 - k)) - 0.25; };
     const double ratio = variance(0.5) / variance(0.8);
     EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.message;
@@ -70,7 +70,7 @@ TEST(AgainstWithoutAPdf, NorAWeightThereIsNoVariance) {
     EXPECT_NE(v.message.find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.message;
 }
 
-/// Answers `questions` draws and then no more.
+/// Returns `questions` draws and then terminates.
 class BreaksOff : public InProcessAdapter {
 public:
     BreaksOff(std::shared_ptr<const SamplerAdapter> sampler, std::size_t questions)

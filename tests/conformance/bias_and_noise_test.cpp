@@ -1,4 +1,4 @@
-// How compare counts and checks, on renders that are made up, whose truth is known.
+// Counts and tests of compare, on synthetic renders with known truth.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ int alarms(const SyntheticScene& world, int repeats) {
     return out;
 }
 
-// alpha = 0.05 for a call: 3 of 60 on average, more than 9 with a probability below 0.2 %.
+// alpha = 0.05 per call: 3 of 60 on average, more than 9 with a probability below 0.2 %.
 TEST(CompareJudges, EqualArmsAreRarelyToldApart) { EXPECT_LE(alarms(world(4, 0), 60), 9); }
 
 TEST(CompareJudges, RareBrightEventsAreRarelyTakenForABias) {
@@ -43,8 +43,8 @@ TEST(CompareJudges, RareBrightEventsAreRarelyTakenForABias) {
     EXPECT_LE(alarms({{Kind::lognormal, 1, 0}, fine, 6, 24}, 40), 7);
 }
 
-// Two versions of a renderer have the same noise: then events that no render met are missed on both sides.
-TEST(CompareJudges, ArmsWithTheSameRareEventsAreRarelyToldApart) {
+// Two versions of a renderer have the same noise: events that no render met are missing on both sides.
+TEST(CompareJudges, EqualRareEventsAreRarelyDistinguished) {
     for (const SyntheticNoise& noise :
         {SyntheticNoise{Kind::events, 1e-3}, {Kind::events, 1e-4}, {Kind::pareto, 1.5}, {Kind::sparks, 2e-3}}) {
         SCOPED_TRACE(to_string(noise));
@@ -52,9 +52,9 @@ TEST(CompareJudges, ArmsWithTheSameRareEventsAreRarelyToldApart) {
     }
 }
 
-// Renders that met none of an arm's events are those of a darker arm. That is said beside the difference, and where a
-// bound on what a pixel can be allows for such events, no difference is told.
-TEST(CompareJudges, EventsThatNoRenderMetAreSaidAndABoundAllowsForThem) {
+// Renders that met none of an arm's events look like those of a darker arm. This is reported with the difference; if a
+// bound on the pixel value allows for such events, no difference is reported.
+TEST(CompareJudges, UnseenEventsAreReportedAndBounded) {
     const SyntheticScene w{{Kind::events, 1e-4, 0}, fine, 4, 24};
     const CompareFlag same{{"expect"}, "same", false, ""}, bound{{"brightest"}, "10000", true, ""};
     int missed = 0;
@@ -108,7 +108,7 @@ TEST(CompareJudges, PIsSpreadEvenlyOverPixelsOfEqualArms) {
     const BiasResult found = between(compare_synthetic({fine, fine, 8, 64}, 3), "b", "a");
     ASSERT_EQ(found.pixel_p.size(), 20u);
     EXPECT_EQ(found.pixels_tested, 4096u);
-    // 205 a bin on average, standard deviation 14; Welch's test is a little conservative at few degrees of freedom.
+    // 205 per bin on average, standard deviation 14; Welch's test is slightly conservative at few degrees of freedom.
     for (const std::uint64_t count : found.pixel_p) EXPECT_NEAR(static_cast<double>(count), 204.8, 5 * 14.0);
 }
 
@@ -126,7 +126,7 @@ TEST(CompareJudges, IntervalsHoldTheTruthAsOftenAsTheySay) {
             held[metric] += m.interval && m.interval->first <= value && value <= m.interval->second;
         }
     }
-    // 95 of 100 are meant; fewer than 86 with a probability below 0.1 %.
+    // 95 of 100 are expected; fewer than 86 with a probability below 0.1 %.
     for (const auto& [metric, count] : held) EXPECT_GE(count, 86) << metric;
 }
 
@@ -164,10 +164,10 @@ TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
         }
     }
     EXPECT_GE(heavy, 15);
-    EXPECT_GE(numbered, 5);  // where the mean of squares has one, from how many renders on an interval could be said
+    EXPECT_GE(numbered, 5);  // where the mean of squares has one, the number of renders from which an interval is given
 }
 
-TEST(CompareJudges, SameIsSaidOnlyWhereADifferenceWouldHaveBeenSeen) {
+TEST(CompareJudges, SameRequiresEnoughPower) {
     const std::vector<CompareFlag> same{{{"expect"}, "same", false, ""}};
     EXPECT_EQ(compare_synthetic(world(3, 0), 3, same).state, State::inconclusive);
     std::vector<CompareFlag> large = same;

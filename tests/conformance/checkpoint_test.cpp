@@ -1,4 +1,4 @@
-// What a stopped run kept is taken by the same work alone: another scene, ladder, seed or content is another work.
+// The checkpoint of a stopped run is used only by the same work: another scene, ladder, seed or content is other work.
 #include "run/checkpoint.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ protected:
         m.y_mean = 0.25;
         return m;
     }
-    /// What a run of `e` keeps: the metrics of its first pass and one tile of its second.
+    /// Writes what a run of `e` keeps: the metrics of its first pass and one tile of its second.
     void keep(const Experiment& e) const {
         Checkpoint kept(e, "CPU", out_, 0, monitor_);
         const Job first = job(e), second = job(e, 1);
@@ -51,7 +51,7 @@ protected:
         tiles.begin({{0, 0, 2, 4}, {2, 0, 4, 4}}, outputs_of(films));
         tiles.add(1, 8);
     }
-    /// How many metrics and tiles a run of `e` finds.
+    /// Returns how many metrics and tiles a run of `e` finds.
     std::pair<std::size_t, int> found(const Experiment& e) const {
         Checkpoint kept(e, "CPU", out_, 0, monitor_);
         const Job second = job(e, 1);

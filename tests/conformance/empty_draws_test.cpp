@@ -1,4 +1,4 @@
-// A sampler that draws nothing although f is not 0 is not right, whichever w_o and channels it has, with a pdf(w) or
+// A sampler that returns no samples although f is not 0 does not pass, for any w_o and channels, with a pdf(w) or
 // without.
 #include <gtest/gtest.h>
 

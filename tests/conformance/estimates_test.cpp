@@ -1,5 +1,5 @@
-// Samplers whose f, pdf and weights are random estimates, as layered surfaces have them: none is accused for it, and a
-// fault of the mean is found.
+// Samplers whose f, pdf and weights are random estimates, like layered surfaces: they do not fail for it, and a fault
+// of the mean is found.
 #include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -14,13 +14,14 @@ namespace {
 
 enum class Walk { own, hashed };
 
-/// What an estimate is of its mean: 0 or 2, or exponential.
+/// The factor of an estimate: 0 or 2, or exponential.
 struct Factor {
     bool coin = false;
     double operator()(double u) const { return coin ? (u < 0.5 ? 0 : 2) : -std::log(1 - u); }
 };
 
-/// A right sampler whose answers come times a random number of mean 1; its draws keep their own pdf, times another.
+/// A correct sampler whose results are multiplied by a random number of mean 1; its draws keep their own pdf, times
+/// another.
 class Estimating : public SamplerAdapter {
 public:
     SyntheticSampler right;
@@ -104,8 +105,7 @@ TEST(Estimates, AreRecognisedAndNotAccused) {
                 EXPECT_NE(named(j, "valid").message.find("random estimates"), std::string::npos) << all_messages(j);
                 for (const char* name : {"valid", "normalised", "density", "identity"})
                     EXPECT_EQ(named(j, name).state, State::right) << all_messages(j);
-                if (!coin)
-                    EXPECT_EQ(named(j, "mean").state, State::right) << all_messages(j);  // else a tail that is tied
+                if (!coin) EXPECT_EQ(named(j, "mean").state, State::right) << all_messages(j);  // else a tail with ties
             }
 }
 
@@ -120,7 +120,7 @@ TEST(Estimates, OfFAloneOrOfPdfAloneAreTold) {
     }
 }
 
-TEST(Estimates, WithADeterministicFAndPdfAndRandomWeightsAreRight) {
+TEST(Estimates, RandomWeightsAloneAreRight) {
     const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
     adapter->of_pdf = adapter->of_f = false;
     const CheckResult j = checked(adapter);
@@ -133,8 +133,7 @@ TEST(Estimates, OfAnFOffTheWeightAreFound) {
     for (Walk walk : {Walk::own, Walk::hashed})
         for (bool of_pdf : {false, true}) {
             const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, walk);
-            // Of an f that is an estimate where pdf(w) is none, few points of f are taken: the integral is known to 3
-            // %.
+            // If f is an estimate and pdf(w) is not, few points of f are evaluated: the integral is known to 3 %.
             adapter->f_off = walk == Walk::hashed && !of_pdf ? 1.25 : 1.1, adapter->of_pdf = of_pdf;
             const CheckResult j = checked(adapter);
             EXPECT_EQ(named(j, "mean").state, State::wrong) << all_messages(j);

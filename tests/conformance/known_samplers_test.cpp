@@ -1,5 +1,5 @@
-// Every sampler whose verdict is known, in quick mode: planted faults and those of the lists are found, most under the
-// name of the verdict that asks for them, and right ones are right. tests/calibration measures many more.
+// Every sampler with a known verdict, in quick mode: planted faults and those of the lists are found, most under the
+// expected verdict, and correct ones pass. tests/calibration measures many more.
 #include <gtest/gtest.h>
 
 #include "tests/known_samplers/correct/false_alarms.h"
@@ -11,7 +11,7 @@
 namespace crescent {
 namespace {
 
-/// One of these lists is checked in so many parts, of a few seconds each.
+/// Each list is checked in this many parts, of a few seconds each.
 constexpr std::size_t parts = 8;
 class InParts : public testing::TestWithParam<std::size_t> {};
 class KnownSamplers : public InParts {};
@@ -37,7 +37,7 @@ TEST_P(KnownSamplers, HaveTheVerdictThatIsKnown) {
         }
 }
 
-/// At two of the w_o of each; ./test --matrix takes all.
+/// At two of the w_o of each; ./test --matrix tests all.
 void expect_found(const std::vector<PlantedFault>& faults, std::size_t part) {
     ProgressMonitor monitor;
     for (std::size_t k = part; k < faults.size(); k += parts * test::every) {

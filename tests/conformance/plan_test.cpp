@@ -25,7 +25,7 @@ TEST(Jobs, AreEachArmAtTheExperimentsOwnExponent) {
             "uniform n=64 s=24", "cosine n=4 s=24", "cosine n=64 s=24", "phong n=4 s=24", "phong n=64 s=24"}));
 }
 
-TEST(Jobs, AddTheExponentControlWhereAPassHasItNotAlready) {
+TEST(Jobs, AddOnlyMissingExponentControlRuns) {
     Experiment e = test::small_scene();
     e.exponent.emplace();
     e.exponent->arm = "phong", e.exponent->shape = "ball", e.exponent->n = 64, e.exponent->s = {8, 24, 128};
@@ -33,7 +33,7 @@ TEST(Jobs, AddTheExponentControlWhereAPassHasItNotAlready) {
     ASSERT_EQ(all.size(), 7u);
     EXPECT_EQ(all[5], "phong n=64 s=8");
     EXPECT_EQ(all[6], "phong n=64 s=128");
-    e.exponent->n = 16;  // a sample count that the arm has not
+    e.exponent->n = 16;  // a sample count that the arm does not have
     all = describe(e);
     ASSERT_EQ(all.size(), 8u);
     EXPECT_EQ(all[6], "phong n=16 s=24");

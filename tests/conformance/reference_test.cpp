@@ -1,5 +1,4 @@
-// The quadrature reference over scenes drawn at random: against a Monte Carlo one that shares nothing with it, and
-// against the films of arms.
+// The quadrature reference over random scenes: against an independent Monte Carlo one, and against the films of arms.
 #include "render/reference/reference.h"
 
 #include <fmt/format.h>
@@ -21,14 +20,14 @@ constexpr std::uint32_t scenes_a_shard = test::sanitized ? 5 : 15;
 constexpr std::uint32_t shards = 8, brighter_scenes = test::sanitized ? 8 : 20;
 constexpr int draws = 1500;
 
-/// The reference less the truth over some pixels, and by how much the two may differ.
+/// The difference of the reference from the truth over some pixels, and the allowed difference.
 struct Comparison {
     double apart = 0, stated = 0, variance = 0, largest = 0;
     void add(const Comparison& other) {
         apart += other.apart, stated += other.stated, variance += other.variance;
         largest = std::max(largest, other.largest);
     }
-    /// A draw in a thousand may be worth more than all others: what was not drawn may be as large as the largest few.
+    /// A draw in a thousand may be larger than all others: the part not drawn may be as large as the largest few.
     bool agree() const { return std::fabs(apart) <= stated + 5 * std::sqrt(variance) + 20 * largest; }
 };
 
@@ -40,7 +39,7 @@ Comparison compare_pixel(
         truth.largest};
 }
 
-/// What differs from the truth, pixel by pixel and in all; empty where nothing does.
+/// Returns what differs from the truth, pixel by pixel and in total; empty if nothing does.
 std::string differences(const Scene& scene, const ReferenceFilm& film, std::uint32_t seed) {
     Comparison all;
     std::string off;
@@ -58,12 +57,12 @@ std::string differences(const Scene& scene, const ReferenceFilm& film, std::uint
     return off.empty() && all.agree() ? "" : off + fmt::format(" all: {:.3g}", all.apart);
 }
 
-/// Every third scene has a ball or a rectangle of light, every third bodies of up to 1e6 m and stands far away.
+/// Every third scene has a spherical or rectangular light, every third has bodies of up to 1e6 m and is far away.
 test::RandomScene scene_drawn(std::uint32_t seed) { return test::RandomScene(seed, seed % 3 != 0, seed % 3 == 2); }
 
 class ReferenceOfRandomScenes : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(ReferenceOfRandomScenes, IsTheTruthAndThatOfTheArmsWithinTheDoubts) {
+TEST_P(ReferenceOfRandomScenes, MatchesOracleAndArmsWithinErrors) {
     ProgressMonitor monitor;
     int known = 0, pixels = 0;
     const std::uint32_t first = 1000 * GetParam();
@@ -81,7 +80,7 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthAndThatOfTheArmsWithinTheDoubts) {
 
 INSTANTIATE_TEST_SUITE_P(Shards, ReferenceOfRandomScenes, testing::Range(0u, shards));
 
-/// Exponents of a pixel share what they look at: none of it shows in another's film.
+/// Exponents of a pixel share visibility: it does not change another exponent's film.
 TEST(ReferencesOfManyExponents, AreThoseOfEachAlone) {
     ProgressMonitor monitor;
     const std::vector<double> exponents = {3, 700};
@@ -96,7 +95,7 @@ TEST(ReferencesOfManyExponents, AreThoseOfEachAlone) {
     }
 }
 
-/// A reference of area lights that are 15 % brighter than the scene's is found out wherever arms know the pixels.
+/// A reference of area lights that are 15 % brighter than the scene's is detected wherever the arms have low variance.
 TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
     ProgressMonitor monitor;
     int lit = 0, found = 0;
@@ -121,14 +120,14 @@ TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
     EXPECT_GE(lit, static_cast<int>(brighter_scenes) / 8);
 }
 
-/// Arms that reach everything agree with the quadrature within their own standard error, over the whole image.
+/// Arms that reach all light agree with the quadrature within their own standard error, over the whole image.
 TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     const Experiment experiment = test::small_scene();
     const Scene scene(experiment);
     ProgressMonitor monitor;
     const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, monitor)[0];
     for (const char* arm : {"uniform", "cosine", "mixture", "mis-balance",
-             "mis-power"}) {  // lamps_test.cpp has those that aim at area lights
+             "mis-power"}) {  // lights_test.cpp has those that aim at area lights
         const Film film = estimate_films(scene, arm, {1024}, 17, "", monitor)[0];
         double difference = 0, variance = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {

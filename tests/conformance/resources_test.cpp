@@ -1,4 +1,4 @@
-// A run that the machine cannot hold is refused before it begins, in words that say what would fit.
+// A run that exceeds the machine's memory is rejected before it begins, with a size that would fit.
 #include "run/resources.h"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ TEST(Needs, GrowWithThePixelsAndTheRungs) {
     EXPECT_GT(memory_needed(e), before + std::uint64_t{3} * 30 * 2048 * 2048);
 }
 
-TEST(Needs, LeavePointsToBeMadeAgainWhereMemoryIsShort) {
+TEST(Needs, PointsAreNotKeptIfMemoryIsShort) {
     const RunPlan small = plan(tiny(96, 54)), large = plan(tiny(8192, 8192));
     EXPECT_TRUE(can_keep_points(small, Scene(small.experiment), 1'000'000'000));
     EXPECT_FALSE(can_keep_points(large, Scene(large.experiment), 20'000'000'000));

@@ -1,5 +1,5 @@
-// Built-in arms have the verdicts that theory says, also at the limits of their parameters; what is inconclusive says
-// what would settle it. scripts/judged.sh checks every arm at its usual parameters.
+// Built-in samplers have the verdicts predicted by theory, also at the limits of their parameters; inconclusive
+// verdicts name a next step. tests/system/check.sh checks every sampler at its usual parameters.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -26,7 +26,7 @@ const Verdict& find(const CheckResult& j, const std::string& check_case, const s
     throw std::runtime_error("no verdict " + name + " on " + check_case);
 }
 
-/// Phong's lobe does not reach the horizon, where Lambert's light comes from too.
+/// Phong's lobe does not reach the horizon, where part of Lambert's light is.
 TEST(Arms, PhongOnLambertLosesSupport) {
     const CheckResult j = check_quickly(make_cases("phong", {{"s", 32}}, false, {{60, 250}}));
     EXPECT_EQ(find(j, "w_o 60 deg az 250, s=32, Lambert + Phong", "support").state, State::wrong);
@@ -60,7 +60,7 @@ TEST_P(ArmsAtTheLimits, OfTheSchemaHaveTheVerdictsOfTheory) {
 
 INSTANTIATE_TEST_SUITE_P(Settings, ArmsAtTheLimits, testing::Range(0, 4));
 
-TEST(Programs, TooSlowAreInconclusiveAndSayWhatWasLeftOut) {
+TEST(Programs, TooSlowOnesAreInconclusive) {
     PipeLimits limits;
     limits.total_seconds = 0.5;
     const std::string slow =

@@ -1,5 +1,5 @@
-// Samplers without pdf(w): random estimates are held to their means, and draws to lights from several sides; where
-// nothing can be held against anything, that is said.
+// Samplers without pdf(w): random estimates are tested for their means, and draws to lights from several sides; if no
+// comparison is possible, that is reported.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ CheckResult checked(const SyntheticSampler& recipe, double theta = 45) {
 
 Vec3d cosine(double u1, double u2) { return math::spherical(std::sqrt(u1), std::sqrt(1 - u1), 2 * pi * u2); }
 
-/// Lambert of 0.5 whose f is a walk's estimate, between 0.1 and 0.9; its weights are estimates too, `scale` times what
-/// they ought to be.
+/// Lambert of 0.5 whose f is a random walk's estimate, between 0.1 and 0.9; its weights are estimates too, `scale`
+/// times the correct ones.
 SyntheticSampler by_walk(double scale, bool own, int channels = 1) {
     SyntheticSampler r{"walk", "", {}, {}, {}};
     r.traits.has_pdf = false;
@@ -88,7 +88,7 @@ SyntheticSampler resampled(bool by_root) {
     return r;
 }
 
-TEST(WithoutAPdf, DrawsThatGoElsewhereThanTheirWeightsSayAreFound) {
+TEST(WithoutAPdf, DrawsThatContradictWeightsAreFound) {
     const CheckResult right = checked(resampled(false)), wrong = checked(resampled(true));
     EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
     EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").message;
@@ -108,7 +108,7 @@ TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
     EXPECT_NE(v.next_step.find("weight=yes"), std::string::npos) << v.next_step;
 }
 
-/// (k+1)/(2 pi) cos^k about n, asked of no pdf, with a weight; `halves`: one number chooses it or the cosine.
+/// (k+1)/(2 pi) cos^k about n, without a pdf, with a weight; `halves`: one number selects it or the cosine.
 SyntheticSampler power_lobe(double k, bool halves) {
     SyntheticSampler r{"power", "", {}, {}, {}};
     r.traits.has_pdf = false;
@@ -146,7 +146,7 @@ TEST(WithoutAPdf, ThePeakIsStatedWithItsStandardError) {
     }
 }
 
-/// Cells cover the sphere, and what is in them sums to one.
+/// Cells cover the sphere, and their contents sum to one.
 TEST(WithoutAPdf, TheImpliedDensityIntegratesToOne) {
     const CheckResult j = pictured(power_lobe(20, true));
     double area = 0, mass = 0;
@@ -159,7 +159,7 @@ TEST(WithoutAPdf, TheImpliedDensityIntegratesToOne) {
     EXPECT_NEAR(mass, 1, 1e-9);
 }
 
-/// The mean over each ring is what the lobe has there, to five standard errors.
+/// The mean over each ring equals that of the lobe there, to five standard errors.
 TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
     constexpr double k = 20;
     const CheckResult j = pictured(power_lobe(k, false));
@@ -173,7 +173,7 @@ TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
     }
 }
 
-TEST(WithoutAPdf, ThePageHasOneMapAndATableAndTheTerminalALine) {
+TEST(WithoutAPdf, ReportHasOneMapAndATable) {
     const CheckResult j = pictured(power_lobe(20, false));
     const std::string page = verdict_html(j), text = verdict_table(j);
     EXPECT_EQ(page.find("<figcaption>expected"), std::string::npos) << "a copy of what was observed";

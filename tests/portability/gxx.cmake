@@ -1,2 +1,2 @@
-# The second compiler of this machine; its films must equal those of clang.
+# A second compiler, whose films must equal those of clang.
 set(CMAKE_CXX_COMPILER g++)

@@ -1,4 +1,4 @@
-// One sampler judged at one w_o, and one of its verdicts by name: what tests of verdicts share.
+// One sampler checked at one w_o, and one of its verdicts by name: shared by tests of verdicts.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline CheckResult checked_at(
     return checked_alone(make_user_case(std::move(adapter), theta, phi), settings);
 }
 
-/// The first verdict of that name. Throws std::runtime_error where there is none.
+/// Returns the first verdict of that name. Throws std::runtime_error if there is none.
 inline const Verdict& named(const CheckResult& j, std::string_view name) {
     for (const Verdict& v : j.verdicts)
         if (v.name == name) return v;

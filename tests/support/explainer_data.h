@@ -1,4 +1,5 @@
-// A small run of everything the film needs, made once for all tests: a glossy ball before a area light, 96 x 54 pixels.
+// A small run of everything the explainer needs, made once for all tests: a glossy ball before an area light, 96 x 54
+// pixels.
 #pragma once
 
 #include "data.h"

@@ -1,6 +1,6 @@
-// Scenes drawn at random for tests: one surface in view with any lobe of any sharpness, one to three area lights of any
-// size, most of them where the surface mirrors the camera's view, and bodies that touch, hold, cut or cover what they
-// can.
+// Random scenes for tests: one surface in view with any lobe of any sharpness, one to three area lights of any size,
+// most of them where the surface mirrors the camera's view, and bodies that touch, contain, cut or cover the other
+// objects.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace crescent::test {
 class RandomScene {
 public:
     /// `newcomers`: the first area light is a ball or a rectangle of about its size instead of a disk. `far`: a body of
-    /// 1e2 to 1e6 m ends in its light, and the scene stands up to 1e6 m from (0, 0, 0).
+    /// 1e2 to 1e6 m ends in its light, and the scene is up to 1e6 m from (0, 0, 0).
     explicit RandomScene(std::uint32_t seed, bool newcomers = false, bool far = false)
         : next_(seed), newcomers_(newcomers), far_(far) {}
 

@@ -1,5 +1,5 @@
-// A small run for the tests of this folder: two arms, two regions, three seeds, one plate, evidence. The tests change
-// what they are about.
+// A small run for the tests of this folder: two arms, two regions, three seeds, one plate, article checks. Each test
+// changes the part that it tests.
 #pragma once
 
 #include <stdexcept>
@@ -19,7 +19,7 @@ struct Sample {
     Sample();
     ReportInputs inputs() const { return {experiment, metrics, evidence, provenance, plates}; }
     std::string html() const { return report_html(inputs()); }
-    /// The metric of a region at one seed, to be changed.
+    /// The metric of a region at one seed, which may be changed.
     RegionMetrics& region(const std::string& arm, const std::string& name, std::uint32_t seed);
     SeedSpread& band(const std::string& arm, const std::string& metric);
 };

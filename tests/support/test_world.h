@@ -1,4 +1,4 @@
-// An experiment with noise for films: what the tests of plates need, and nothing else.
+// An experiment with noise for films, for the tests of plates.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace crescent::plates {
 
-/// Whether these words are on the sheet, in whatever place.
+/// Returns whether these words are anywhere on the sheet.
 inline bool has(const std::vector<Setting>& settings, const std::string& words) {
     return std::ranges::any_of(settings, [&](const Setting& s) { return s.text.find(words) != std::string::npos; });
 }

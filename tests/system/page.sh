@@ -10,7 +10,7 @@ esbuild "$CRESCENT_SOURCE/tests/system/browser/hashes.ts" \
     --bundle --format=iife --target=es2022 --log-level=warning >hashes.js || die "hashes.ts"
 expect 0 node "$CRESCENT_SOURCE/apps/web/pack.mjs" "$CRESCENT_PAGE" "$work/crescent.html"
 
-# axe-core, of the version and content that package-lock.json names; without npm or a network that one law is left out.
+# axe-core, of the version and content that package-lock.json names; without npm or a network this test is skipped.
 cp "$CRESCENT_SOURCE"/tests/system/browser/package*.json . && command -v npm >/dev/null &&
     npm ci --ignore-scripts --no-audit --no-fund --prefer-offline >npm.log 2>&1 &
 fetched=$!
@@ -52,13 +52,13 @@ cat printed
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
     $python -c 'import selenium' 2>/dev/null || skip "no Chromium that can be driven"
-# What the page itself shows under a picture of an experiment of the tree.
+# The hash that the page itself shows under a picture of an experiment of the tree.
 expect 0 "$FILM_HASHES" "$CRESCENT_SOURCE/experiments/three-glosses.toml"
 SHOWN=$(awk '$3 == "phong" && $4 == "n=16" { print $5; exit }' printed)
 export SHOWN
 
 wait "$fetched"
-# A second engine, where there is one, at the same time.
+# A second browser engine, if there is one, at the same time.
 engine=
 if command -v WebKitWebDriver >/dev/null && command -v xvfb-run >/dev/null; then
     xvfb-run -a $python "$CRESCENT_SOURCE/tests/system/browser/webkit.py" crescent.html "$SHOWN" >engine.log 2>&1 &

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Another compiler's and another machine's code makes the same bits: g++, clang without optimisation, ARM with its
+# Another compiler's and another machine's code gives the same bits: g++, clang without optimisation, ARM with its
 # vectors under qemu, WebAssembly with its vectors in node. Small images and few samples, since most run slowly.
 # $FILM_HASHES_ROOT-gxx, -unoptimised, -aarch64 and -wasm32 are tests/portability, built.
 . "$(dirname "$0")/common.sh"
@@ -22,7 +22,7 @@ done
 
 expect 0 "$FILM_HASHES" --plain "${experiments[@]}"
 mv printed plain
-# A line names its instruction set second; without it, every set and machine says the same.
+# A line names its instruction set second; without it, every set and machine prints the same.
 hashes() { awk '/ quadrature |^function /{ print; next } { $2 = ""; print }' "$1" | sort -u; }
 expect 0 "$FILM_HASHES" <plain
 hashes printed >here
@@ -31,7 +31,7 @@ grep -v -e ' quadrature ' -e '^function ' printed | awk '{ $2 = ""; print }' | s
     die "films differ between instruction sets"
 [ "$(wc -l <here)" -gt 40 ] || die "too few films: $(cat here)"
 
-# same NAME SET COMMAND...: the hashes of another machine, which has SET beside scalar code.
+# same NAME SET COMMAND...: the hashes of another machine, which has SET in addition to scalar code.
 same() {
     local name=$1 set=$2
     shift 2

@@ -1,4 +1,4 @@
-// Shot 14: both densities at once, and the light too: what it brings in both regions, and what it costs in rays.
+// Shot 14: both densities combined, and also the light: the gain in both regions, and the cost in rays.
 #include "drawing.h"
 #include "shots.h"
 

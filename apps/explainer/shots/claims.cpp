@@ -1,4 +1,4 @@
-// Shot 15: what this run can claim and what it cannot.
+// Shot 15: the limits of this run.
 #include <algorithm>
 
 #include "drawing.h"

@@ -1,4 +1,4 @@
-// Shot 16: the command that makes it again, the commit, the seed, the hashes.
+// Shot 16: the command that regenerates it, the commit, the seed, the hashes.
 #include "drawing.h"
 #include "shots.h"
 

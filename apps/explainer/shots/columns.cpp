@@ -1,4 +1,4 @@
-// Shot 2: the converged picture with both regions, the question, then three columns that differ in the density alone,
+// Shot 2: the converged picture with both regions, the question, then three columns that differ only in the density,
 // and the error of each in both regions.
 #include "drawing.h"
 #include "shots.h"
@@ -31,7 +31,7 @@ std::vector<Column> columns_of(const Data& data, const Box& crop) {
     return out;
 }
 
-/// "the other way round" only where it is.
+/// "the other way round" only if it is.
 Words second_answer(const Data& data, const Order& h, const Order& s) {
     const Cast& c = data.cast;
     const bool turned = h.low.arm != s.low.arm;

@@ -1,4 +1,5 @@
-// Shot 12: the exponent changes in density and BRDF together: the lobe narrows, and so does what it can do well.
+// Shot 12: the exponent changes density and BRDF together: the lobe narrows, and with it the region in which it has low
+// error.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double leaning = 0.6;  // rad, of R from n in the drawings of the lobe
 
-/// The lobe's density as a curve around a foot, its peak `radius` long.
+/// Returns the lobe's density as a curve around a foot, its peak `radius` long.
 std::vector<Point> lobe_of(const plates::Density& density, Point foot, double radius) {
     double peak = 0;
     std::vector<std::pair<double, double>> values;
@@ -37,7 +38,7 @@ struct Column {
 
 constexpr double width = 576, between = 36;
 
-/// Left edge of column k of `count`.
+/// Returns the left edge of column k of `count`.
 double left_of(std::size_t k, std::size_t count) {
     return (sheet_width - width * double(count) - between * double(count - 1)) / 2 + (width + between) * double(k);
 }

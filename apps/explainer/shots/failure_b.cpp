@@ -1,5 +1,4 @@
-// Shot 9: Failure B. The question why not to aim at the mirror direction everywhere; the surround enlarged; the mean of
-// the frame.
+// Shot 9: Failure B. Why not aim at the mirror direction everywhere; the surround enlarged; the mean of the frame.
 #include <algorithm>
 
 #include "drawing.h"

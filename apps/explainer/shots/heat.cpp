@@ -1,4 +1,4 @@
-// Shot 8: the error as a map around the highlight, cosine beside Phong, one shared scale.
+// Shot 8: the error as a map around the highlight, cosine next to Phong, one shared scale.
 #include <algorithm>
 
 #include "drawing.h"
@@ -15,7 +15,7 @@ struct Map {
     double part = 0;  // of the pixels above the scale
 };
 
-/// The residual that 98 % of the pixels of both maps stay under.
+/// Returns the residual below which 98 % of the pixels of both maps lie.
 double top_of_scale(const Data& data, const Box& crop) {
     std::vector<double> pooled;
     for (const std::string& arm : {data.cast.cosine, data.cast.phong}) {

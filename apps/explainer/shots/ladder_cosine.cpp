@@ -1,4 +1,5 @@
-// Shot 6: Failure A. The cosine arm up its ladder: the highlight keeps sparkling, and the error falls along a line.
+// Shot 6: Failure A. The cosine arm at rising sample counts: fireflies remain in the highlight, and the error falls
+// along a line.
 #include "ladder_shot.h"
 #include "shots.h"
 

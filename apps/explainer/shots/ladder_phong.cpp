@@ -1,4 +1,4 @@
-// Shot 7: the same sample counts, aimed along the mirror direction.
+// Shot 7: the same sample counts with the density about the mirror direction.
 #include "drawing.h"
 #include "ladder_shot.h"
 #include "shots.h"

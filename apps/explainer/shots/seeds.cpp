@@ -1,4 +1,4 @@
-// Shot 13: the same run with other seeds: how far every figure spreads, and where the published one falls.
+// Shot 13: the same run with other seeds: the spread of every value, and the place of the published one.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ struct Row {
     Verdict verdict = Verdict::none;
 };
 
-constexpr double span = 4;  // the strip goes from a quarter of the median to four times it
+constexpr double span = 4;  // the strip covers a quarter of the median to four times it
 
 double across(double ratio) { return 0.5 + 0.5 * math::log(std::clamp(ratio, 1 / span, span)) / math::log(span); }
 

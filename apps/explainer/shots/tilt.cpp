@@ -49,7 +49,7 @@ public:
 
 private:
     const std::vector<LostSupport>& lost() const { return data_.evidence.lost; }
-    /// R tilted from n in the plane of the drawing, and the edge of what is in front of it.
+    /// R tilted from n in the plane of the drawing, and the edge of the hemisphere around it.
     static Vec3d mirror(double theta) { return {-math::sin(theta * degree), 0, math::cos(theta * degree)}; }
     static Vec3d edge(double theta) { return {math::cos(theta * degree), 0, math::sin(theta * degree)}; }
 

@@ -1,4 +1,5 @@
-"""``python -m crescent.field``: checks what ships in Mitsuba 3 and the faults of tests/field, and writes docs/field.md.
+"""``python -m crescent.field``: checks the plugins of Mitsuba 3 and the faults of tests/field, and writes
+docs/field.md.
 
     python -m crescent.field [--faults FOLDER] [--out FILE] [--only PLUGIN ...]
 
@@ -41,7 +42,7 @@ class Finding:
 
 
 def checked(it: Shipped) -> crescent.CheckResult:
-    """One plugin over the field's w_o."""
+    """Checks one plugin over the field's w_o."""
     if it.kind == "emitter":
         return crescent.check(mitsuba_emitter(it.built(), **it.known))
     sampler = mitsuba(it.built(), **it.known)
@@ -49,7 +50,7 @@ def checked(it: Shipped) -> crescent.CheckResult:
 
 
 def findings(it: Shipped, result: crescent.CheckResult) -> list[Finding]:
-    """What is not right, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
+    """Returns the failures, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
     groups: dict[tuple[str, str], list[crescent.Verdict]] = {}
     notes: dict[tuple[str, str], Note | None] = {}
     for v in result:
@@ -101,7 +102,8 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
         print(f"{it.title()}: {result.state} {result.broken()}", file=sys.stderr, flush=True)
         told = "; ".join(f"{f.verdicts[0].name}: {f.kind()}" for f in found)
         table.append(f"| `{it.title()}` | {result.state} | {told or '-'} |")
-        # One section an explanation, at the plugin where it is first met, by a verdict that a script shows; bugs each.
+        # One section per explanation, at the plugin where it is first found, by a verdict that a script shows; one per
+        # bug.
         for f in sorted(found, key=lambda f: f.verdicts[0].name == "identity"):
             sections.setdefault(f.note.because if f.note else f"{it.title()} {f.verdicts[0].name}", f)
     yield f"## What ships in Mitsuba {mi.__version__}"
@@ -128,7 +130,7 @@ def _faults_text(faults: list[Fault]) -> Iterator[str]:
 
 
 def _before_the_work(out: Path, only: list[str]) -> None:
-    """ImportError or ValueError of what would else be told after minutes."""
+    """Raises early the ImportError or ValueError that would otherwise come after minutes."""
     try:
         import mitsuba as mi
     except ImportError:

@@ -1,14 +1,12 @@
-// Everything about a pixel's surface point, as src/estimator/shading_points.h gathers it and src/arms/sampler.h hands
-// it to an arm. Directions in the local frame unless they are said to be the world's; lengths in m, radiance in
-// W/(sr m^2).
+// The data of a pixel's surface point, as src/render/shading_points.h collects it and src/samplers/sampler.h passes it
+// to a sampler. Directions are in the local frame unless stated otherwise; lengths in m, radiance in W/(sr m^2).
 //
-// `shading_points` has one texel a pixel and these layers, written by gl/point_texture.cpp:
+// `shading_points` has one texel per pixel and these layers, written by src/gl/point_texture.cpp:
 //   0  wo, s                  3  the frame's t (world), fill_d     6 + 2k  disk k: from the surface to its centre, d
 //   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
 //      rho_s, -               5  its n, lobe + 1 (-1: no surface)
 //   2  the point (from the scene's origin, world), shape
-// and after the disks five a light that is no disk: a, d;  b, s;  c, number 0;  numbers 1 to 4;  numbers 5 and 6, kind,
-// power.
+// and after the disks five per other light: a, d;  b, s;  c, number 0;  numbers 1 to 4;  numbers 5 and 6, kind, power.
 #include "lights.glsl"
 
 uniform sampler2DArray shading_points;
@@ -18,9 +16,9 @@ uniform vec3 disk_kind[DISK_SLOTS];  // radius; 1: emits from both sides; power,
 struct LocalDisk {
     vec3 to_center, normal;
     float radius, two_sided, power;
-    float along;  // to_center.normal, m; 0 where the disk's plane passes through the point, which it then gives nothing
+    float along;  // to_center.normal, m; 0 if the disk's plane passes through the point, which receives nothing from it
 };
-// The surface stands before an emitting side.
+// Returns whether the surface is in front of an emitting side.
 bool faces(LocalDisk d) { return d.along < 0.0 || (d.along > 0.0 && d.two_sided > 0.0); }
 LocalDisk disks[DISK_SLOTS];
 vec2 disk_worth[DISK_SLOTS];  // Y of L rho_d / pi and of L rho_s: X = (cos/p) (d + s lobe)
@@ -31,12 +29,12 @@ struct ShadingPoint {
 };
 ShadingPoint shading_point;
 
-// What the estimator alone knows.
+// Values used only by the estimator.
 struct Surroundings {
     Frame frame;  // world
     vec3 point;   // from the scene's origin, along the world's axes
     float shape;
-    float fill_d, fill_s;  // as disk_worth, for the fill
+    float fill_d, fill_s;  // like disk_worth, for the fill
     float kind;            // lobe + 1; -1: no surface
 };
 

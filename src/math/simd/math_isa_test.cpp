@@ -1,5 +1,5 @@
-// Every function of simd/math.h on every instruction set that this machine has: within the error that its header
-// states, and the same bits as on plain floats.
+// Every function of simd/math.h on every instruction set of this machine: within the error that its header states, and
+// the same bits as on plain floats.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -58,8 +58,8 @@ void expect_same_bits(const Floats& a, const Floats& b, const std::string& what)
     EXPECT_EQ(other, 0u) << what;
 }
 
-/// Calls `run(table, out)` on every set, and holds each to the bits of the first and to excess(k, out[k]) <= 0: its
-/// error less the bound, both in ULP or both absolute.
+/// Calls `run(table, out)` on every set, and compares each with the bits of the first and with excess(k, out[k]) <= 0:
+/// its error minus the bound, both in ULP or both absolute.
 template <class Run, class Excess>
 void expect_stated(const std::string& name, std::size_t size, Run&& run, Excess&& excess) {
     Floats first;
@@ -98,7 +98,7 @@ TEST(MathConformance, PowersOfTwo) {
         [&](std::size_t k, float v) { return ulps(v, exp2l(static_cast<long double>(x[k]))) - 1.5; });
 }
 
-/// Exponents from 1e-6 to 1e6, each decade alike.
+/// Exponents from 1e-6 to 1e6, equally many per decade.
 Floats exponents(float least, float most) {
     Floats y(n);
     for (std::size_t k = 0; k < n; ++k) y[k] = least * std::pow(most / least, draw(3, 1, k).y);
@@ -145,7 +145,7 @@ TEST(MathConformance, LogarithmOfOneMinus) {
         [&](std::size_t k, float v) { return ulps(v, log1pl(-static_cast<long double>(u[k]))) - 3; });
 }
 
-/// n unit vectors about z, as far apart as 1/scale, three arrays one after another.
+/// n unit vectors about z, separated by up to 1/scale, three arrays one after another.
 Floats directions(std::uint32_t seed, const Floats& scale) {
     Floats a(3 * n);
     for (std::size_t k = 0; k < n; ++k) {

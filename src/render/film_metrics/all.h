@@ -1,6 +1,6 @@
-// The one list of metrics: what is read off a film, of every region or of the frame. A new one is one file beside this
-// one and one line here; the list feeds what a run measures and keeps, metrics.json and metrics.csv, the quantities
-// that a check can name, the spread over seeds, `crescent list metrics`, the report and the tests.
+// The list of metrics, computed from a film for every region or for the frame. To add one, add a file in this folder
+// and a line here. The list determines what a run measures and stores, metrics.json and metrics.csv, the quantities
+// that an assertion can name, the spread over seeds, `crescent list metrics`, the report and the tests.
 //
 // metric(name, type)
 #pragma once
@@ -9,15 +9,19 @@
 #include "render/film_metrics/fireflies.h"
 #include "render/film_metrics/horizon_frac.h"
 #include "render/film_metrics/largest.h"
+#include "render/film_metrics/rel_mse.h"
 #include "render/film_metrics/rmse.h"
 #include "render/film_metrics/rmse_frame.h"
+#include "render/film_metrics/smape.h"
 #include "render/film_metrics/var.h"
 #include "render/film_metrics/y_mean.h"
 
 // clang-format off: one a line
 #define CRESCENT_REGION_METRICS(metric) \
     metric(rmse, RmseMetric)            \
-    metric(var, VarMetric)
+    metric(var, VarMetric)              \
+    metric(rel_mse, RelMseMetric)       \
+    metric(smape, SmapeMetric)
 
 #define CRESCENT_FRAME_METRICS(metric)       \
     metric(fireflies, FirefliesMetric)       \

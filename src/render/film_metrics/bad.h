@@ -1,4 +1,4 @@
-// bad: samples that are not a number, infinite or negative.
+// bad: samples that are NaN, infinite or negative.
 #pragma once
 
 #include "render/film_metrics/measure.h"

@@ -1,4 +1,4 @@
-// fireflies: geometry pixels that are off by more than firefly_k times the reference.
+// fireflies: geometry pixels whose error is larger than firefly_k times the reference.
 #pragma once
 
 #include <cmath>

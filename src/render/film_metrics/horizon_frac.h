@@ -1,5 +1,5 @@
-// horizon_frac: of the directions drawn at geometry pixels, two a sample for an arm of two techniques, the part that
-// falls under the horizon.
+// horizon_frac: the share of the directions drawn at geometry pixels (two per sample for a sampler with two techniques)
+// that are below the horizon.
 #pragma once
 
 #include "render/film_metrics/measure.h"

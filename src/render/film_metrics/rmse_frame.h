@@ -1,4 +1,4 @@
-// rmse_frame: the same over the whole frame, which lumps the regions together: a footnote, never a headline.
+// rmse_frame: rmse over the whole frame. It mixes the regions, so reports show it only as a footnote.
 #pragma once
 
 #include "render/film_metrics/rmse.h"

@@ -1,5 +1,5 @@
-// Logarithmic axes around all that can be drawn, a factor of 1.16 wider in N and of 1.4 in the value on each side.
-// Names stand at the ends of curves, pushed apart. Lengths in pixels.
+// Logarithmic axes around all values that can be drawn, a factor of 1.16 wider in N and of 1.4 in the value on each
+// side. Names are at the ends of curves, moved apart. Lengths in pixels.
 #include "report/plates/ladder_chart.h"
 
 #include <fmt/format.h>
@@ -63,14 +63,14 @@ std::string slope_text(const LadderCurve& l) {
     return l.heavy ? l.name + ": heavy tail" : fmt::format("{}: N<sup> {}</sup>", l.name, signed_number(l.slope));
 }
 
-// Where the names stand: at the ends of their lines, `pitch` apart and beside the plot.
+// Places the names at the ends of their lines, `pitch` apart and next to the plot.
 std::vector<double> name_places(const Axes& a, const std::vector<LadderCurve>& curves, double pitch) {
     std::vector<double> ends;
     for (const LadderCurve& l : curves) ends.push_back(a.up.can_hold(l.value.back()) ? a.y(l.value.back()) : a.plot.y);
     return moved_apart(ends, pitch, a.plot.y - 30 + pitch, a.plot.bottom() + 12 - pitch / 2);
 }
 
-// Each name with its slope, and under it the slope's interval where there is room for two lines.
+// Draws each name with its slope, and under it the slope's interval if there is room for two lines.
 void draw_names(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves) {
     double pitch = std::min(44.0, (a.plot.h + 30) / double(curves.size()));
     bool two = pitch >= 40;

@@ -1,4 +1,4 @@
-// metrics: the table of what was measured on the float films, published figures beside it, and the N-ladders.
+// metrics: the table of values measured on the float films, published values next to them, and the N-ladders.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ std::string value(const std::string& metric, double v, int digits = 4) {
     return figure(v, digits);
 }
 
-/// With as many digits, of four, as the width has room for.
+/// With up to four digits, as the width permits.
 std::string band_text(const Canvas& c, const std::string& metric, const Band& b, double width) {
     if (b.heavy) return "heavy tail";
     const auto with_digits = [&](int n) { return value(metric, b.q05, n) + " – " + value(metric, b.q95, n); };
@@ -60,7 +60,7 @@ int seeds_of(const Metrics& m) {
     return seeds;
 }
 
-// The measured runs the plate shows: the plan's, else every arm at the n and s of the experiment.
+// Returns the measured runs that the plate shows: the plan's, else every arm at the n and s of the experiment.
 std::vector<const RunMetrics*> rows_of(const Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     std::vector<RunKey> keys = keys_of(sheet.plan, e);
@@ -74,10 +74,10 @@ std::vector<const RunMetrics*> rows_of(const Sheet& sheet) {
     return rows;
 }
 
-// Under each measured value, as the number of rows allows: what was published, where anything was, and the band.
+// Under each measured value, as the number of rows permits: the published value, if any, and the band.
 struct Table {
     std::vector<const RunMetrics*> rows;
-    std::size_t runs = 0;  // of which the rows are those that fit
+    std::size_t runs = 0;  // the rows shown are those that fit
     std::vector<Column> columns;
     bool published = false, band = false;
     double row_h = 0, head_h = 32, name_w = 250;
@@ -102,7 +102,7 @@ Table plan_table(const Sheet& sheet) {
     return t;
 }
 
-/// What there was no room for; the report has all of it.
+/// Notes what does not fit; the report has all of it.
 void note_what_is_left_out(Sheet& sheet, const Table& t) {
     const std::size_t regions = sheet.experiment().regions.size();
     if (t.rows.size() < t.runs) sheet.notes.push_back(fmt::format("{} of {} runs", t.rows.size(), t.runs));

@@ -1,5 +1,5 @@
-// Every kind of plate, on experiments and films made up for it: nothing cut off, small or overlapping, equal bytes on
-// any thread, no measured number on photographs, faults of runs said, printed numbers those of the films.
+// Every kind of plate, on synthetic experiments and films: nothing cut off, too small or overlapping, equal bytes on
+// any thread, no measured number on photographs, faults of runs stated, printed numbers equal to those of the films.
 #include "report/plates/plates.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ double luminance_of(const plates::Colour& c) {
     return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
 }
 
-// WCAG 2.2: text and lines that tell something at 4.5:1.
+// WCAG 2.2: text and lines that carry information at 4.5:1.
 TEST(Plates, InksOfTheLightThemeStandOutFromItsGround) {
     using namespace plates;
     const double paper = luminance_of(themed(ground, Theme::light));
@@ -71,7 +71,7 @@ TEST(Plates, InksOfTheLightThemeStandOutFromItsGround) {
     EXPECT_EQ(themed(bright, Theme::dark).r, bright.r);
 }
 
-TEST(Plates, TheLightThemeKeepsEveryWordAndHasALightGround) {
+TEST(Plates, LightThemeKeepsEveryWord) {
     World world(96, 54);
     for (PlateKind kind : all_kinds) {
         PlateInputs in = world.inputs();
@@ -91,7 +91,7 @@ TEST(Plates, APlateOfLinesIsAnSvgToo) {
     EXPECT_EQ(draw_plate_svg(world.plan(PlateKind::heat, 2), world.inputs()), "");
 }
 
-TEST(Plates, EveryKindIs1280By720AndTheSameBytesTwiceOnAnyThread) {
+TEST(Plates, EveryKindIsReproducibleAt1280By720) {
     World world(96, 54);
     for (PlateKind kind : all_kinds) {
         PlatePlan plan = world.plan(kind, 2);
@@ -172,7 +172,7 @@ TEST(Plates, AnExperimentWithoutRegionsIsDrawnWhole) {
     for (PlateKind kind : all_kinds) EXPECT_NO_THROW(draw_plate(world.plan(kind, 2), world.inputs())) << int(kind);
 }
 
-TEST(Plates, APhotographSaysSoAndCarriesNoMeasuredNumber) {
+TEST(Plates, PhotographsHaveNoMeasuredNumber) {
     World world(96, 54);
     for (PlateKind kind : photographs) {
         std::vector<Setting> settings = world.settings(world.plan(kind, 2));
@@ -187,7 +187,7 @@ TEST(Plates, APhotographSaysSoAndCarriesNoMeasuredNumber) {
     }
 }
 
-TEST(Plates, APixelThatIsNotANumberIsMagentaAndCounted) {
+TEST(Plates, NaNPixelsAreMagentaAndCounted) {
     World world(96, 54);
     for (auto& [name, film] : world.films) film.r[100] = film.y[100] = std::nanf("");
     for (PlateKind kind : {PlateKind::hero, PlateKind::columns, PlateKind::heat}) {
@@ -211,7 +211,7 @@ TEST(Plates, ARunThatWasNotMadeIsNamedOnThePlate) {
     EXPECT_TRUE(has(world.settings(plan), "cosine n=1024 s=32 was not run"));
 }
 
-TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
+TEST(Plates, StateWhenTheReferenceIsTooImprecise) {
     World world(96, 54);
     const char* message = "reference not good enough in H";
     world.metrics.references = {{32, "H", {}, {}, 0.1, {}, most_error_share}};
@@ -221,7 +221,7 @@ TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
     EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), message));
 }
 
-TEST(Metrics, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
+TEST(Metrics, SevenColumnsFitByFewerBandDigits) {
     World world(96, 54);
     world.e.regions.push_back({"all", {0, 0, 95, 53}, {}});
     for (RunMetrics& m : world.metrics.runs) m.regions.push_back({"all", 1.234, 0.5, 10, {}});

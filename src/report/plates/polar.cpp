@@ -1,5 +1,5 @@
-// Rings at a round step, 1, 2, 2.5, 3, 4 or 5 times a power of ten, 44 pixels apart or more; rays every 30 degrees from
-// n. A curve is a polyline with a point every quarter of a degree. Densities in 1/sr.
+// Rings at a round step, 1, 2, 2.5, 3, 4 or 5 times a power of ten, at least 44 pixels apart; rays every 30 degrees
+// from n. A curve is a polyline with a point every quarter of a degree. Densities in 1/sr.
 #include "report/plates/polar.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Frame {
     }
 };
 
-// The rim names the angles: n at 0, and where they fall on a ray, R and the direction it mirrors.
+// The edge shows the angles: n at 0, and, if they are on a ray, R and the direction it mirrors.
 std::string angle_name(int deg, int tilt_deg, bool roomy) {
     if (deg == 0) return "n";
     std::string text = fmt::format("{}{}°", deg < 0 ? "−" : "", std::abs(deg));
@@ -110,14 +110,13 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     if (plot.legend_w > 0) draw_legend(canvas, plot);
 }
 
-// ---- The arm is made in double at a point with the material of the shape whose exponent is the experiment's, and one
-// from outside is asked there; its peak is the largest of 1801 angles. An arm that aims at lights is asked at the
-// pixel, of a few thousand, with R nearest to the tilt and a light nearest to R's plane; its peak is that of 1024
-// draws.
+// ---- The density is evaluated in double at a point with the material of the shape whose exponent is the experiment's;
+// its peak is the largest of 1801 angles. An arm that aims at lights is evaluated at a pixel, selected among a few
+// thousand, whose R is nearest to the tilt and whose light is nearest to R's plane; its peak is that of 1024 draws.
 
 namespace {
 
-// The surface that the density is shown for: that of the shape whose exponent is the experiment's.
+// Returns the surface for which the density is shown: that of the shape whose exponent is the experiment's.
 ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
     const Shape* shape = e.shape_of_s();
     Material material = shape ? shape->material : Material{};
@@ -132,14 +131,14 @@ ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
     return shading_point;
 }
 
-// An arm without one density (several techniques, each with its own) is left at 0.
+// A sampler without a single density (several techniques, each with its own) gives 0.
 template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
 
-/// `angle` radians from n, in the plane of incidence.
+/// Returns the direction `angle` radians from n, in the plane of incidence.
 Vec3d in_incidence(double angle) { return {math::sin(angle), 0, math::cos(angle)}; }
 
-/// How far a pixel's picture is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite
-/// where no light shines on it or R is n.
+/// Returns how far a pixel is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite if
+/// no light reaches it or R is n.
 double off_the_plane(const OpenPixel& pixel, double tilt) {
     const Vec3d r = pixel.mirror();
     const double out = math::hypot(r.x, r.y);
@@ -153,7 +152,8 @@ double off_the_plane(const OpenPixel& pixel, double tilt) {
     return least;
 }
 
-/// Of a few thousand pixels that see the shape whose exponent is the experiment's, or any where none has one.
+/// Selects among a few thousand pixels that see the shape whose exponent is the experiment's, or any shape if there is
+/// none.
 std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double tilt) {
     const Scene scene = Scene(e).with_s(s);
     const Shape* shape = e.shape_of_s();
@@ -173,7 +173,7 @@ std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double
     return best;
 }
 
-/// A density that is asked for one direction after the other.
+/// A density evaluated for one direction after the other.
 auto one_by_one(std::function<double(const Vec3d&)> pdf) {
     return [pdf = std::move(pdf)](std::span<const Vec3d> wi, std::span<double> out) {
         for (std::size_t i = 0; i < wi.size(); ++i) out[i] = pdf(wi[i]);
@@ -228,7 +228,7 @@ void Density::query_at_a_pixel(const Experiment& e, const std::string& sampler, 
     const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, s, tilt_);
     if (!pixel) return;
     const Vec3d r = pixel->mirror();
-    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // towards R from n
+    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // from n towards R
     tilt_ = math::atan2(out, r.z);
     where_ = fmt::format("pixel ({}, {})", pixel->i(), pixel->j());
     ask_ = one_by_one([=](const Vec3d& wi) {

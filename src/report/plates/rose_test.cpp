@@ -1,4 +1,4 @@
-// The plate `rose`: the peaks that it states, of arms of the list and of those from outside.
+// The plate `rose`: the peaks that it states, for built-in and external samplers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ TEST(Rose, StatesThePeaksOfTheDensities) {
     EXPECT_TRUE(has(settings, "= 16.5 × cosine"));
 }
 
-/// cos / pi from outside, or a sampler that is not asked for its density.
+/// cos / pi as an external sampler, or a sampler that cannot return its density.
 struct ExternalCosine : ExternalSampler {
     bool asked = true;
     std::string name() const override { return "cosine"; }

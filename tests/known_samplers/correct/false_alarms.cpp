@@ -1,5 +1,5 @@
 // Samplers are checked on all cores, each with seed_of() of its number, and counted in their order afterwards, so that
-// the table is the same on any number of threads. Rates come with Clopper & Pearson's 95 % interval.
+// the table does not depend on the number of threads. Rates have Clopper & Pearson's 95 % interval.
 #include "tests/known_samplers/correct/false_alarms.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// How often right samplers at random parameters are accused, by family: the law that `crescent check --right N`
-// measures.
+// How often correct samplers at random parameters are reported as wrong, by family: measured by `crescent check --right
+// N`.
 #pragma once
 
 #include "check/check.h"
@@ -15,15 +15,15 @@ struct RightFamily {
 struct FalseAlarmStudy {
     std::vector<RightFamily> families;
     std::uint64_t checked = 0, false_alarms = 0, undecided = 0;
-    std::vector<std::string> message;  // of every verdict that is not right, a line each
+    std::vector<std::string> message;  // of every verdict that is not right, one line each
     double alpha = 0;
     bool full = false;
 };
 
-/// Judges right samplers `first` to `first + count`, one w_o and one call each, on a seed of its own.
+/// Checks correct samplers `first` to `first + count`, one w_o and one call each, on a seed of its own.
 FalseAlarmStudy measure_false_alarms(
     std::uint64_t first, std::uint64_t count, const TestSettings& settings, ProgressMonitor& monitor);
-/// A table by family, and what was said.
+/// Returns a table by family, and the messages.
 std::string false_alarm_text(const FalseAlarmStudy& study);
 
 }  // namespace crescent

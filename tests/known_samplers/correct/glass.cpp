@@ -1,4 +1,4 @@
-// Rough glass by the equations of Walter et al. 2007 that renderers.h names beside each function, visible normals after
+// Rough glass by the equations of Walter et al. 2007 that renderers.h names for each function, visible normals after
 // Heitz 2018; pdf and f in 1/sr. Across the boundary f of radiance and the weight of smooth glass are divided by the
 // square of eta_from(wo), f of importance is not.
 #include <algorithm>

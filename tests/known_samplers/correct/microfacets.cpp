@@ -83,7 +83,7 @@ template <class F> SyntheticSampler visible(std::string family, F ax, F ay, bool
     return r;
 }
 
-/// Normals by D(h) h.z; a normal that turns away from wo draws nothing.
+/// Normals by D(h) h.z; a normal on the far side from wo returns no sample.
 template <class M> SyntheticSampler by_normals(std::string family, M m, std::function<double(Vec3d, Vec3d)> f) {
     SyntheticSampler r{std::move(family), fmt::format("alpha {:.4g} / {:.4g}", m.ax, m.ay), {}, {}, std::move(f)};
     const auto pdf = [m](Vec3d wo, Vec3d wi) {

@@ -1,5 +1,5 @@
-// Faults of surfaces under a smooth boundary: Fresnel, the passes through a coat, the chooser between coat and base,
-// and the shadowing of a rough lobe. Each is right with one factor in the wrong place.
+// Faults of surfaces under a smooth boundary: Fresnel, the passes through a coat, the selection between coat and base,
+// and the shadowing of a rough lobe. Each has one factor in the wrong place.
 #include <algorithm>
 #include <cmath>
 
@@ -48,7 +48,7 @@ SyntheticSampler lacquer(const Share& weight, const Share& f) {
     return r;
 }
 
-/// A mirroring coat, chosen by its Fresnel at w_o, over Lambert that is seen through it.
+/// A mirroring coat, selected by its Fresnel at w_o, over Lambert seen through it.
 SyntheticSampler coat(const Share& chooser, const Share& f) {
     constexpr double base = 0.6;
     SyntheticSampler r{"coat", "", {}, {}, {}};

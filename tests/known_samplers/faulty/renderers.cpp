@@ -1,5 +1,5 @@
-// Faults of samplers as renderers have them: glass, coats, colour, skies, states. Each is a right one of
-// tests/known_samplers/correct with one thing bent.
+// Faults of samplers in the forms used by renderers: glass, coats, colour, skies, states. Each is a correct sampler of
+// tests/known_samplers/correct with one change.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using Faults = std::vector<PlantedFault>;
 
-/// At three w_o above, at two below where the sampler takes both sides, at none for a sky.
+/// At three w_o above, at two below if the sampler supports both sides, at none for a sky.
 void plant(Faults& out, const std::string& name, std::string breaks, SyntheticSampler recipe, bool state = false) {
     PlantedFault fault{name, std::move(breaks), {}, cause_of(name)};
     const Traits::WoDomain asked = recipe.traits.wo;
@@ -29,7 +29,7 @@ void plant(Faults& out, const std::string& name, std::string breaks, SyntheticSa
     out.push_back(std::move(fault));
 }
 
-/// p and with it what each draw says of p, bent alike.
+/// Changes p, and the p returned with each draw, in the same way.
 void bend_pdf(SyntheticSampler& r, std::function<double(Vec3d, Vec3d, double)> bend) {
     r.pdf = [pdf = r.pdf, bend](Vec3d wo, Vec3d wi) { return bend(wo, wi, pdf(wo, wi)); };
     r.sample = [sample = r.sample, bend](Vec3d wo, const PrimarySample& u) {
@@ -99,7 +99,7 @@ void half_vector_faults(Faults& out) {
     }
 }
 
-/// Of what chooses reflection or refraction, and of w_o below.
+/// Faults of the selection of reflection or refraction, and of w_o below.
 void choosing_faults(Faults& out) {
     const RoughGlass g{0.3, 1.5};
     const char* name = "glass";

@@ -1,5 +1,4 @@
-// A right arm with one thing bent: how u goes in, what comes out, what pdf(w) says, what f says, how the pair is
-// weighed.
+// A correct sampler with one change: of u, of a draw, of pdf(w), of f, or of the weight of a pair.
 #pragma once
 
 #include <functional>
@@ -10,10 +9,10 @@ namespace crescent {
 
 struct FaultInjection {
     std::function<Vec2d(Vec2d)> u{};                       // before the draw
-    std::function<Vec3d(Vec3d wo)> wo{};                   // what the draw believes w_o to be
+    std::function<Vec3d(Vec3d wo)> wo{};                   // the w_o used by the draw
     std::function<void(Vec3d wo, Vec2d u, Draw&)> draw{};  // after it
-    std::function<double(const Pair&, double p)> pdf{};    // both with the draw and asked for
-    std::function<double(const Pair&, double p)> asked{};  // asked for alone
+    std::function<double(const Pair&, double p)> pdf{};    // both with the draw and for queries
+    std::function<double(const Pair&, double p)> asked{};  // for queries only
     std::function<double(const Pair&, double f)> f{};
     std::function<double(int technique, const Pair&, double w)> mis{};
 };

@@ -32,7 +32,7 @@ SyntheticSampler phase(double drawn, double claimed, double scale, Traits::WoDom
     return r;
 }
 
-/// Lambert above and below the surface, each half drawn half the time.
+/// Lambert above and below the surface, each drawn with probability one half.
 SyntheticSampler paper(double above, double below) {
     SyntheticSampler r{"paper", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d i) { return 0.5 * std::fabs(i.z) / pi; };
@@ -44,7 +44,7 @@ SyntheticSampler paper(double above, double below) {
     return r;
 }
 
-/// Rough glass that answers for w_o above alone and states no index.
+/// Rough glass that supports only w_o above and states no index.
 SyntheticSampler glass_from_above(double eta, bool importance) {
     RoughGlass g{0.3, eta};
     g.importance = importance;
@@ -58,8 +58,7 @@ SyntheticSampler scaled_f(SyntheticSampler r, double below) {
     return r;
 }
 
-/// Lambert about a normal that is tilted by 25 deg towards x, black where w_o
-/// lies behind it.
+/// Lambert about a normal that is tilted by 25 deg towards x, black if w_o is behind it.
 SyntheticSampler tilted_lambert(bool draws) {
     const Vec3d n = tilt(25, 0);
     SyntheticSampler r{"tilted", "", {}, {}, {}};
@@ -95,7 +94,7 @@ std::vector<KnownSampler> phase_functions() {
     list.wrong("phase function that creates energy", "physics", phase(0.6, 0.6, 1.05), {60});
     list.wrong("the same of w_o above alone", "physics", phase(0.6, 0.6, 1.05, Traits::WoDomain::upper), {60});
     list.right("paper", paper(0.4, 0.4), {30, 150});
-    list.missed("paper that creates energy below", paper(0.1, 5));  // nobody states whether eta^2 scales f there
+    list.missed("paper that creates energy below", paper(0.1, 5));  // it is not stated whether eta^2 scales f there
     for (double eta : {1.5, 1 / 1.5})
         for (bool importance : {false, true})
             list.not_wrong("rough glass from above", glass_from_above(eta, importance), {0, 60});

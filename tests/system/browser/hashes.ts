@@ -1,5 +1,5 @@
-// The films of an experiment as the page makes them, tile by tile and put together: one line a film, as film_hashes prints
-// them. Bundled for node and for browsers alike.
+// The films of an experiment as the page makes them, tile by tile and assembled: one line per film, as film_hashes
+// prints them. Bundled for node and for browsers.
 import { Api, pixelsOf } from "../../../apps/web/api";
 import { Described } from "../../../apps/web/model";
 

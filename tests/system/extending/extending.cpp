@@ -1,10 +1,10 @@
-// What scripts/extending.sh asks of something that was added by the steps of docs/extending.md.
+// Tests for tests/system/extending.sh of an addition made by the steps of docs/extending.md.
 //   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
-//                             it is other than expected, and that both say what they are
+//                             it is unexpected, and that both have a description
 //   extending --scene TOML    that with these tables added to the scene arms have the reference's mean
-//   extending --measured METER PLATE
-//                             that a check can name the metric, that metrics.json and metrics.csv have it, that the
-//                             plate is drawn, and that `check` gives every verdict of the list
+//   extending --measured METRIC PLATE
+//                             that an assertion can name the metric, that metrics.json and metrics.csv have it, that
+//                             the plate is drawn, and that `check` gives every verdict of the list
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -87,7 +87,7 @@ bool is_checked_as_expected(const std::string& sampler, const Grid& wo = {}) {
     return j.as_expected;
 }
 
-/// A film of cosine and all that is made of it.
+/// Tests the outputs of a film of cosine.
 bool is_measured_and_drawn(const std::string& metric, const std::string& plate) {
     const Experiment e = parse(std::string(scene_text) + "[plates.it]\nkind = \"" + plate +
             "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + metric + ".all(it) > 0\"\n",

@@ -1,4 +1,4 @@
-// beckmann-d, as src/arms/beckmann_d.h: a Beckmann normal by D(m) (n.m), mirrored to wi.
+// beckmann-d, as src/samplers/beckmann_d.h: a Beckmann normal by D(m) (n.m), mirrored to wi.
 //   tan^2 = -alpha^2 log(1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
 // Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (25), (28), (29), (14).
 #include "arms/halfway.glsl"

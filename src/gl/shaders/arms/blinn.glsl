@@ -1,4 +1,4 @@
-// blinn, as src/arms/blinn.h: a cosine-power half-vector about n, mirrored to wi.
+// blinn, as src/samplers/blinn.h: a cosine-power half-vector about n, mirrored to wi.
 //   p_m = (s+1)/(2 pi) (n.m)^s;  cos = u1^(1/(s+1)), phi = 2 pi u2;  p = p_m / (4 (wo.m)).
 // Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures".
 #include "arms/halfway.glsl"

@@ -1,4 +1,4 @@
-// ggx-bounded-vndf, as src/arms/ggx_bounded_vndf.h: as ggx-vndf, on a smaller cap.
+// ggx-bounded-vndf, as src/samplers/ggx_bounded_vndf.h: like ggx-vndf, on a smaller cap.
 //   p = D(m) / (2 (k wo.z + t)),  t = sqrt(alpha^2 (wo.x^2 + wo.y^2) + wo.z^2)
 // Eto & Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", eqs (5), (6) and (8) for one alpha <= 1.
 #include "arms/halfway.glsl"

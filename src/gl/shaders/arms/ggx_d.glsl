@@ -1,4 +1,4 @@
-// ggx-d, as src/arms/ggx_d.h: a GGX normal by the distribution D(m) (n.m), mirrored to wi.
+// ggx-d, as src/samplers/ggx_d.h: a GGX normal by the distribution D(m) (n.m), mirrored to wi.
 //   tan^2 = alpha^2 u1 / (1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
 // Walter et al. 2007, eqs (33), (35), (36), (14).
 #include "arms/halfway.glsl"

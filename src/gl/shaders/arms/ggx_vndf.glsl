@@ -1,4 +1,4 @@
-// ggx-vndf, as src/arms/ggx_vndf.h: a GGX normal among those that wo sees, mirrored to wi.
+// ggx-vndf, as src/samplers/ggx_vndf.h: a GGX normal among those visible from wo, mirrored to wi.
 //   p = G1(wo) D(m) / (4 wo.z).
 // Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eqs (3) and (17); the draw by a spherical
 // cap: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.

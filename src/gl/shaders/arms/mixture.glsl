@@ -1,4 +1,4 @@
-// mixture, as src/arms/mixture.h: one sample from two techniques, chosen by u1: the lobe (phong, about R) with
+// mixture, as src/samplers/mixture.h: one sample from two techniques, chosen by u1: the lobe (phong, about R) with
 // probability q, else cosine.
 //   q = min(rho_s / (rho_s + Y(rho_d)), 9/10), and 0 on a surface without a lobe;
 //   p = q p_phong + (1 - q) p_cosine;  u1 in [0, q) is stretched to [0, 1) for the lobe, the rest for the cosine.

@@ -1,5 +1,5 @@
-// phong, as src/arms/phong.h: a cosine-power lobe about R = reflect(-wo, n). Part of it may lie under the horizon of n:
-// such samples weigh 0 and count; p is not renormalised.
+// phong, as src/samplers/phong.h: a cosine-power lobe about R = reflect(-wo, n). Part of it may lie below the horizon
+// of n: such samples have weight 0 and count; p is not renormalised.
 //   p = (s+1)/(2 pi) (w.R)_+^s;  cos = u1^(1/(s+1)), phi = 2 pi u2, about R;  (w.R)^s = u1 / cos on the drawn
 //   direction.
 #include "sampler.glsl"

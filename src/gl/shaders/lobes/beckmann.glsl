@@ -1,5 +1,5 @@
-// beckmann, as src/lobes/beckmann.h: D G1 G1 / (4 cos cos), separable G.
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": (25), 1/sr, (26), (20).
+// beckmann, as src/scene/lobes/beckmann.h: D G1 G1 / (4 cos cos), separable G. Walter et al. 2007, "Microfacet Models
+// for Refraction through Rough Surfaces": (25), 1/sr, (26), (20).
 #include "shading_point.glsl"
 
 float exp_of_minus(float x) {  // x >= 0

@@ -1,5 +1,5 @@
-// ggx, as src/lobes/ggx.h: D G1 G1 / (4 cos cos), separable G.
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": (33), 1/sr.
+// ggx, as src/scene/lobes/ggx.h: D G1 G1 / (4 cos cos), separable G. Walter et al. 2007, "Microfacet Models for
+// Refraction through Rough Surfaces": (33), 1/sr.
 #include "shading_point.glsl"
 
 float ggx_D(vec3 m, float alpha) {
