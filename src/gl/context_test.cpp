@@ -84,8 +84,9 @@ TEST(Contexts, WrongChoiceIsAnInputErrorWithChoices) {
 }
 
 TEST(Contexts, MissingLibraryIsNamedWithItsPurpose) {
-    EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl"); }),
-        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file")));
+    EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl", "libnosuch7"); }),
+        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file"),
+            HasSubstr("install the packages libnosuch7")));
 }
 
 TEST(GlBackend, IsRegisteredByItsWordAndSaysWhatItRunsOn) {

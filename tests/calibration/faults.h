@@ -46,8 +46,11 @@ struct Fault {
 
 /// The word of a fault in records and tables: "leak", "transposed table".
 std::string_view word(const Fault& fault);
-/// Its cause, for names_cause(); "" where it has none that can be named.
+/// Its cause, for names_cause(); "" where it has none that must be named.
 std::string_view cause_of(const Fault& fault);
+/// Of a fault without a cause that must be named: whether a text that an engine gave is true of it. A leak out of a
+/// bounded domain and a light of another size leave a constant times p inside.
+bool is_true_of(std::string_view kind, std::string_view family, std::string_view text);
 /// Whether one of the texts that an engine gave as causes names `cause`: has one of its words in it, or itself.
 bool names_cause(std::string_view cause, const std::vector<std::string>& texts);
 

@@ -73,6 +73,11 @@ Causes causes_of(const Json& r) {
     const auto all = r.at("causes").get<std::vector<std::string>>();
     Causes out{static_cast<int>(all.size()), names_cause(cause, all), false};
     for (const std::string& one : all) out.others = out.others || (out.named && !names_cause(cause, {one}));
+    if (!cause.empty()) return out;
+    // Where none must be named, what is named should be true.
+    const auto kind = r.at("kind").get<std::string>(), family = r.at("family").get<std::string>();
+    const auto is_true = [&](const std::string& one) { return is_true_of(kind, family, one); };
+    out.named = std::ranges::any_of(all, is_true), out.others = !std::ranges::all_of(all, is_true);
     return out;
 }
 

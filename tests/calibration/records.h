@@ -31,6 +31,7 @@ std::string identity_of(const nlohmann::ordered_json& record);
 void append_record(const std::string& path, const nlohmann::ordered_json& record);
 
 /// What an engine gave as causes of a case: how many texts, whether one names the cause, and others beside it do not.
+/// Of a fault whose cause must not be named: whether one text is true of it, and others are not.
 struct Causes {
     int given = 0;
     bool named = false, others = false;

@@ -171,7 +171,7 @@ std::string paired(const Records& all, const std::set<std::string>& runs) {
 std::string causes(const Records& all) {
     std::string out =
         "| run | set | found, with a cause | cause named | with others | only another | none | "
-        "found, without a cause | some cause named |\n|---|---|---|---|---|---|---|---|---|\n";
+        "found, without a cause | a true one named | a false one named |\n|---|---|---|---|---|---|---|---|---|---|\n";
     const auto names = [](const Json& j) { return causes_of(j).named; };
     const auto silent = [](const Json& j) { return causes_of(j).given == 0; };
     const auto others = [](const Json& j) { return causes_of(j).others; };
@@ -181,9 +181,9 @@ std::string causes(const Records& all) {
             const Records without = only(r, [](const Json& j) { return text(j, "cause") == ""; });
             const std::uint64_t named = count(with, names), none = count(with, silent);
             const double share = with.empty() ? 0 : static_cast<double>(named) / static_cast<double>(with.size());
-            out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} | {} | {} | {} |\n", run, set, with.size(),
-                named, 100 * share, count(with, others), with.size() - named - none, none, without.size(),
-                without.size() - count(without, silent));
+            out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} | {} | {} | {} | {} |\n", run, set,
+                with.size(), named, 100 * share, count(with, others), with.size() - named - none, none, without.size(),
+                count(without, names), count(without, others));
         }
     return out;
 }

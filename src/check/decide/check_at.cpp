@@ -103,14 +103,15 @@ private:
     CheckAt out_;
     Stage first_;
     std::map<Family, Least> least_;  // of first_
+    double confirming_ = 0;          // evaluations of second stages
 
     double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
-    double left() const { return budget_.evaluations - static_cast<double>(source_.evaluations()); }
+    double left() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
 
     /// What this look has: a share of all that stage 1 may still evaluate, with what it has evaluated.
     Look next(int look) const {
-        const double all = left() - budget_.reserve() + first_.done.cost();
+        const double all = left() - budget_.cost_of_sizes() + first_.done.cost();
         const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
         Look last = look_of(all);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
@@ -125,16 +126,35 @@ private:
         first_.extend(source_, *out_.plan, next(look), budget_.of_f(), key_, look);
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
-        std::vector<Least> suspects;
         note_answers(e);
-        for (const auto& [family, least] : least_)
-            if (least.p() < level_of(look)) suspects.push_back(least);
+        const std::vector<Least> suspects = suspects_of(e, level_of(look));
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
         if (!budget_.stop_when_conclusive && look < budget_.looks - 1) return false;
         out_.sizes = sizes(e, level_of(look));
         out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         return budget_.stop_when_conclusive && !out_.inconclusive;
+    }
+
+    /// Of each family below the level the member that is to be tested again: of all that are below it by themselves the
+    /// one whose difference exceeds its standard error, that of the draws which make it included, the most. The least p
+    /// may be of two draws where none was expected, of which the next stage has none with a probability of 13 %.
+    std::vector<Least> suspects_of(const Evidence& e, double level) const {
+        std::map<Family, std::pair<double, Least>> most;
+        for (const auto& [family, least] : least_)
+            if (least.p() < level) most[family] = {-1, least};
+        if (most.empty()) return {};
+        test_all(e, [&](const Answer& a) {
+            const auto at = most.find(a.family);
+            if (at == most.end() || a.p * at->second.second.members >= level) return;
+            const double d = std::fabs(a.difference);
+            const double errors =
+                std::max(d - a.floor, 0.0) / std::sqrt(a.sd * a.sd + d / e.observations.independent + 1e-300);
+            if (errors > at->second.first) at->second.first = errors, at->second.second.answer = a;
+        });
+        std::vector<Least> out;
+        for (const auto& [family, chosen] : most) out.push_back(chosen.second);
+        return out;
     }
 
     /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is
@@ -158,40 +178,29 @@ private:
         if (!drawn) return {};  // delta parts alone, or nothing: no density that could hide a fault
         StreamKey key = key_;
         key.purpose = Purpose::pairs;
-        const Passing passing{level, levels_.second, first_.done, budget_.reserve() - budget_.cost_of_sizes()};
-        return sizes_of(source_, e, passing, budget_.of_sizes(), key);
+        return sizes_of(source_, e, level, budget_.of_sizes(), key);
     }
 
-    /// The same questions on fresh numbers, with what is left of the budget; after an early look with twice what that
-    /// had, so that the later ones lose little.
+    /// The same questions on as many fresh draws and points as they were first put to. After an early look on twice as
+    /// many: a clear fault is then explained by them.
     void confirm(const std::vector<Least>& suspects, int look) {
-        const auto count = [&](auto has) {
-            return std::ranges::count_if(suspects, [&](const Least& b) { return has(b.answer.family); });
-        };
-        const auto of_sets = count(by_replicates);
-        const Kinds kinds = of_sets == 0                              ? Kinds::independent
-            : of_sets == static_cast<std::ptrdiff_t>(suspects.size()) ? Kinds::scrambled
-                                                                      : Kinds::all;
-        const Answer& clearest = std::ranges::min_element(suspects, {}, &Least::p)->answer;
-        double most = left() - budget_.cost_of_sizes();
-        if (look < budget_.looks - 1) most = std::min(most, 2 * first_.done.cost());
-        const double draws_of_f = count(is_of_f) > 0 ? std::min<double>(budget_.of_f(), most / 8) : 0;
-        Look to = look_again(most, clearest.claimed, kinds);
-        if (draws_of_f > 0) to = look_again(most - Stage::of_f(source_, to, draws_of_f), clearest.claimed, kinds);
+        const Look to = look < budget_.looks - 1 ? first_.done.times(2) : first_.done;
+        const double before = static_cast<double>(source_.evaluations());
+        const bool of_f = std::ranges::any_of(suspects, [](const Least& b) { return is_of_f(b.answer.family); });
         Stage second;
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
         second.integrals.light.lost_in = first_.integrals.light.lost_in;
-        second.extend(source_, *out_.plan, to, static_cast<std::uint32_t>(draws_of_f), key, 0);
+        second.extend(source_, *out_.plan, to, of_f ? budget_.of_f() : 0, key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
-        e.least *= std::min(1.0, second.done.independent / static_cast<double>(first_.done.independent));
+        e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
             const Answer again = needs_no_second(b.answer.family) ? b.answer : put_again(e, b.answer);
             if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
-        if (!out_.findings.empty() && kinds == Kinds::all && second.done.cost() > first_.done.cost())
-            take(std::move(second));
+        confirming_ += static_cast<double>(source_.evaluations()) - before;
+        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) take(std::move(second));
     }
 
     void note_answers(const Evidence& e) { least_ = least_of(e); }

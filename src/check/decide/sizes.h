@@ -19,16 +19,8 @@ struct Sizes {
     double by_leak = 1, by_rotation = 1, by_parameter = 1;
 };
 
-/// What a difference must pass.
-struct Passing {
-    double level = 0;        // of a family at stage 1
-    double level_again = 0;  // of one member at stage 2, one-sided
-    Look first;              // stage 1
-    double again = 0;        // evaluations of stage 2
-};
-
-/// `draws`: so many are moved to see what a rotation changes; 14 evaluations each.
-Sizes sizes_of(Source& source, const Evidence& e, const Passing& passing, std::uint32_t draws, const StreamKey& key);
+/// level: of a family at stage 1. `draws`: so many are moved to see what a rotation changes; 8 evaluations each.
+Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t draws, const StreamKey& key);
 
 /// The largest ratio of a size to its target; where a fault of that size changes less of what is drawn than the target
 /// of a leak, that change counts.

@@ -17,6 +17,7 @@ struct Look {
 
     /// A point costs one evaluation of p, an independent draw is followed by one, a scrambled draw stands alone.
     double cost() const { return points + 2.0 * independent + scrambled; }
+    Look times(std::uint32_t n) const { return {points * n, independent * n, scrambled * n}; }
     Look divided_by(std::uint32_t n) const { return {points / n, independent / n, scrambled / n}; }
 };
 
@@ -37,54 +38,38 @@ inline Look look_of(double evaluations) {
     return out;
 }
 
-/// Which draws answer a question.
-enum class Kinds { all, independent, scrambled };
-
-/// The look that confirms a question whose variance is that of the integrals by the share `of_points`: they get about
-/// that share of the evaluations. The draws that do not answer it get little: they are only counted.
-inline Look look_again(double evaluations, double of_points, Kinds kinds) {
-    const double most = std::max(evaluations, 0.0), of_draws = most * (0.85 - 0.7 * of_points);
-    Look out;
-    if (kinds != Kinds::independent) out.scrambled = scrambled_of(of_draws * (kinds == Kinds::all ? 0.5 : 0.875));
-    const double share = kinds == Kinds::all ? 0.25 : kinds == Kinds::scrambled ? 1.0 / 16 : 0.5;
-    out.independent = static_cast<std::uint32_t>(of_draws * share);
-    out.points = static_cast<std::uint32_t>(most - out.scrambled - 2.0 * out.independent);
-    return out;
-}
-
-/// All that is evaluated at one w_o, confirmation and small tests included, is at most `evaluations`. Its parts are
-/// fixed shares of it, at 1.5 M: 2^14 pilot draws (a leaf of mass 2e-4 has three of them), 4096 leaves, 2^16 draws
-/// whose weights are looked at.
+/// At a w_o where nothing is suspected at most `evaluations` are made, small tests included. A confirmation costs about
+/// as many again. Its parts are fixed shares of it, at 1.2 M: 2^14 pilot draws (a leaf of mass 2e-4 has three of
+/// them), 4096 leaves, 2^16 draws whose weights are looked at.
 struct CheckBudget {
-    double evaluations = 1.5e6;
+    double evaluations = 1.2e6;
     int looks = 2;  // each eight times the one before
     /// Stop, too, at the first look at which every target is met within what leaves a verdict open (inconclusive_at).
     bool stop_when_conclusive = false;
 
     /// A look where draws and points are all that is evaluated.
-    Look look(int i) const { return look_of(0.6 * evaluations).divided_by(1u << 3 * (looks - 1 - i)); }
+    Look look(int i) const { return look_of(0.75 * evaluations).divided_by(1u << 3 * (looks - 1 - i)); }
     /// Pilot draws shape the tree alone.
-    std::uint32_t pilot() const { return part(92); }
+    std::uint32_t pilot() const { return part(73); }
     /// Of them, those at which the steps of the arithmetic are measured, by 1 to 18 draws for each number.
-    std::uint32_t of_steps() const { return part(1465); }
+    std::uint32_t of_steps() const { return part(1172); }
     /// At least so many; more until the integrals are known to a quarter of the detection floor. A leaf costs 8.
-    int leaves() const { return static_cast<int>(part(366)); }
-    int most_leaves() const { return static_cast<int>(part(90)); }
+    int leaves() const { return static_cast<int>(part(293)); }
+    int most_leaves() const { return static_cast<int>(part(72)); }
     /// Points of the integrals, about.
-    std::uint32_t points() const { return part(6); }
+    std::uint32_t points() const { return part(4.8); }
     /// Draws at which f is evaluated.
-    std::uint32_t of_f() const { return part(23); }
-    /// Draws that are moved for the sizes that are stated, and what they cost.
-    std::uint32_t of_sizes() const { return part(732); }
-    double cost_of_sizes() const { return 14.0 * of_sizes(); }
-    /// What is left for the second stage and for the sizes.
-    double reserve() const { return 0.22 * evaluations; }
+    std::uint32_t of_f() const { return part(18.3); }
+    /// Draws that are moved for the sizes that are stated, and what they cost. With half as many, what a rotation of a
+    /// lobe on both sides changes is not known to a third.
+    std::uint32_t of_sizes() const { return std::max(part(335), 1024u); }
+    double cost_of_sizes() const { return 8.0 * of_sizes(); }
 
     /// In process.
     static CheckBudget quick() { return {}; }
     /// Through pipes and Python.
-    static CheckBudget limited(double evaluations = 5e5) { return {evaluations}; }
-    static CheckBudget thorough() { return {8e6, 3}; }
+    static CheckBudget limited(double evaluations = 4e5) { return {evaluations}; }
+    static CheckBudget thorough() { return {6.4e6, 3}; }
 
 private:
     std::uint32_t part(double of) const { return static_cast<std::uint32_t>(evaluations / of); }

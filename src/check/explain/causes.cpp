@@ -186,8 +186,10 @@ Candidates plain_candidates(std::span<const Place> places) {
 Candidates fitted_candidates(std::span<const Place> places) {
     Candidates out;
     if (places[0].traits.wo == Traits::WoDomain::none)
-        if (const auto turn = azimuth_hypothesis(places)) out.push_back(candidate_of(*turn, places, true));
-    if (const auto turn = turn_hypothesis(places)) out.push_back(candidate_of(*turn, places, false));
+        if (const auto turn = azimuth_hypothesis(places); turn && turn->is_clear())
+            out.push_back(candidate_of(*turn, places, true));
+    if (const auto turn = turn_hypothesis(places); turn && turn->is_clear())
+        out.push_back(candidate_of(*turn, places, false));
     if (auto power = power_hypothesis(places)) out.push_back(candidate_of_power(std::move(*power)));
     for (const Leak& leak : leak_hypotheses(places)) {
         Candidate c{leak.hypothesis, {}, nearly_all};
@@ -303,9 +305,12 @@ bool odd_draws_explain(std::span<const Place> places) {
     bool any = false;
     for (const Place& place : places) {
         const DrawChecks& c = place.at->observations.checks;
-        const double looked_at = std::max(static_cast<double>(c.looked_at), 1.0);
-        const double unusable = static_cast<double>(c.invalid.times) / looked_at,
-                     at_zero = static_cast<double>(c.zero.times) / looked_at;
+        const auto share = [](std::uint64_t a, double of) { return static_cast<double>(a) / std::max(of, 1.0); };
+        // Unusable draws are counted among all; where p is 0 only some of those that pdf(w) contradicts are looked at.
+        const double unusable =
+                         share(c.invalid.times, static_cast<double>(c.looked_at) + place.at->observations.scrambled),
+                     at_zero = share(c.zero.times, static_cast<double>(c.odd_compared)) *
+            share(c.odd, static_cast<double>(c.followed));
         const MassRatio m = mass_ratio(*place.at);
         const double off = m.claimed - m.drawn - (unusable - at_zero);
         any = any || unusable + at_zero > detection_floor;

@@ -17,6 +17,12 @@ struct Turn {
 struct FoundTurn {
     Hypothesis hypothesis;
     std::vector<Turn> turns;  // by place
+    /// Each angle exceeds its error by far.
+    bool is_clear() const {
+        constexpr double errors = 5;
+        return std::ranges::all_of(
+            turns, [](const Turn& t) { return dot(t.by, t.by) > errors * errors * t.error * t.error; });
+    }
 };
 std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places);
 /// About z by one angle at all places.

@@ -213,7 +213,8 @@ bool explains(const Shares& s) {
     const double degrees = s.cells - static_cast<double>(s.x.size());
     if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
     // What is left is within chance, or a fiftieth of what there was.
-    return statistics::chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
+    return statistics::chi_squared_tail(degrees, s.misfit) > fits_at ||
+        s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
 std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
@@ -224,12 +225,13 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
         claimed.push_back(fmt::format("{:.3g}", s.x[k] * by.lobes[k].share()));
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);
     }
+    for (std::size_t k : off)
+        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share))
+            return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}.",
+                by.number + 1, by.lobes[k].from, by.lobes[k].to);
     if (off.size() == 1) {
         const LobeInterval& lobe = by.lobes[off[0]];
         const double x = s.x[off[0]];
-        if (std::fabs(x) < std::max(3 * s.errors[off[0]], known_share))
-            return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}.",
-                by.number + 1, lobe.from, lobe.to);
         const bool left_out =
             std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
         return fmt::format(

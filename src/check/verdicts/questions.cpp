@@ -45,9 +45,4 @@ bool is_of_f(Family f) {
         f == Family::albedo;
 }
 
-bool by_replicates(Family f) {
-    return f == Family::mass_sets || f == Family::bridge_sets || f == Family::slope_sets || f == Family::centre_sets ||
-        f == Family::node_sets;
-}
-
 }  // namespace crescent::check

@@ -50,8 +50,6 @@ struct FamilyInfo {
 const FamilyInfo& info(Family family);
 /// Whether f has a part in it.
 bool is_of_f(Family family);
-/// Whether the replicates of scrambled draws answer it.
-bool by_replicates(Family family);
 
 /// One question with its result at some stage.
 struct Answer {
@@ -96,6 +94,8 @@ double floor_of_sum(const Evidence& e, int integrand);
 bool draws_vary(const Evidence& e, int integrand);
 /// The variance of a whole sum by independent draws: of these, or what takes its place where they do not vary.
 double drawn_variance(const Evidence& e, int integrand);
+/// What leaves that no draw met add to the variance of one draw: replicates that all miss them show nothing of it.
+Values unmet_variance(const Evidence& e);
 /// Mean of a whole sum over the replicates.
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 

@@ -17,7 +17,8 @@ constexpr Kind sum_kinds[integrands] = {{Family::mass, Family::mass_sets}, {Fami
     {Family::slope, Family::slope_sets}, {Family::centre, Family::centre_sets}, {Family::centre, Family::centre_sets},
     {Family::centre, Family::centre_sets}};
 
-/// What leaves that no draw met add to the variance of one draw: replicates that all miss them show nothing of it.
+}  // namespace
+
 Values unmet_variance(const Evidence& e) {
     Values out{};
     const std::vector<Leaf>& leaves = e.plan.tree.leaves();
@@ -32,8 +33,6 @@ Values unmet_variance(const Evidence& e) {
     }
     return out;
 }
-
-}  // namespace
 
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand) {
     const Observations& o = e.observations;
