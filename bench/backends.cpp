@@ -81,7 +81,7 @@ int main(int argc, char** argv) try {
     if (argc < 3 || argc > 6)
         throw InputError({"crescent_backends", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
     const auto kind = find_backend("gl");
-    if (!kind) throw OutputError("this build has no GL instrument");
+    if (!kind) throw OutputError("this build has no GL back end");
     Experiment experiment = load(argv[1]);
     for (Shape& shape : experiment.shapes)
         if (!shape.material.alpha) shape.material.alpha = 0.2;  // used by the GGX samplers

@@ -65,7 +65,7 @@ namespace {
 
 constexpr const char* footer = R"(Exit codes: 0 all holds; 1 an assertion fails (check: wrong); 2 wrong command
 line or experiment file; 3 an output cannot be written, a part is missing or
-(check) the sampler broke off; 4 inconclusive (check); 130 interrupted.
+(check) the sampler terminated; 4 inconclusive (check); 130 interrupted.
 
   crescent run experiments/gallery.toml      the published experiment
   crescent run experiments/gallery.toml --set sphere.s=64 --set seed=7
@@ -127,7 +127,7 @@ std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
     if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extra.empty()) {
         text = name + ": " + unexpected(command, extra.front());
     }
-    return text + "\n`" + name + " --help` says what it takes\n";
+    return text + "\n`" + name + " --help` lists its flags\n";
 }
 
 Work answer(std::FILE* to, const std::string& text, int code) {
@@ -141,7 +141,7 @@ Work answer(std::FILE* to, const std::string& text, int code) {
 }  // namespace
 
 std::function<int()> parse(int argc, char** argv) {
-    CLI::App app("A bench for importance samplers: it shows where the noise goes.", "crescent");
+    CLI::App app("Tests and benchmarks importance samplers for rendering.", "crescent");
     app.footer(footer);
     app.get_formatter()->column_width(28);
     app.require_subcommand(0, 1);

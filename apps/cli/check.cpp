@@ -77,7 +77,7 @@ void check_sides(const CheckFlags& flags, const Traits& traits) {
         if (direction_of(text).z < 0 && traits.wo != Traits::WoDomain::both)
             throw InputError({"--wo " + text, 0, 0},
                 "is under the surface, and the sampler does not answer there: 0 to less than 90 degrees from the "
-                "normal, z > 0 (a program that does says wo=both)");
+                "normal, z > 0 (a program for both sides declares wo=both)");
 }
 
 /// Returns the w_o of --wo; empty: the default list.
@@ -232,7 +232,7 @@ void log_cost(std::span<const CheckCase> check_cases, const TestSettings& settin
     }
     if (!program || !settings.full) return;
     const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
-    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", checked * settings.questions,
+    monitor.log(fmt::format("--full makes at most {} queries: {} at each of {} w_o{}", checked * settings.questions,
         settings.questions, checked, more));
 }
 
@@ -331,8 +331,8 @@ CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const 
         v.check_case = before_any_case;
         v.name = name;
         v.state = j.state;
-        v.message = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
-                                             : "It could not be asked: the sampler never came to be judged.";
+        v.message = name == verdict_names[0] ? "The sampler could not be checked: " + std::string(fault.what()) + "."
+                                             : "It could not be queried: the sampler was not checked.";
         v.expected = false;
         j.verdicts.push_back(v);
     }

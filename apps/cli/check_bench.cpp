@@ -18,7 +18,7 @@ Verdict caught_or_not(const PlantedFault& fault, const std::string& caught) {
     v.name = "caught";
     v.state = caught.empty() ? State::wrong : State::right;
     v.expected = !caught.empty();
-    v.message = caught.empty() ? "No verdict is wrong where this fault is planted." : "Caught by " + caught + ".";
+    v.message = caught.empty() ? "No verdict detects this planted fault." : "Caught by " + caught + ".";
     return v;
 }
 

@@ -32,17 +32,17 @@ std::string verdicts_in_order() {
 /// --against.
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
-        "hold the sampler against a built-in arm or a program: same distribution, same f, variance ratio");
+        "compare the sampler with a built-in one or a program: same distribution, same f, variance ratio");
     against->type_name("ARM|FILE.py:NAME|'PROGRAM'")->check(not_empty);
     return against;
 }
 
 /// Adds --expect and --allow-inconclusive; returns the former.
 CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
-    c.add_flag("--allow-inconclusive", f.allow_inconclusive, "exit 0 where it would be 4");
+    c.add_flag("--allow-inconclusive", f.allow_inconclusive, "exit 0 instead of 4");
     return c
         .add_option("--expect", f.expect,
-            "a verdict that is known not to be right, or a file of such lines; same: with --against, a difference "
+            "an expected failure, or a file of such lines; same: with --against, a difference "
             "fails")
         ->type_name("'[ARM ]VERDICT=STATE: REASON'|FILE|same")
         ->check([](const std::string& text) {
@@ -69,31 +69,31 @@ struct Own {
 };
 
 Own own_samplers(CLI::App& c, CheckFlags& f) {
-    return {c.add_option("--exec", f.exec, "judge a program that answers over a pipe")
+    return {c.add_option("--exec", f.exec, "check a program that responds over a pipe")
                 ->type_name("'PROGRAM ARGS'")
                 ->check(not_empty),
-        c.add_option("--plugin", f.plugin, "judge a shared library, see docs/plugins.md")
+        c.add_option("--plugin", f.plugin, "check a shared library, see docs/plugins.md")
             ->type_name("FILE")
             ->check(not_empty),
-        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")
+        c.add_option("--samples", f.samples, "check samples in a .csv or .npy file")
             ->type_name("FILE")
             ->check(not_empty)};
 }
 
-/// How long a program may take.
+/// The time limits of a program.
 void limits(CLI::App& c, CheckFlags& f) {
     c.add_option("--patience", f.patience, "s that a program may take in all; default 120, with --full 3600")
         ->type_name("SECONDS")
         ->check(number(0.01, 1e6));
     timeout(c, f.timeout);
-    c.add_flag("--accept-few", f.accept_few, "judge a slow program by the w_o that there was time for");
+    c.add_flag("--accept-few", f.accept_few, "check a slow program only at the w_o that there is time for");
 }
 
 }  // namespace
 
 void add_check(CLI::App& app, Work& work) {
     std::shared_ptr<CheckFlags> f;
-    CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
+    CLI::App* c = command(app, work, "check", "Check samplers alone, without a render.", check, f);
     c->footer(verdicts_in_order() + check_footer);
     auto* arm = c->add_option("ARM", f->arm, "a built-in arm, or FILE.py:NAME; without it, all")->type_name("");
     auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
@@ -107,16 +107,16 @@ void add_check(CLI::App& app, Work& work) {
         ->type_name("P")
         ->check(number(0, 1));
     c->add_option("--seed", f->seed, "default 1")->type_name("N")->check(whole_number(0, 4294967295));
-    auto* planted = c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which")
+    auto* planted = c->add_flag("--planted", f->planted, "check the planted faults: which verdict detects which")
                         ->excludes(arm)
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
     limits(*c, *f);
-    auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters")
+    auto* right = c->add_option("--right", f->right, "check this many correct samplers at random parameters")
                       ->type_name("N")
                       ->check(whole_number(1, 1000000));
     for (auto* other : {arm, set, planted}) right->excludes(other);
-    c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
+    c->add_option("--first", f->first, "of --right: the number of the first")->type_name("K")->needs(right);
     for (auto* other : {arm, set, planted, right}) exec->excludes(other), samples->excludes(other);
     for (auto* other : {arm, set, planted, right, exec, samples}) plugin->excludes(other);
     exec->excludes(samples);
@@ -124,7 +124,7 @@ void add_check(CLI::App& app, Work& work) {
         ->type_name("FILE")
         ->needs(samples)
         ->check(not_empty);
-    auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
+    auto* wo = c->add_option("--wo", f->wo, "check only at this w_o; may be repeated; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
     auto* against = comparison(*c, *f);
     auto* describe = c->add_flag("--describe", f->describe,

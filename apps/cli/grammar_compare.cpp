@@ -69,7 +69,7 @@ void add_compare(CLI::App& app, Work& work) {
             ->allow_extra_args(false)
             ->check(not_empty);
     };
-    c->add_option("FILE", f->file, "a TOML file; flags stand over it")->type_name("");
+    c->add_option("FILE", f->file, "a TOML file; flags override it")->type_name("");
     many("--arm", f->arms, "renders of one arm; may be given again", "NAME=FILES");
     many("--reference", f->reference, "the converged image, or several", "FILES");
     many("--region", f->regions, "a box, both ends inside, from the bottom-left", "NAME=x0,y0,x1,y1");
@@ -94,7 +94,7 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(not_empty);
     add_suite_flags(*c, f);
     c->add_flag("--schema", f->schema, "every key of FILE");
-    auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");
+    auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on this many synthetic calls");
     rates->type_name("CALLS")->check(whole_number(1, 100000));
     c->add_option("--seed", f->seed, "of their noise; default 1")->type_name("SEED")->needs(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");

@@ -57,7 +57,7 @@ std::string seed_range(const std::string& text) {
 
 void add_run(CLI::App& app, Work& work) {
     std::shared_ptr<RunFlags> f;
-    CLI::App* c = command(app, work, "run", "Run an experiment: films, meters, plates, report.", run, f);
+    CLI::App* c = command(app, work, "run", "Run an experiment: films, metrics, plates, report.", run, f);
     c->footer(run_footer);
     c->add_option("FILE", f->file, "the experiment, a TOML file")->required()->type_name("");
     c->add_option("--out", f->out, "where the outputs go; default: out/ and FILE's name")

@@ -78,13 +78,13 @@ struct Topic {
 };
 const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
-        {"arms", "samplers on trial", arms},
+        {"arms", "built-in samplers", arms},
         {"shapes", "kinds of shape", kinds<Shapes>},
         {"lights", "kinds of light", kinds<LightKinds>},
-        {"brdfs", "lobes beside the Lambert term", lobes},
+        {"brdfs", "lobes in addition to the Lambert term", lobes},
         {"plates", "kinds of picture", plates},
         {"meters", "quantities that a check can name", metrics},
-        {"verdicts", "what `check` says of a sampler, in this order", verdicts},
+        {"verdicts", "the tests of `check`, in this order", verdicts},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
         {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},
     };
@@ -113,7 +113,7 @@ int list(const ListFlags& flags) {
         known = known || flags.what == topic.name;
         if (flags.what.empty())
             out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" +
-                (topic.by_name_alone ? "  `crescent list " + topic.name + "` asks the machine\n"
+                (topic.by_name_alone ? "  `crescent list " + topic.name + "` queries the machine\n"
                                      : lines(topic.words(), "  "));
         if (flags.what == topic.name) out = lines(topic.words(), "");
     }

@@ -67,7 +67,7 @@ Cast cast_of(Experiment& e) {
         wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
     if (all_lights(e).empty())
         wrong.push_back(
-            {e.place_of("disks"), "the film needs a light beside the fill: it is what a cosine sample rarely meets"});
+            {e.place_of("disks"), "the film needs a light other than the fill, which a cosine sample rarely meets"});
     const bool lobe = std::ranges::any_of(
         e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe_named("phong"); });
     if (!lobe)

@@ -48,13 +48,13 @@ const RegionMetrics* Data::region(const RunKey& key, const std::string& region) 
 
 const Box& Data::box(const std::string& region) const {
     const Region* found = experiment.find_region(region);
-    ensure(found != nullptr, "the film asks for regions of the experiment");
+    ensure(found != nullptr, "the film uses regions of the experiment");
     return found->box;
 }
 
 Number Data::rmse(const RunKey& key, const std::string& name, int digits) const {
     const RegionMetrics* r = region(key, name);
-    ensure(r != nullptr, "the film tells the error of runs that were made");
+    ensure(r != nullptr, "the film shows the error of existing runs");
     return figure(r->rmse, digits, "rmse." + name + " of " + to_string(key));
 }
 

@@ -89,7 +89,7 @@ public:
         std::ranges::sort(unlike);
         const auto distinct = std::ranges::distance(unlike.begin(), std::ranges::unique(unlike).begin());
         return fmt::format(
-            "{}\n  {} long, {} frames, {} of them unlike, drawn and encoded in {:.0f} s\n  captions crescent.vtt, "
+            "{}\n  {} long, {} frames, {} of them different, drawn and encoded in {:.0f} s\n  captions crescent.vtt, "
             "crescent.srt; transcript "
             "crescent.txt; stills/; frames.json\n",
             options_.out + "/crescent.mp4", clock(part.last - part.first), hashes.size(), distinct, start.seconds());

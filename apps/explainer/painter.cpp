@@ -18,8 +18,8 @@ void heading(Frame& f, const Shot& shot) {
     f.text({bar.x + 26, bar.y, 1200, bar.h}, shot.title, title_text, in);
     if (shot.kind == Kind::words) return;
     const bool photograph = shot.kind == Kind::photograph;
-    const Words label(photograph ? "PHOTOGRAPH" : "INSTRUMENT",
-        photograph ? ", no number is read off it" : ", read off the float films");
+    const Words label(
+        photograph ? "PHOTOGRAPH" : "INSTRUMENT", photograph ? ", without numbers" : ", from the float films");
     Text how = with(with(small_text, photograph ? photograph_accent : backend_accent), Align::right);
     f.text({bar.right() - 560, bar.y, 560, bar.h}, label, how, in);
 }

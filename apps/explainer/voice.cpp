@@ -83,7 +83,7 @@ const std::vector<float>& Voice::texts(const std::string& text) {
         throw OutputError(fmt::format(
             "--voice '{}' {}; expected a program that reads text on stdin and writes a 16-bit WAV to stdout{}",
             command_, end.well() ? "gave no WAV" : "ended with " + end.text(),
-            log.empty() ? "" : "; it said: " + log.substr(0, 300)));
+            log.empty() ? "" : "; its output: " + log.substr(0, 300)));
     }
     return texts_[text] = resampled(samples, rate);
 }

@@ -30,7 +30,7 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
       const checked = await asker.checked<Checked>(sampler, at);
       if (mine !== asked) return;
       // A planted fault has a name of several words; the program checks it at three w_o in one call.
-      const how = sampler.includes(" ") ? ["; the program judges such faults by ", "crescent check --planted"] : [`, from ${evaluations} evaluations a surface; the program makes five times as many: `, `crescent check ${sampler} --wo ${at}`];
+      const how = sampler.includes(" ") ? ["; the program checks such faults by ", "crescent check --planted"] : [`, from ${evaluations} evaluations a surface; the program makes five times as many: `, `crescent check ${sampler} --wo ${at}`];
       out.replaceChildren(el("p", {}, el("b", {}, checked.state), how[0], el("code", {}, how[1])), ...checked.cases.map(table));
     } catch (error) {
       out.replaceChildren(el("p", { class: "bad" }, `It could not be checked: ${error instanceof Error ? error.message : error}.`));

@@ -114,7 +114,7 @@ std::string state_of(const ordered_json& v) { return v.at("state").get<std::stri
 const ordered_json& case_on(const ordered_json& checked, const std::string& surface) {
     for (const auto& one : checked.at("cases"))
         if (surface.empty() || one.at("surface").get<std::string>() == surface) return one;
-    throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was checked on");
+    throw InputError({"lesson", 0, 0}, "'" + surface + "' is not a surface on which it was checked");
 }
 
 /// Returns whether light is out of reach.

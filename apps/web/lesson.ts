@@ -56,7 +56,7 @@ function question(lesson: Lesson, asker: Asker, given: string | undefined, take:
     hint, el("button", { type: "submit", class: "main", id: "measure" }, "Measure"));
 }
 
-const unsaid = "The lines above say what was found; it is not what this lesson has words for.";
+const unsaid = "The lines above say what was found; this lesson has no sentence for it.";
 
 /** Words with formulas, formatted by the core. */
 const set = (model: Model, words: string): DocumentFragment => made(model.api.say("html", words));

@@ -55,8 +55,8 @@ export const lessons: readonly Lesson[] = [
     ask: { kind: "slider", low: 1, high: 8, step: 0.1, unit: "times" },
     answer: { by: "factor", of: [at("cosine", "H", 16), at("cosine", "H", 64)] },
     says: {
-      falls: "The error fell on every seed. Hold the factor beside the one that a finite variance gives: the region has few pixels, and each seed its own luck.",
-      rises: "On some seeds the error rose. The law is one of the mean over many seeds: the lines above say how few directions met the light, and so how much is left to luck.",
+      falls: "The error fell on every seed. Compare the factor with the one for a finite variance: the region has few pixels, and each seed its own luck.",
+      rises: "On some seeds the error rose. The rate holds for the mean over many seeds: the lines above say how few directions met the light, and so how much is left to luck.",
     },
   },
   {
@@ -90,20 +90,20 @@ export const lessons: readonly Lesson[] = [
     ask: { kind: "choice", options: ranked(["8", "32", "128"]) },
     answer: { by: "largest", of: ["8", "32", "128"].map((s) => at("phong", "H", 64, { set: [`sphere.s=${s}`], as: `phong, s = ${s}` })) },
     says: {
-      "8": "The widest lobe is the noisiest here. Compare the shares of directions that met the light, and the means: with s the picture itself changes, so hold each RMSE against its own mean.",
-      "32": "Neither the widest nor the sharpest lobe, the one between is the noisiest here. With s the picture itself changes: hold each RMSE against its own mean.",
-      "128": "The sharpest aim is the noisiest here. Compare the shares of directions that met the light, and the means: with s the picture itself changes, so hold each RMSE against its own mean.",
-      overlap: "The first and the next overlap on these seeds. Compare the shares of directions that met the light, and the means: with s the picture itself changes, so hold each RMSE against its own mean.",
+      "8": "The widest lobe is the noisiest here. Compare the shares of directions that met the light, and the means: with s the picture itself changes, so compare each RMSE with its own mean.",
+      "32": "Neither the widest nor the sharpest lobe, the one between is the noisiest here. With s the picture itself changes: compare each RMSE with its own mean.",
+      "128": "The sharpest aim is the noisiest here. Compare the shares of directions that met the light, and the means: with s the picture itself changes, so compare each RMSE with its own mean.",
+      overlap: "The first and the next overlap on these seeds. Compare the shares of directions that met the light, and the means: with s the picture itself changes, so compare each RMSE with its own mean.",
     },
   },
   {
-    id: "furnace", title: "A furnace that reads short", minutes: 8, arms: ["cosine", "phong"], n: 64, play: [], furnace: { s: [8, 32, 128, 512], n: [64, 1024, 16384, 65536], own: 32 },
-    aim: "A sum that comes out short may lack precision, hold a bug, or wait for samples that are too rare.",
-    question: "Light of 1 comes from everywhere: phong ought to read rho_d + rho_s. Where it reads less, is it precision, a bug, or the tail?",
+    id: "furnace", title: "A furnace that reads too low", minutes: 8, arms: ["cosine", "phong"], n: 64, play: [], furnace: { s: [8, 32, 128, 512], n: [64, 1024, 16384, 65536], own: 32 },
+    aim: "A sum that is too low may lack precision, contain a bug, or need samples that are too rare.",
+    question: "Light of 1 comes from everywhere: phong should read rho_d + rho_s. If it reads less, is it precision, a bug, or the tail?",
     ask: { kind: "choice", options: [{ value: "precision", words: "precision" }, { value: "bug", words: "a bug" }, { value: "tail", words: "the tail" }] },
     answer: { by: "furnace", name: "phong_combined", n: 1024 },
     says: {
-      tail: "It is farther off than sums of floats can be, and its tail looks too heavy for a variance: then the standard error beside it bounds nothing, and what is missing may sit in samples too rare to have come.",
+      tail: "It is farther off than sums of floats can be, and its tail looks too heavy for a variance: then its standard error bounds nothing, and what is missing may sit in samples too rare to have come.",
       bug: "It is off by more than its standard error allows, and no tail excuses it.",
       precision: "It is no farther off than sums of floats may be.",
       none: "It is not off by more than four of its standard errors: here there is nothing to explain.",
@@ -119,7 +119,7 @@ export const lessons: readonly Lesson[] = [
     says: {
       wrong: "What lies more than 90 degrees from R is never drawn, and a diffuse surface reflects it all the same. Check it at the normal, and check the mixture, which also aims by the cosine.",
       right: "No light is out of reach at this w_o.",
-      inconclusive: "It stays open at this w_o: the line above says what would settle it.",
+      inconclusive: "It stays open at this w_o: the line above names the next step.",
     },
   },
   {
@@ -132,7 +132,7 @@ export const lessons: readonly Lesson[] = [
     says: {
       "right-wrong": "The density is the one that is drawn, and the sampler is wrong all the same: it takes a verdict that looks at f, at the weight or at the mean to see it. Check the others of the list.",
       "right-right": "Chi-square passes, and nothing else is wrong either.",
-      "wrong-wrong": "Here chi-square does not even pass.", "wrong-right": "Here chi-square alone accuses it.",
+      "wrong-wrong": "Here chi-square does not even pass.", "wrong-right": "Here only chi-square detects it.",
     },
   },
   {
@@ -147,7 +147,7 @@ export const lessons: readonly Lesson[] = [
       "rejects-wrong": "The t-test rejects, and the tail allows it to: the sampler is wrong.",
       "passes-inconclusive": "This time the t-test does not even reject; it could not be believed either way.",
       "passes-right": "The t-test does not reject, and the tail allows the question.",
-      "rejects-right": "The t-test rejects at its level, and the bench, which asks a fresh seed before it accuses, does not: a level is the share of right samplers that a test rejects.",
+      "rejects-right": "The t-test rejects at its level, and the bench, which tests a new seed before it rejects, does not: a level is the share of right samplers that a test rejects.",
       "passes-wrong": "The t-test does not reject, and another test of the same mean does: the lines above say by how much.",
     },
   },
@@ -159,9 +159,9 @@ export const lessons: readonly Lesson[] = [
     answer: { by: "smallest", of: ["cosine", "phong", "mixture"].map((arm) => at(arm, "S")), beside: ["cosine", "phong", "mixture"].map((arm) => at(arm, "H")) },
     says: {
       cosine: "In the surround cosine is the best of the three: a sample that the mixture spends on the lobe is one that it lacks there. The lines on the highlight H say what each choice costs or saves there. Change rho_s: it is the mixture's share.",
-      mixture: "In the surround the mixture is the best of the three. Hold that against the lines on the highlight H, and change rho_s: it is the mixture's share.",
-      phong: "In the surround the lobe's own aim is the best of the three here. Hold that against the lines on the highlight H, and change rho_s: it is the mixture's share.",
-      overlap: "In the surround the first and the next overlap on these seeds. Hold that against the lines on the highlight H, and change rho_s: it is the mixture's share.",
+      mixture: "In the surround the mixture is the best of the three. Compare that with the lines on the highlight H, and change rho_s: it is the mixture's share.",
+      phong: "In the surround the lobe's own aim is the best of the three here. Compare that with the lines on the highlight H, and change rho_s: it is the mixture's share.",
+      overlap: "In the surround the first and the next overlap on these seeds. Compare that with the lines on the highlight H, and change rho_s: it is the mixture's share.",
     },
   },
   {
@@ -182,8 +182,8 @@ export const lessons: readonly Lesson[] = [
     answer: { by: "which", samplers: six, theta: 45 },
     check: { samplers: [..."abcdef"].map((letter, k) => ({ value: six[k]!, words: `sampler ${letter}` })), theta: [0, 45, 75] },
     says: {
-      one: "The first verdict that says wrong names what disagrees with what. A fault that no eye sees in the draws may stand in the density alone.",
-      none: "It is not one of the six alone that is free of a wrong verdict: the lines above say which are.",
+      one: "The first verdict that says wrong names what disagrees with what. A fault that is invisible in the draws may be in the density alone.",
+      none: "More than one of the six, or none, has no wrong verdict: the lines above say which.",
     },
   },
 ];

@@ -56,7 +56,7 @@ function readLessons(asked: URLSearchParams, state: State, size: readonly [numbe
   for (const text of asked.getAll("answer")) {
     const at = text.indexOf(":"), to = text.slice(at + 1), of = lessons.find(({ id }) => id === text.slice(0, at));
     if (of && answers(of, to, size)) state.answers[of.id] = to;
-    else response.push(`The address says answer=${text.slice(0, 60)}, which answers no lesson: it is left out.`);
+    else response.push(`The address says answer=${text.slice(0, 60)}, which answers no lesson: it is ignored.`);
   }
 }
 
@@ -65,7 +65,7 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   const asked = new URLSearchParams(hash.replace(/^#/, ""));
   const first = Object.keys(sources)[0]!;
   const wrong = (key: string, instead: string): void => {
-    response.push(`The address says ${key}=${(asked.get(key) ?? "").slice(0, 60)}, which is none here: ${instead}.`);
+    response.push(`The address says ${key}=${(asked.get(key) ?? "").slice(0, 60)}, which does not exist here: ${instead}.`);
   };
   let experiment = asked.get("experiment") ?? first;
   if (!Object.hasOwn(sources, experiment)) wrong("experiment", `${first} is open`), (experiment = first);
@@ -87,9 +87,9 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   for (const text of asked.getAll("set")) {
     const at = text.indexOf("=");
     const key = text.slice(0, at), to = text.slice(at + 1);
-    if (own.test(key)) response.push(`The address says set=${text.slice(0, 60)}, which the page sets itself: it is left out.`);
+    if (own.test(key)) response.push(`The address says set=${text.slice(0, 60)}, which the page sets itself: it is ignored.`);
     else if (at > 0 && path.test(key) && value.test(to)) state.set[key] = to;
-    else response.push(`The address says set=${text.slice(0, 60)}, which is no setting: it is left out.`);
+    else response.push(`The address says set=${text.slice(0, 60)}, which is not a setting: it is ignored.`);
   }
   const pixel = asked.get("pixel");
   if (pixel !== null) {

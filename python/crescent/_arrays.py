@@ -55,7 +55,7 @@ def _first_ragged(rows: Sequence[Any]) -> str:
     for i, row in enumerate(rows):
         if np.shape(row) != first:
             return f"row {i} has shape {np.shape(row)}, row 0 has {first}"
-    return "its rows are no numbers"
+    return "its rows are not numbers"
 
 
 def numbers(value: Any, what: str) -> NDArray[Any]:
@@ -82,10 +82,10 @@ def _unpacked(objects: NDArray[Any], what: str) -> Array:
 def _rows(array: NDArray[Any], n: int, what: str) -> None:
     if len(array) < n:
         raise ValueError(
-            f"{what}: {len(array)} rows for {n} that were asked: row {len(array)} is the first without one"
+            f"{what}: {len(array)} rows for {n} requested: row {len(array)} is the first missing one"
         )
     if len(array) > n:
-        raise ValueError(f"{what}: {len(array)} rows for {n} that were asked: row {n} is the first too many")
+        raise ValueError(f"{what}: {len(array)} rows for {n} requested: row {n} is the first extra one")
 
 
 def column(value: Any, n: int, what: str) -> Array:

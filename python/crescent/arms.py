@@ -81,7 +81,7 @@ def _rows(wo: ArrayLike, beside: ArrayLike, what: str, columns: int) -> tuple[Ar
     x, y = _finite(wo, "wo", 3), _finite(beside, what, columns)
     n = max(len(x), len(y)) if len(x) and len(y) else 0
     if not {len(x), len(y)} <= {1, n}:
-        raise ValueError(f"{len(x)} rows beside {len(y)}: expected as many, or one")
+        raise ValueError(f"{len(x)} rows and {len(y)}: expected equal numbers, or one")
     if what == "u" and not ((y >= 0) & (y <= 1)).all():
         bad = int(np.argmin(((y >= 0) & (y <= 1)).all(axis=1)))
         raise ValueError(f"u: row {bad} is {y[bad]}: expected numbers from 0 to 1")

@@ -39,7 +39,7 @@ def _toml(value: Any) -> str:
     if isinstance(value, Iterable) and not isinstance(value, Mapping):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
     raise TypeError(
-        f"{type(value).__name__} is no value of an experiment: expected a number, a text, or a list of them"
+        f"{type(value).__name__} is not a value of an experiment: expected a number, a text, or a list of them"
     )
 
 

@@ -144,7 +144,7 @@ def mutants(sampler: Sampler) -> Iterator[Mutant]:
     )
     yield of("the first random number is squared", u=lambda u: np.where(np.arange(s.u) == 0, u**2, u))
     yield of("directions lean by 5 degrees", draw=lambda wo, d: _moved(d, _leant))
-    yield of("a direction in 100 is no number", draw=lambda wo, d: _moved(d, _with_nan))
+    yield of("a direction in 100 is NaN", draw=lambda wo, d: _moved(d, _with_nan))
     yield of("directions are not of unit length", draw=lambda wo, d: _moved(d, lambda w: w * 1.01))
     yield of("the density that comes with a draw is 3 % too large", draw=lambda wo, d: _scaled(d, 1.03))
     if s.pdf:

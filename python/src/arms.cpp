@@ -49,7 +49,7 @@ ListedArm arm_of(const std::string& name, const std::string& lobe, double s, dou
         throw nb::value_error(fmt::format("no BRDF '{}': the list has {}", lobe, fmt::join(lobes, ", ")).c_str());
     ListedArm out{name, {lobe.empty() ? LobeKind::none : lobe_named(lobe), rho_d, rho_s, s, alpha}};
     if (out.at({0, 0, 1})->techniques() > 1 || name.starts_with("light"))
-        throw nb::value_error(fmt::format("the arm '{}' aims at lamps: it has no density of w_i alone", name).c_str());
+        throw nb::value_error(fmt::format("the arm '{}' aims at lights: it has no density of w_i alone", name).c_str());
     return out;
 }
 
@@ -64,7 +64,7 @@ template <class Ask> void each_row(const ListedArm& arm, const In& wo, Ask&& ask
 }
 
 void alike(std::size_t a, std::size_t b) {
-    if (a != b) throw nb::value_error(fmt::format("{} rows beside {}: expected as many", a, b).c_str());
+    if (a != b) throw nb::value_error(fmt::format("{} rows and {}: expected equal numbers", a, b).c_str());
 }
 
 nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const Uniforms& u) {

@@ -197,7 +197,7 @@ std::vector<AsDict> verdicts_of(const CheckRun& j) {
 }
 
 void add_check_run(nb::module_& m) {
-    nb::class_<CheckRun>(m, "CheckRun", "A result as it came: verdicts with their evidence, and where it comes from.")
+    nb::class_<CheckRun>(m, "CheckRun", "The result of a check: verdicts with their evidence, and its provenance.")
         .def_prop_ro("state", [](const CheckRun& j) { return std::string(word(j.result.state)); })
         .def_prop_ro("as_expected", [](const CheckRun& j) { return j.result.as_expected; })
         .def_prop_ro("tests", [](const CheckRun& j) { return j.result.tests; })
@@ -237,12 +237,12 @@ void add_checking(nb::module_& m) {
         },
         "arm"_a, "settings"_a, "full"_a, "grid"_a);
     m.def("draw", &draw_batches, "cases"_a, "batches"_a,
-        "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
+        "Draws this many batches of 32768 from the callables, on all cores, and drops them: the cost of the calls.");
     m.def("baseline_of", &arm_beside, "arm"_a, "cases"_a);
     m.def("run_checks", &checked, "cases"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
         "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
     m.def("describe", &described, "cases"_a, "seed"_a, "full"_a, "threads"_a, "progress"_a.none());
-    m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes beside the place and renames.");
+    m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes a temporary file and renames it.");
     m.def("sampler_names", &sampler_names, "The built-in arms.");
     add_check_run(m);
 }

@@ -129,7 +129,7 @@ def test_domain_hemisphere_needs_no_guard_at_the_horizon():
 @pytest.mark.parametrize(
     "pdf, said",
     [
-        (lambda wo, wi: cosine_pdf(wo, wi)[:-1], "row 7 is the first without one"),
+        (lambda wo, wi: cosine_pdf(wo, wi)[:-1], "row 7 is the first missing one"),
         (lambda wo, wi: cosine_pdf(wo, wi)[:, None], r"row 0 has shape \(1,\)"),
         (lambda wo, wi: [[1.0], [1.0, 2.0]] * 4, "row 1 has shape"),
         (lambda wo, wi: cosine_pdf(wo, wi) * 1j, "dtype complex128"),
@@ -164,7 +164,7 @@ def test_a_length_that_goes_wrong_later_is_told_too_and_so_is_what_a_callable_ra
     def short(wo, wi):
         return cosine_pdf(wo, wi)[: max(len(wi) - 1, 8)]
 
-    with pytest.raises(ValueError, match="is the first without one"):
+    with pytest.raises(ValueError, match="is the first missing one"):
         crescent.check(cosine, short)
 
     class Mine(Exception):

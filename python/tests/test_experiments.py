@@ -313,7 +313,7 @@ def test_arms_are_vectorised_functions():
     ):
         with pytest.raises(ValueError, match=said):
             phong.sample(wo_, u_)
-    with pytest.raises(ValueError, match="3 rows beside 2"):
+    with pytest.raises(ValueError, match="3 rows and 2"):
         phong.pdf(np.ones((3, 3)), np.ones((2, 3)))
 
 

@@ -73,7 +73,7 @@ def test_who_notices_says_which_tests_see_which_fault():
     noticed = who_notices(MINE, [looks_at_z, checks])
     assert not noticed.missed() and "directions lean by 5 degrees" in noticed.by
     assert any("looks_at_z" not in tests for tests in noticed.by.values())
-    assert "looks_at_z" in noticed.by["a direction in 100 is no number"]
+    assert "looks_at_z" in noticed.by["a direction in 100 is NaN"]
     assert "planted faults are noticed" in str(noticed)
     with pytest.raises(ValueError, match="fails with the sampler as it is"):
         who_notices(MINE, [lambda sampler: False])

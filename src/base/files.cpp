@@ -248,7 +248,7 @@ void Staging::complete(const Path& work) {
             fail("cannot write in", shown_, std::strerror(why));
     if (read_moving(work_).folder != 0) finish();
     if (read_moving(work_).folder != 0)
-        fail("cannot clear", work_.string(), "it holds earlier outputs, or files that were beside them");
+        fail("cannot clear", work_.string(), "it has earlier outputs, or files next to them");
     for (const char* name : {"new", "scratch", "moving", "one-by-one"}) remove_tree(work_ / name);
 }
 
@@ -264,7 +264,8 @@ bool Staging::take_lock() {
     if (lstat(work_.c_str(), &s) != 0) return false;
     if (!S_ISDIR(s.st_mode) || s.st_uid != geteuid() || (!fresh && text_of(path) != lock_text))
         fail("cannot write in", shown_,
-            fmt::format("{} is no folder of this user's runs; move it away or choose another --out", work_.string()));
+            fmt::format(
+                "{} is not a folder of this user's runs; move it away or choose another --out", work_.string()));
     const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (file < 0 && errno == ENOENT) return false;
     if (file < 0) fail("cannot write in", shown_, std::strerror(errno));

@@ -188,7 +188,8 @@ std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
     if (arm.n.empty()) return "";
     if (q.n == 0) q.n = word_of(q)->of_single_samples ? arm.n.back() : e.n_of(arm);
     if (!std::count(arm.n.begin(), arm.n.end(), q.n))
-        return fmt::format("the arm '{}' has no rung n = {}: expected one of {}", arm.name, q.n, listed(arm.n, ", "));
+        return fmt::format(
+            "the arm '{}' has no sample count n = {}: expected one of {}", arm.name, q.n, listed(arm.n, ", "));
     return why_not_run(e, q.adapter, q.n, q.s);
 }
 

@@ -153,7 +153,7 @@ void check_names(ParseContext& context) {
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
         if (const Shape* shape = context.e.find_shape(name))
             context.report(path + name,
-                fmt::format("duplicate name '{}': expected a {} to be named unlike the shape at {}", name, what,
+                fmt::format("duplicate name '{}': expected a {} with another name than the shape at {}", name, what,
                     to_string(shape->at)));
     };
     for (const DiskLight& disk : context.e.disks) unlike_shapes("disk", "disks.", disk.name);
@@ -162,8 +162,8 @@ void check_names(ParseContext& context) {
         for (const DiskLight& disk : context.e.disks)
             if (disk.name == light.name)
                 context.report("lights." + light.name,
-                    fmt::format("duplicate name '{}': expected a light to be named unlike the disk at {}", light.name,
-                        to_string(disk.at)));
+                    fmt::format("duplicate name '{}': expected a light with another name than the disk at {}",
+                        light.name, to_string(disk.at)));
     }
 }
 

@@ -58,10 +58,10 @@ std::string read_text(const std::string& path, std::string_view what);
 
 // clang-format off: one a line
 #define CRESCENT_PLATES(plate) \
-    plate(hero, still, 1, 1, photograph, "one run, one to one where it fits") \
+    plate(hero, still, 1, 1, photograph, "one run, at 1:1 if it fits") \
     plate(gallery, still, 0, 1, photograph, "the converged reference") \
     plate(columns, strip, 1, 4, photograph, "runs side by side, each with a part enlarged") \
-    plate(ladder, strip, 1, 64, photograph, "the rungs of arms side by side, each with a part enlarged") \
+    plate(ladder, strip, 1, 64, photograph, "the sample counts of arms side by side, each with a part enlarged") \
     plate(exponent, strip, 1, 4, photograph, "the runs of the exponent control, each with a part enlarged") \
     plate(surround, strip, 1, 4, photograph, "a part of runs enlarged, side by side") \
     plate(reference, reference, 0, 1, backend, "the reference with the regions, and their means") \

@@ -187,7 +187,7 @@ const Mistake names[] = {
     {"shape = \"ball\"\n[regions", "shape = \"brick\"\n[regions", 41, 9, "with an s of its own"},
     {"[arms.phong]\n", "[arms.phong]\nsampler = \"fong\"\n", 37, 11, "no sampler 'fong'"},
     {"[arms.cosine]\n", "[arms.cosin]\nsampler = \"cosine\"\n", 46, 7, "did you mean 'cosin'?", 3},
-    {"phong\", n = 4", "phong\", n = 5", 50, 50, "the arm 'phong' has no rung n = 5: expected one of 4, 16"},
+    {"phong\", n = 4", "phong\", n = 5", 50, 50, "the arm 'phong' has no sample count n = 5: expected one of 4, 16"},
     {"phong\", n = 4", "phong\", s = 9", 50, 50, "no run phong n=16 s=9"},
     {"phong\", n = 4", "phong\", n = 4, s = 8", 50, 57, "a run of the exponent control: phong n=16 s = 8, 32"},
     {"kind = \"columns\"", "kind = \"hero\"", 50, 1, "expected 1 for a plate of kind hero, found 2"},
@@ -202,7 +202,7 @@ const Mistake checks[] = {
     {"rmse.H(phong) <", "rmse.G(phong) <", 52, 12, "no region 'G': expected one of H"},
     {"rmse.H(phong) <", "rmse(phong) <", 52, 12, "expected rmse.REGION(ARM, n=N, s=S)"},
     {"rmse.H(phong) <", "rmse.H(fong) <", 52, 12, "no arm 'fong'"},
-    {"rmse.H(phong) <", "rmse.H(phong, n=5) <", 52, 12, "no rung n = 5"},
+    {"rmse.H(phong) <", "rmse.H(phong, n=5) <", 52, 12, "no sample count n = 5"},
     {"rmse.H(phong) <", "rmse.H(phong, n=16, s=9) <", 52, 12, "no run phong n=16 s=9"},
     {"rmse.H(phong) <", "rmse.H(phong, m=16) <", 52, 12, "expected n= or s="},
     {"rmse.H(phong) <", "rmse.H(phong <", 52, 12, "expected ')'"},
@@ -221,7 +221,7 @@ const Mistake checks[] = {
     {"[assertions]\nok.check", "[[assertions]]\ncheck", 51, 1, "missing key 'name' in [[assertions]]"},
     {"[assertions]\nok.check",
         "[[assertions]]\nname = \"a\"\ncheck = \"bad(phong) == 0\"\n[[assertions]]\nname = \"a\"\ncheck", 55, 8,
-        "the first stands at x.toml:52:8"},
+        "the first is at x.toml:52:8"},
 };
 INSTANTIATE_TEST_SUITE_P(KeysAndTypes, AMistake, testing::ValuesIn(keys_and_types));
 INSTANTIATE_TEST_SUITE_P(Values, AMistake, testing::ValuesIn(values));

@@ -227,7 +227,7 @@ private:
         const auto [first, fresh] = titles_.emplace(name, at);
         if (!fresh)
             draft_.report(fmt::format("{}.{}", path, index), at,
-                fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path,
+                fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first is at {}", name, path,
                     to_string(first->second)));
         return fresh;
     }
@@ -296,8 +296,8 @@ std::uint64_t sample_count(
     if (n == 0) return context.e.n_of(*arm);
     if (!std::count(arm->n.begin(), arm->n.end(), n))
         context.report(path,
-            fmt::format(
-                "{}: the arm '{}' has no rung n = {}: expected one of {}", path, arm_name, n, listed(arm->n, ", ")));
+            fmt::format("{}: the arm '{}' has no sample count n = {}: expected one of {}", path, arm_name, n,
+                listed(arm->n, ", ")));
     return n;
 }
 

@@ -29,7 +29,7 @@ Section image() {
 
 Section camera() {
     return {"camera", Multiplicity::one, required, "A pinhole camera.", in<&Experiment::camera, Experiment>,
-        {{"eye", Type::point, free_range, "m", required, "", "Where it stands.", to<&Camera::eye>},
+        {{"eye", Type::point, free_range, "m", required, "", "Its position.", to<&Camera::eye>},
             {"target", Type::point, free_range, "m", required, "", "The point in the middle of the picture.",
                 to<&Camera::target>},
             {"up", Type::direction, none, "", defaulted, "[0, 1, 0]",
@@ -69,8 +69,8 @@ Section shape_tables() {
             "Roughness of a lobe of microfacets, not remapped.", to<&Shape::material, &Material::alpha>}};
     keys.insert(keys.end(), material.begin(), material.end());
     keys.insert(keys.end(), colors.begin(), colors.end());
-    keys.push_back({"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the lights.",
-        to<&Shape::occludes>});
+    keys.push_back(
+        {"occludes", Type::flag, none, "", defaulted, "false", "Whether it hides the lights.", to<&Shape::occludes>});
     return {"shapes", Multiplicity::named, required, "What the camera sees.", in<&Experiment::shapes, Experiment>,
         std::move(keys), {}};
 }
@@ -107,13 +107,13 @@ Section fill() {
 
 Section arms() {
     return {"arms", Multiplicity::named, required,
-        "The samplers on trial. All see the same random numbers; rungs are prefixes of one stream.",
+        "The samplers to compare. All use the same random numbers; sample counts are prefixes of one stream.",
         in<&Experiment::arms>,
         {{"exec", Type::text, none, "", optional, "none",
              "In place of a sampler: a command that starts a program which draws, see docs/plugins.md.",
              to<&ArmPlan::exec>},
             {"plugin", Type::text, none, "", optional, "none",
-                "In place of a sampler: a shared library which draws, beside this file; see docs/plugins.md.",
+                "Instead of a sampler: a shared library that draws, next to this file; see docs/plugins.md.",
                 to<&ArmPlan::plugin>},
             {"sampler", Type::sampler, none, "", defaulted, "the arm's own name", "Which sampler it is.",
                 to<&ArmPlan::sampler>},
@@ -126,8 +126,8 @@ Section exponent() {
     return {"exponent", Multiplicity::one, optional,
         "The exponent control: one arm again at other s, in pdf, BRDF and reference alike.", in<&Experiment::exponent>,
         {{"arm", Type::arm, none, "", required, "", "The arm.", to<&ExponentControl::arm>},
-            {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n", "A rung of that arm.",
-                to<&ExponentControl::n>},
+            {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n",
+                "A sample count of that arm.", to<&ExponentControl::n>},
             {"s", Type::numbers, exponent_range, "", required, "", "The exponents, ascending.",
                 to<&ExponentControl::s>},
             {"shape", Type::shape, none, "", required, "", "The shape whose s is the experiment's s.",
@@ -149,12 +149,12 @@ template <auto last, std::size_t n> std::vector<std::string> words_to(const char
 }
 
 Section reference() {
-    return {"reference", Multiplicity::one, optional, "What the meters compare with.", in<&Experiment::reference>,
+    return {"reference", Multiplicity::one, optional, "What the metrics compare with.", in<&Experiment::reference>,
         {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
-             "Converged integration, or the note's Monte Carlo.", to<&ReferencePlan::kind>,
+             "Converged integration, or the article's Monte Carlo.", to<&ReferencePlan::kind>,
              words_to<ReferenceKind::note>({"quadrature", "note"})},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
-                "Whether the note's is computed beside the quadrature.", to<&ReferencePlan::monte_carlo>},
+                "Whether the article's is computed in addition to the quadrature.", to<&ReferencePlan::monte_carlo>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "Of the Monte Carlo reference.",
                 to<&ReferencePlan::seed>},
             {"lobe_spp", Type::integer, count_range, "samples/pixel", defaulted, "32",
@@ -181,7 +181,7 @@ Section plates() {
         in<&PlatePlan::runs>,
         {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
             {"n", Type::integer, count_range, "samples/pixel", optional,
-                "the experiment's n; hero: the highest rung; ladder: every rung", "A rung of that arm.",
+                "the experiment's n; hero: the highest count; ladder: every count", "A sample count of that arm.",
                 to<&PlateRun::n>},
             {"s", Type::number, exponent_range, "", optional, "the experiment's s; exponent: every s of the control",
                 "An exponent of the exponent control.", to<&PlateRun::s>}},
@@ -196,7 +196,7 @@ Section plates() {
              }()},
             {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last",
                 "The part that is enlarged.", to<&PlatePlan::crop>},
-            {"caption", Type::text, none, "", defaulted, "\"\"", "Stands alone under the picture.",
+            {"caption", Type::text, none, "", defaulted, "\"\"", "The caption under the picture.",
                 to<&PlatePlan::caption>}},
         {runs}};
 }
@@ -232,8 +232,8 @@ const Section& schema() {
                 to<&Experiment::seed>},
             {"seeds", Type::integer, {1, 4096}, "", defaulted, "1",
                 "How many seeds the bands are made of; the first is `seed`.", to<&Experiment::seeds>},
-            {"n", Type::integer, count_range, "samples/pixel", optional, "an arm's highest rung",
-                "Samples per pixel where an arm, a plate, a check or the exponent control gives no n.",
+            {"n", Type::integer, count_range, "samples/pixel", optional, "an arm's highest sample count",
+                "Samples per pixel if an arm, a plate, a check or the exponent control gives no n.",
                 to<&Experiment::n>},
             {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1",
                 "Radiance is multiplied by it before the tone map.", to<&Experiment::exposure>},
@@ -242,7 +242,7 @@ const Section& schema() {
             {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
                 "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&Experiment::firefly_k>},
             {"note_evidence", Type::flag, none, "", defaulted, "false",
-                "Whether the note's explanations of the Phong arm are measured.", to<&Experiment::note_evidence>},
+                "Whether the article's explanations of the Phong arm are measured.", to<&Experiment::note_evidence>},
             {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
                 to<&Experiment::published>}},
         {image(), camera(), shape_tables(), disks(), light_tables(), fill(), arms(), exponent(), regions(), reference(),

@@ -55,7 +55,7 @@ const char* error_words(GLenum error) {
 void Context::take_functions(const std::function<void*(const char*)>& address_of) {
     gl_ = functions_from(address_of);
     if (version_number() < 3.3)
-        throw OutputError("the GL instrument needs core 3.3; the driver has " + version() + log_.text());
+        throw OutputError("the GL back end needs core 3.3; the driver has " + version() + log_.text());
     if (gl_.DebugMessageCallback) {
         gl_.DebugMessageCallback(keep, &log_);
         gl_.Enable(GL_DEBUG_OUTPUT);

@@ -121,7 +121,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {
         if (lobe >= 0 && !shader_text("lobes/" + lobe_word(lobe) + ".glsl"))
-            throw OutputError("the GL instrument has no copy of the lobe '" +
+            throw OutputError("the GL back end has no copy of the lobe '" +
                 std::string(lobe_info(static_cast<LobeKind>(lobe)).name) + "': use the cpu");
         Kernel& k = kernel(sampler, lobe, counts, bodies);
         set_scene(k.program, lights, bodies, box, scene.image().width, seed);
@@ -145,12 +145,12 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
     std::uint32_t seed, ProgressMonitor& monitor) {
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
     if (!(find_arm_info(sampler)->gl.relative > 0))
-        throw OutputError("the GL instrument has no copy of the sampler '" + sampler + "': use the cpu");
+        throw OutputError("the GL back end has no copy of the sampler '" + sampler + "': use the cpu");
     for (const Light& light : scene.lights())
         if (std::string(shader_text("lights.glsl")).find(light_word(light.kind())) == std::string::npos &&
             !light.is_disk())
             throw OutputError(fmt::format(
-                "the GL instrument has no light of the kind '{}' ({}): use the cpu", light.kind(), light.name));
+                "the GL back end has no light of the kind '{}' ({}): use the cpu", light.kind(), light.name));
     const Image& image = scene.image();
     std::vector<Film> out;
     for (const std::uint64_t sample_count : n)

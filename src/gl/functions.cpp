@@ -31,7 +31,7 @@ Functions functions_from(const std::function<void*(const char*)>& address_of) {
     CRESCENT_GL_LATER(CRESCENT_GL_LOOK_UP)
 #undef CRESCENT_GL_LOOK_UP
 #define CRESCENT_GL_REQUIRE(TYPE, name) \
-    if (!f.name) throw OutputError("the GL driver has no gl" #name ", which core 3.3 asks for");
+    if (!f.name) throw OutputError("the GL driver has no gl" #name ", which core 3.3 requires");
     CRESCENT_GL_CORE(CRESCENT_GL_REQUIRE)
 #undef CRESCENT_GL_REQUIRE
     return f;

@@ -139,7 +139,7 @@ Bodies bodies_of(const std::vector<OccluderF>& occluders) {
     for (const OccluderF& o : occluders)
         if (const std::string_view kind = crescent::Bodies::names[o.kind];
             std::find(order.begin(), order.end(), kind) == order.end())
-            throw OutputError("the GL instrument has no shadow of a " + std::string(kind) + ": use the cpu");
+            throw OutputError("the GL back end has no shadow of a " + std::string(kind) + ": use the cpu");
     for (std::size_t k = 0; k < order.size(); ++k) {
         for (const OccluderF& o : occluders) {
             if (crescent::Bodies::names[o.kind] != order[k]) continue;

@@ -54,8 +54,8 @@ bool verdict(const std::string& check, bool median = false, const Metrics& m = m
 TEST(Quantities, AreReadFromTheRunTheyName) {
     EXPECT_TRUE(verdict("rmse.H(a, n=4) == 0.5"));
     EXPECT_TRUE(verdict("rmse.H(a, n=16) == 0.125"));
-    EXPECT_TRUE(verdict("rmse.H(b) == 0.75")) << "b has one rung";
-    EXPECT_TRUE(verdict("rmse.H(a) == 0.125")) << "no n: the highest rung, as the experiment names none";
+    EXPECT_TRUE(verdict("rmse.H(b) == 0.75")) << "b has one sample count";
+    EXPECT_TRUE(verdict("rmse.H(a) == 0.125")) << "no n: the highest sample count, as the experiment names none";
     EXPECT_TRUE(verdict("var.H(a, n=4, s=32) == 0.25"));
     EXPECT_TRUE(verdict("fireflies(a) == 5"));
     EXPECT_TRUE(verdict("furnace(white) == 0.27"));

@@ -103,7 +103,7 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
         m.max_relative_rmse_change = 0;
     }
     const bool quadrature = used == ReferenceKind::quadrature;
-    ensure(quadrature || note, "the reference that the meters use was computed");
+    ensure(quadrature || note, "the reference that the metrics use was computed");
     for (const auto& [key, film] : films) {
         if (key.s != q.s) continue;
         const double a = rms_difference(film.y, q.y, q.width, region.box);
@@ -136,7 +136,7 @@ double metric_value(const RunMetrics& run, const std::string& metric) {
     };
     if (dot == std::string::npos) for_each_metric(run, look);
     else if (const RegionMetrics* region = run.region(metric.substr(dot + 1))) for_each_metric(*region, look);
-    ensure(found.has_value(), "a meter of the list, of a region that was measured");
+    ensure(found.has_value(), "a metric of the list, of a region that was measured");
     return *found;
 }
 

@@ -56,7 +56,7 @@ private:
     }
 
     Node atom() {
-        ensure(at_ < tex_.size(), "a formula does not end where a part is due");
+        ensure(at_ < tex_.size(), "a formula does not end before a required part");
         const char c = tex_[at_++];
         const auto is = [&](int (*what)(int)) { return what(static_cast<unsigned char>(c)) != 0; };
         if (c == '{') return row('}');

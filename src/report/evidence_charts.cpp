@@ -150,7 +150,7 @@ std::string furnace_sentence(const Page& page) {
         low->n, html::value(figures(low->median)), escape(coarse->name()), html::value(figures(high->median)),
         escape(fine->name()), html::value(figures(evidence.expected)), percent(short_low, 2), percent(short_high, 2));
     out += short_high > 0.5 * short_low
-        ? " Nearly the same undershoot stands in the finer arithmetic, so precision is not what is missing."
+        ? " Nearly the same undershoot is in the finer arithmetic, so precision is not the cause."
         : " The finer arithmetic recovers most of it, so in this run precision does explain the undershoot.";
     return html::p(out);
 }

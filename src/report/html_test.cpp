@@ -96,7 +96,7 @@ TEST(ReportHtml, EachPointOfTheNoteNeedsItsMeasurement) {
 
 TEST(ReportHtml, TheFurnaceSentenceFollowsTheArithmetic) {
     Sample s;
-    EXPECT_THAT(s.html(), HasSubstr("precision is not what is missing"));
+    EXPECT_THAT(s.html(), HasSubstr("precision is not the cause"));
     s.evidence.furnace[1].median = 0.299;
     EXPECT_THAT(s.html(), HasSubstr("precision does explain the undershoot"));
 }
@@ -204,7 +204,7 @@ TEST(ReportHtml, MarksUnfailingAndSkippedAssertions) {
     Sample s;
     s.metrics.assertions[0].cannot_fail = true;
     s.metrics.assertions[1].pass = false, s.metrics.assertions[1].skipped = "no plates were drawn";
-    EXPECT_THAT(s.html(), HasSubstr("whatever the run measures"));
+    EXPECT_THAT(s.html(), HasSubstr("for any measurements"));
     EXPECT_THAT(s.html(), HasSubstr("skipped: no plates were drawn"));
     EXPECT_TRUE(s.metrics.all_hold());
 }
@@ -219,7 +219,7 @@ TEST(ReportHtml, OverlappingBandsAreNotRanked) {
 
 // With six values of equal arms, three each, all values of one arm are above all of the other's in one run of ten.
 TEST(ReportHtml, ArmsOfThreeSeedsAreNotRanked) {
-    EXPECT_THAT(Sample().html(), HasSubstr("With 3 seeds the bands of equal arms lie apart in 10 % of all runs"));
+    EXPECT_THAT(Sample().html(), HasSubstr("With 3 seeds the bands of equal arms are disjoint in 10 % of all runs"));
     EXPECT_DOUBLE_EQ(chance_of_parted_bands(3), 0.1);
     EXPECT_DOUBLE_EQ(chance_of_parted_bands(1), 1);
 }

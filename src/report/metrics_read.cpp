@@ -134,7 +134,7 @@ Experiment experiment_of(const Provenance& p, const Json& json, const std::strin
     if (json.contains("published")) e.figures = parse_published(json.at("published").dump(), name);
     if (fmt::format("{:016x}", hash(e)) != p.experiment_hash)
         throw InputError({name, 0, 0},
-            "the experiment in it does not have the hash that is stated beside it; expected the file as it was "
+            "the experiment in it does not have the stated hash; expected the file as it was "
             "written, by this version of crescent");
     e.seed = p.seeds.at(0), e.seeds = static_cast<int>(p.seeds.size());
     return e;

@@ -143,7 +143,7 @@ std::string verdict(const std::vector<AssertionResult>& all) {
     if (all.empty()) return {};
     const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return a.failed(); });
     const auto empty = std::ranges::count_if(all, [](const AssertionResult& a) { return a.cannot_fail; });
-    const std::string without = empty > 0 ? fmt::format(", {} of them whatever it measures", empty) : "";
+    const std::string without = empty > 0 ? fmt::format(", {} of them for any measurements", empty) : "";
     if (failed == 0)
         return fmt::format(
             "<p class=\"verdict good\">All {} assertions of this run hold{}.</p>\n", all.size(), without);

@@ -14,16 +14,16 @@ namespace {
 using html::words;
 
 constexpr const char* published_prose = R"(
-<p>A published figure is one draw from one stream of random numbers. What can be asked of it is whether it lies where
-draws lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the {which} seed
-({seed}) and the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the
-tail index <i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
+<p>A published value is one draw from one stream of random numbers. The question is whether it lies where draws lie. In
+the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the {which} seed ({seed}) and the
+diamond the published value; each strip has its own scale. Each RMSE and variance is followed by the tail index
+<i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
 )";
 
 constexpr const char* measured_prose = R"(
 <p>In the strips the bar spans the middle 90 % of {seeds}, the tick is their median and the dot the first seed ({seed});
-each strip has its own scale. Beside each RMSE and variance stands the tail index <i>k</i> of the samples of its region:
-from 1/2 on their variance is infinite.</p>
+each strip has its own scale. Each RMSE and variance is followed by the tail index <i>k</i> of the samples of its
+region: from 1/2 on their variance is infinite.</p>
 )";
 
 std::string fallen(const SeedSpread& b) {
@@ -74,7 +74,7 @@ std::string changes(const Experiment& e) {
             list += (list.empty() ? "" : ", ") + ("<code>" + escape(change) + "</code>");
     if (list.empty()) return {};
     return "<p><strong>This run differs from the published one</strong> in " + list +
-        ": the published figures stand beside it to show what the change does, not to be met.</p>";
+        ": the published values show the effect of the change; they need not be matched.</p>";
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ std::string changes(const Experiment& e) {
 PageSection published(Page& page) {
     const bool published = page.find.anything_published();
     const Experiment& e = page.in.experiment;
-    html::Table table(published ? "Published beside measured" : "Every meter of every run", header(published));
+    html::Table table(published ? "Published and measured" : "Every metric of every run", header(published));
     for (const std::string& metric : metrics_in_order(page)) {
         bool first = true;
         for (const SeedSpread& b : page.in.metrics.bands) {
@@ -97,7 +97,7 @@ PageSection published(Page& page) {
     const std::string intro =
         fmt::format(fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")),
             fmt::arg("seed", e.seed), fmt::arg("which", page.seed_name()));
-    return {"published", published ? "Published and measured" : "All meters",
+    return {"published", published ? "Published and measured" : "All metrics",
         (published ? changes(e) : "") + intro + "<div class=\"wide\">" + table.str() + "</div>" +
             page.figures.plates(PlateKind::meters)};
 }
@@ -110,39 +110,39 @@ namespace {
 using namespace mathml;
 
 constexpr const char* furnace_prose = R"(
-<h3 id="wrong-furnace">The furnace falls short because its tail is heavy</h3>
-<p>The note reads the low combined furnace of the Phong arm as single precision running out of digits in the inverse
-distribution function. With <i>R</i> = <i>n</i> the weight of a Lambert sample can be written down: it is
+<h3 id="wrong-furnace">The furnace is too low because its tail is heavy</h3>
+<p>The article explains the low combined furnace of the Phong arm by the limited digits of single precision in the
+inverse distribution function. With <i>R</i> = <i>n</i> the weight of a Lambert sample has a closed form: it is
 {weight}, which is a Pareto distribution with index</p>
 {index}
 <p>here {k} at <i>s</i> = {s}. Its variance is infinite from <i>k</i> = 1/2 (<i>s</i> = 3) on. The mean exists, and most
-of it is carried by samples so rare that a run of ordinary length holds none of them: its typical reading is low in any
-arithmetic. What the resolution of <i>u</i> does add is a ceiling. If <i>u</i> is never below 2<sup>−<i>b</i></sup>,
-then even infinitely many samples read only</p>
+of it comes from samples so rare that a run of ordinary length has none of them: its typical result is low in any
+arithmetic. The resolution of <i>u</i> adds an upper limit. If <i>u</i> is never below 2<sup>−<i>b</i></sup>, then even
+infinitely many samples give only</p>
 {cap}
-<p>({caps}). The dashed lines below are these ceilings.</p>
+<p>({caps}). The dashed lines below are these limits.</p>
 )";
 
 constexpr const char* lost_prose = R"(
 <h3 id="wrong-support">The Phong arm is biased off the normal</h3>
 <p>An estimator is unbiased if its density is positive wherever the integrand is. The Phong density is zero on the half
-space behind <i>R</i>. Tilt <i>R</i> by θ<sub>R</sub> from the normal and part of the upper hemisphere lies behind it,
-where a Lambert surface reflects all the same. Under a uniform fill the share that no number of samples can find is</p>
+space behind <i>R</i>. If <i>R</i> is tilted by θ<sub>R</sub> from the normal, part of the upper hemisphere lies behind
+it, where a Lambert surface still reflects. Under a uniform fill the share that no number of samples can reach is</p>
 {share}
-<p>A chi-square test of the directions against their density sees nothing of it: both are zero there.</p>
+<p>A chi-square test of the directions against their density cannot detect it: both are zero there.</p>
 )";
 
 constexpr const char* rejection_prose = R"(
-<h3 id="wrong-test">A t-test condemns the arm where it is right</h3>
-<p>With <i>R</i> = <i>n</i> the arm reaches everything and its mean is known. Test that mean with Student’s t at level
-{alpha}, with {n} samples a run, and a correct arm ought to be rejected in {alpha_percent} of runs. The test uses the
-sample variance, and a heavy tail has none to estimate. What it rejects is the tail.</p>
+<h3 id="wrong-test">A t-test rejects the arm where it is right</h3>
+<p>With <i>R</i> = <i>n</i> the arm reaches everything and its mean is known. If that mean is tested with Student’s t at
+level {alpha}, with {n} samples per run, a correct arm should be rejected in {alpha_percent} of runs. The test uses the
+sample variance, and with a heavy tail there is no variance to estimate. It rejects because of the tail.</p>
 )";
 
 std::string intro(const Page& page) {
     const char* whose = page.find.anything_published()
-        ? "The note explains some of its figures."
-        : "This bench began with a note on a gallery lit by a spotlight, which explains some of its figures.";
+        ? "The article explains some of its values."
+        : "This bench began with an article on a gallery lit by a spotlight, which explains some of its values.";
     return fmt::format(
         "{} Three of the explanations can be put to a measurement of their own, and below they are, with "
         "<i>ρ</i><sub>d</sub> = {}, <i>ρ</i><sub>s</sub> = {} and <i>s</i> = {}.",
@@ -201,7 +201,7 @@ PageSection where_wrong(Page& page) {
     points += lost_point(page);
     points += rejection_point(page);
     if (points.empty()) return {};
-    return {"wrong", "Where the note is wrong", html::p(intro(page)) + points};
+    return {"wrong", "Where the article is wrong", html::p(intro(page)) + points};
 }
 
 // ---- Published values outside the bands of this run, and possible reasons; only reasons for which this run has the
@@ -311,8 +311,8 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
     }
     if (of < 2) return {};
     return fmt::format(
-        "The published ladder of {} in {} strays from the −1/2 law by no more than {}. Of {} seeds here, {} keep as "
-        "close: the others meet a rare bright sample on some rung.",
+        "The published ladder of {} in {} deviates from slope −1/2 by at most {}. Of {} seeds here, {} keep as "
+        "close: the others meet a rare bright sample at some sample count.",
         escape(narrow.name), escape(region), percent(limit, 2), of, close);
 }
 
@@ -370,7 +370,7 @@ std::string remarks(const Page& page) {
 
 PageSection disagreements(Page& page) {
     if (!page.find.anything_published()) return {};
-    html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
+    html::Table table("Published values outside the 5–95 % band of this run (metrics with a heavy tail have no band)",
         {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
             {"Median against published", true}});
     std::size_t checked = 0, outside = 0;
@@ -385,10 +385,10 @@ PageSection disagreements(Page& page) {
             {interval_html(b.metric, b.band), true}, {off ? signed_percent(*off) : "–", true}});
     }
     if (checked == 0) return {};
-    std::string out = html::p(fmt::format("{} can be held against a band; {} of them fall{} outside it.",
+    std::string out = html::p(fmt::format("{} can be compared with a band; {} of them fall{} outside it.",
         plural(checked, "published value"), outside, outside == 1 ? "s" : ""));
     if (outside > 0) out += table.str() + remarks(page);
-    return {"disagreements", "Where note and scene disagree", out};
+    return {"disagreements", "Where article and scene disagree", out};
 }
 
 }  // namespace crescent::inline report

@@ -81,7 +81,7 @@ void material_rows(const Page& page, std::vector<Row>& rows) {
         "It has no diffuse part, so Failure B does not show on it."});
     if (const auto wide = lobe_setting(*shape, 0.25, 2); !wide.empty())
         rows.push_back({"More samples under the horizon?", with(page, {wide}),
-            "A wider lobe reaches under the surface more often; those samples weigh nothing and count."});
+            "A wider lobe reaches below the surface more often; those samples have weight 0 and count."});
     if (const auto sharp = lobe_setting(*shape, 2, 0.5); !sharp.empty())
         rows.push_back({"A sharper lobe?", with(page, {sharp}), "Better where the lobe is, worse everywhere else."});
 }
@@ -96,13 +96,13 @@ void sampling_rows(const Page& page, std::vector<Row>& rows) {
     if (!e.arms.empty() && !e.arms.back().n.empty())
         rows.push_back(
             {"More samples?", with(page, {fmt::format("arms.{}.n={}", e.arms.back().name, ladder_text(e.arms.back()))}),
-                "One more rung; the lower ones keep their bits."});
+                "One more sample count; the lower ones keep their bits."});
     if (!e.regions.empty())
         rows.push_back({"Another region?",
             with(page,
                 {fmt::format(
                     "regions.{}.box={}", e.regions.front().name, box_text(shifted(e, e.regions.front().box)))}),
-            "Films stay as they are; only what is read off them changes."});
+            "Films do not change; only their evaluation does."});
 }
 
 /// Returns whether an arm aims only at the lights or combines several densities.
@@ -116,12 +116,12 @@ bool remedies(const Experiment& e) {
 std::string claims(const Page& page) {
     const Experiment& e = page.in.experiment;
     std::vector<std::string> can{
-        "For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. "
-        "The films can be made again, bit for bit: their hashes stand at the end.",
+        "For this scene, these arms, these seeds and this <i>N</i>, the values above are those of the float films. "
+        "The films can be regenerated, bit for bit: their hashes are at the end.",
         "Arms differ in their density alone: same directions of view, same light, same random numbers."};
     if (e.seeds > 1) {
         const double chance = chance_of_parted_bands(e.seeds);
-        can.push_back(fmt::format("Bands span {} seeds. Those of two equal arms lie apart in {} of all such runs.",
+        can.push_back(fmt::format("Bands span {} seeds. Those of two equal arms are disjoint in {} of all such runs.",
             e.seeds, chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"));
     }
     std::vector<std::string> cannot{
@@ -132,8 +132,7 @@ std::string claims(const Page& page) {
         "Photographs are tone-mapped and cut off at white. Read no error off them."};
     if (const std::string bias = bias_words(e); !bias.empty()) cannot.push_back(bias.substr(1));
     if (!remedies(e))
-        cannot.push_back(
-            "No arm aims at the lights and none is combined with another; how well either remedy works is not asked.");
+        cannot.push_back("No arm aims at the lights and none is combined with another; so neither remedy is measured.");
     if (e.seeds < 2) cannot.push_back("A single seed ran. There are no bands, so no arm is ranked above another.");
     else if (e.seeds < 20)
         cannot.push_back(
@@ -142,8 +141,8 @@ std::string claims(const Page& page) {
     const auto heavy = std::count_if(bands.begin(), bands.end(), [](const SeedSpread& b) { return b.band.heavy; });
     if (heavy > 0)
         cannot.push_back(
-            fmt::format("{} of {} meters have no interval, because the tail of their samples is too heavy for one. "
-                        "More seeds would not mend it.",
+            fmt::format("{} of {} metrics have no interval, because the tail of their samples is too heavy for one. "
+                        "More seeds would not change this.",
                 heavy, bands.size()));
     if (page.find.anything_published())
         cannot.push_back(
@@ -161,7 +160,7 @@ std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
 std::string result_of(const AssertionResult& a) {
     if (!a.skipped.empty()) return "skipped: " + escape(a.skipped);
     if (a.failed()) return "<b class=\"bad\">FAILED</b>";
-    return a.cannot_fail ? "holds<small>whatever the run measures</small>" : "holds";
+    return a.cannot_fail ? "holds<small>for any measurements</small>" : "holds";
 }
 
 }  // namespace
@@ -182,7 +181,7 @@ PageSection what_ifs(Page& page) {
             html::element("dd", html::command(row.command) + html::p(row.expect)) + "\n";
     return {"what-ifs", "What if",
         html::p("Each question is one line. An override is checked like the file itself, and the experiment’s hash "
-                "changes with it. Assertions were written for the experiment as it stands and may well fail here.") +
+                "changes with it. Assertions were written for the unchanged experiment and may fail here.") +
             "<dl class=\"what-if\">\n" + items + "</dl>\n"};
 }
 

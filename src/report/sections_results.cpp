@@ -41,7 +41,7 @@ std::string frame_footnote(const Page& page, std::uint64_t n) {
                 "{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
     if (values.empty()) return {};
     return html::element("p", "class=\"footnote\"",
-               "Footnote: the RMSE of the whole frame, which lumps the regions together, reads " + values + ".") +
+               "Footnote: the RMSE of the whole frame, which mixes the regions, is " + values + ".") +
         "\n";
 }
 
@@ -70,21 +70,21 @@ bool larger_in(
 }
 
 constexpr const char* a_prose = R"(
-<p>A small bright light fills little of the hemisphere. A density that spreads its rays over all of it meets the light
-seldom; when one ray does, it stands for all those that missed. On a glossy highlight that one ray also meets
-the lobe at its height, which the density knows nothing of, so one sample can weigh as much as {largest} with {broad},
-in a picture whose mean is {mean}. Where that happens, most pixels come out too dark and a few far too bright. Counted
-as fireflies at <i>N</i> = {n} are {fireflies_broad} pixels with {broad} and {fireflies_narrow} with {narrow}.</p>
+<p>A small bright light fills little of the hemisphere. A density that spreads its rays over all of it rarely meets the
+light; a ray that does has the weight of all those that missed. On a glossy highlight that ray also meets the lobe near
+its peak, which the density does not follow, so one sample can weigh as much as {largest} with {broad}, in a picture
+whose mean is {mean}. Most pixels are then too dark and a few far too bright. At <i>N</i> = {n} there are
+{fireflies_broad} fireflies with {broad} and {fireflies_narrow} with {narrow}.</p>
 )";
 
 constexpr const char* b_prose = R"(
-<p>A lobe about the mirror direction sends nearly all rays where the lobe is. A matt surface gathers light from the
-whole hemisphere, and what comes from the sides is left to the few rays that stray there. Each of those stands for many
-that were never sent: the largest weighs {largest} with {narrow}. The pixel is dark until one arrives, and then it
-sparkles. The mean of the frame tells it at a glance: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub>
-reads {mean_narrow} with {narrow} and {mean_broad} with {broad}.{lost}</p>
-<p>On a Lambert surface the arm still aims about the mirror direction with the scene’s <i>s</i>: it samples the lobe
-whatever the material.</p>
+<p>A lobe about the mirror direction sends nearly all rays where the lobe is. A Lambert surface receives light from the
+whole hemisphere, and light from the sides is met only by the few rays that go there. Each of those has the weight of
+many that were not sent: the largest weighs {largest} with {narrow}. A pixel is too dark until one arrives, and then far
+too bright. The mean of the frame shows it: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub> is
+{mean_narrow} with {narrow} and {mean_broad} with {broad}.{lost}</p>
+<p>On a Lambert surface the arm still aims about the mirror direction with the scene’s <i>s</i>: it samples the lobe for
+any material.</p>
 )";
 
 /// Returns those of the two failures that this run does not show.
@@ -172,16 +172,16 @@ namespace {
 using html::words;
 
 constexpr const char* ladder_prose = R"(
-<p>The samples of a rung are the first samples of the next. Where the variance of a sample is finite the
-error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the
-{seed} seed; the interval is {interval}. A heavy tail breaks the law: the rungs then jump whenever a
-rare sample arrives, and the slope depends on the seed more than on the arm.</p>
+<p>The samples of one sample count are the first samples of the next. If the variance of a sample is finite, the error
+falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the {seed}
+seed; the interval is {interval}. A heavy tail breaks this rate: the error then jumps whenever a rare sample arrives,
+and the slope depends on the seed more than on the arm.</p>
 )";
 
 constexpr const char* exponent_prose = R"(
-<p>The control runs {arm} again at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF
-of {shape} and in the reference alike, so each column is measured against its own truth. A wider lobe sends more samples
-under the horizon, a narrower one leaves more of the hemisphere to chance.</p>
+<p>The control repeats {arm} at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF
+of {shape} and in the reference, so each column is compared with its own reference. A wider lobe sends more samples
+below the horizon; a narrower one leaves more of the hemisphere rarely sampled.</p>
 )";
 
 std::vector<const Ladder*> ladders_in(const Page& page, const std::string& region) {
@@ -250,7 +250,7 @@ std::string arm_of(const Ladder& l, const Page& page) {
 
 std::string slope_table(const Page& page) {
     html::Table table(
-        "Fitted slopes of log RMSE on log <i>N</i>; −0.5 where the variance is finite and no light is missed",
+        "Fitted slopes of log RMSE on log <i>N</i>; −0.5 if the variance is finite and no light is missed",
         {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
     for (const Ladder& l : page.in.metrics.ladders)
         if (l.n.size() > 1)
@@ -273,10 +273,10 @@ PageSection ladders(Page& page) {
         fmt::arg("seed", page.seed_name()),
         fmt::arg("interval",
             page.in.experiment.seeds > 1 ? "the <span class=\"v\">5–95 %</span> band of the same fit over seeds"
-                                         : "the fit’s own, from its residuals; two rungs leave none"));
+                                         : "the fit’s own, from its residuals; two sample counts leave none"));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
         "RMSE against <i>N</i> at the " + page.seed_name() +
-            " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
+            " seed, by region. Dashed: slope −1/2 through each arm’s first point." + published,
         "metrics.json, ladders");
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }
@@ -304,10 +304,10 @@ namespace {
 using html::words;
 
 constexpr const char* prose = R"(
-<p>Put a surface where every direction brings the light 1 and its radiance is what it reflects: <i>ρ</i><sub>d</sub> +
-<i>ρ</i><sub>s</sub> with both parts of the BRDF, <i>ρ</i><sub>s</sub> with the lobe alone. The eye looks along the
-normal, so that <i>R</i> = <i>n</i> and no sample falls under the horizon. Whatever an arm reads besides is its own
-error.</p>
+<p>If every direction brings radiance 1 to a surface, its radiance is its reflectance: <i>ρ</i><sub>d</sub> +
+<i>ρ</i><sub>s</sub> with both parts of the BRDF, <i>ρ</i><sub>s</sub> with the lobe alone. The camera looks along the
+normal, so that <i>R</i> = <i>n</i> and no sample is below the horizon. Any difference from this value is an error of
+the arm.</p>
 )";
 
 std::string state(const FurnaceResult& f) {

@@ -70,7 +70,7 @@ std::string shapes_table(const Page& page) {
 }
 
 std::string lights_table(const Experiment& e) {
-    html::Table table("Lights. Sampled rays alone meet them; the fill comes from wherever no other light is met",
+    html::Table table("Lights. Only sampled rays meet them; the fill comes from every direction without another light",
         {words("Light"), words("Where"), words("Radiance, W/(sr m²)")});
     for (const auto& [path, light] : all_lights(e))
         table.row({html::heading(escape(light.name)),
@@ -84,7 +84,7 @@ std::string lights_table(const Experiment& e) {
 PageSection scene(Page& page) {
     const Experiment& e = page.in.experiment;
     std::string out =
-        html::p(fmt::format("The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one "
+        html::p(fmt::format("The camera is at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one "
                             "primary ray through the centre of each; {} of them meet a surface. Directions are drawn "
                             "once, at that surface: one bounce, no more.",
             vec(e.camera.eye), vec(e.camera.target), shortest(e.camera.vfov_deg), e.image.width, e.image.height,
@@ -105,7 +105,7 @@ using html::words;
 
 constexpr const char* plain_prose = R"(
 <p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction. The azimuth
-is 2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over the axis it is measured from.</p>
+is 2π<i>u</i><sub>2</sub> for all; they differ in the polar angle θ and in the axis from which it is measured.</p>
 )";
 
 constexpr const char* other_prose = R"(
@@ -145,7 +145,7 @@ std::string name_of(const ArmPlan& arm, const SamplerInfo& info, bool fill) {
 }  // namespace
 
 PageSection densities(Page& page) {
-    html::Table table("The densities, the maps that draw from them and the rungs of <i>N</i> each arm ran",
+    html::Table table("The densities, the maps that draw from them and the sample counts <i>N</i> of each arm",
         {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
     const auto& arms = page.in.experiment.arms;
     const Rgb& fill = page.in.experiment.fill;
@@ -173,25 +173,25 @@ namespace {
 using namespace mathml;
 
 constexpr const char* question_prose = R"(
-<p>A renderer asks how much light leaves a point towards the eye. It answers by firing <i>N</i> rays, weighing what each
-brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives
-the right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the
-picture the noise sits.</p>
-<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, is compared at equal
-<i>N</i> and is fed the same random numbers, pixel by pixel and sample by sample. What differs is the density
-<math><mi>p</mi></math>, so whatever differs in the films is its doing.{rays}{bias}{regions}</p>
-<p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out
-of many; the band beside it shows what other seeds give, and where the samples are too heavy-tailed for a band the
-words {heavy} stand in its place.</p>
+<p>A renderer computes how much light leaves a point towards the camera. It traces <i>N</i> rays, divides the
+contribution of each by the density it was drawn with, and averages. Any density that reaches all of the light gives the
+right result in the limit; for finite <i>N</i>, the density decides how noisy the result is, and <em>where</em> in the
+picture the noise is.</p>
+<p>This run compares {arms}: {names}. Every arm uses one scene and one camera, is compared at equal <i>N</i> and
+gets the same random numbers, pixel by pixel and sample by sample. Only the density <math><mi>p</mi></math> differs, so
+all differences between the films come from it.{rays}{bias}{regions}</p>
+<p>Every value below comes from the linear float films, none from a picture. A value at the {seed} seed is one draw out
+of many; its band shows the values of other seeds, and if the samples are too heavy-tailed for a band, the words {heavy}
+replace it.</p>
 )";
 
 constexpr const char* estimator_prose = R"(
-<p>The light that leaves a point towards the eye after one bounce is</p>
+<p>The light that leaves a point towards the camera after one bounce is</p>
 {integral}
 <p>and its estimate from <i>N</i> directions drawn with density {p} (in 1/sr) is</p>
 {estimator}
-<p>Three rules hold for every arm. The cosine {cosine} stays in the numerator. A direction at or under the horizon
-weighs nothing and still counts in <i>N</i>; no density is rescaled to make up for it. And a direction is divided by the
+<p>Three rules hold for every arm. The cosine {cosine} stays in the numerator. A direction at or below the horizon has
+weight 0 and still counts in <i>N</i>; no density is rescaled to compensate for it. And a direction is divided by the
 density of the arm that drew it, never by another’s.</p>
 )";
 
@@ -201,7 +201,7 @@ The lobes of this scene, in 1/sr:</p>
 )";
 
 constexpr const char* constants_prose = R"(
-<p>Constants that look alike mean different things. This BRDF’s <i>s</i> + 2 makes its lobe reflect the share
+<p>Similar constants have different meanings. This BRDF’s <i>s</i> + 2 makes its lobe reflect the share
 <i>ρ</i><sub>s</sub> of the light at normal incidence; the <i>s</i> + 1 of a density about <i>R</i> makes that integrate
 to one. Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
 )";
@@ -213,8 +213,8 @@ constexpr const char* metrics_prose = R"(
 <p>Without a reference, from the samples themselves, the variance of a pixel’s mean, averaged over the region:</p>
 {variance}
 <p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of
-all directions drawn that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of
-the whole frame mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
+all directions drawn that were below the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of
+the whole frame mixes regions that behave in opposite ways; it is shown only in a footnote.</p>
 )";
 
 std::string spelled(std::size_t count) {
@@ -298,9 +298,9 @@ from a table of its albedo, every light by quadrature. It has no seed, and state
 constexpr const char* both_prose = R"(
 <p>Two references are computed. The quadrature integrates each pixel to convergence and has no seed. The Monte Carlo one
 adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn from it, and each light by {disk} on
-its surface, on a seed of its own ({seed}). The meters of this run use the <b>{used}</b>. The table shows how far the
-two lie apart, what the random one claims as its standard error, and by how much the RMSE of any arm would change if the
-other one were used.</p>
+its surface, on a seed of its own ({seed}). The metrics of this run use the <b>{used}</b>. The table shows the
+difference of the two, the standard error that the random one states, and by how much the RMSE of any arm would change
+if the other one were used.</p>
 )";
 
 /// Returns where the reference's own error is too large a part of an RMSE.
@@ -312,7 +312,7 @@ std::string not_good_enough(const std::vector<ReferenceQuality>& all) {
                 " <b>It is not good enough in region {} at <i>s</i> = {}</b>: its own error is {} of the "
                 "smallest RMSE there.",
                 escape(r.region), shortest(r.s), percent(r.error_share, 2));
-    return out.empty() ? out : html::p("The reference that the meters use states its own error." + out);
+    return out.empty() ? out : html::p("The reference that the metrics use states its own error." + out);
 }
 
 std::string verdict(const std::vector<ReferenceQuality>& all) {
@@ -332,7 +332,7 @@ std::string verdict(const std::vector<ReferenceQuality>& all) {
 
 std::string table_of_both(const std::vector<ReferenceQuality>& all) {
     html::Table table("The Monte Carlo reference against the quadrature, root mean square over a region, in <i>Y</i>",
-        {words("Region"), {"<i>s</i>", true}, {"Apart by", true}, {"Its standard error", true},
+        {words("Region"), {"<i>s</i>", true}, {"Difference", true}, {"Its standard error", true},
             {"Quadrature’s error", true}, {"Largest change of an RMSE", true}});
     for (const ReferenceQuality& r : all)
         table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),

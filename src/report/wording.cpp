@@ -140,7 +140,7 @@ std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) 
     if (overlap) return " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked.";
     const double chance = chance_of_parted_bands(std::min(a.band.seeds, b.band.seeds));
     return chance > 0.05 ? fmt::format(
-                               " With {} seeds the bands of equal arms lie apart in {} of all runs, so the two "
+                               " With {} seeds the bands of equal arms are disjoint in {} of all runs, so the two "
                                "are not ranked.",
                                std::min(a.band.seeds, b.band.seeds), percent(chance, 2))
                          : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";

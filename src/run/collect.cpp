@@ -155,7 +155,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
-        stage("tails, furnaces and evidence", [&] {  // these do not depend on each other
+        stage("tails, furnaces and article checks", [&] {  // these do not depend on each other
             side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
                 [&] {
                     out.evidence = measure_evidence(plan.whole, with.isa, monitor);

@@ -109,7 +109,7 @@ void add_references(
         prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor, quadrature.get());
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
-        monitor.begin("the note's reference", pixels);
+        monitor.begin("the article's reference", pixels);
         prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor, note.get());
     });
 }

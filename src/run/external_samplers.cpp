@@ -72,7 +72,7 @@ private:
         try {
             call();
         } catch (const SamplerError& fault) {
-            throw OutputError(fmt::format("the arm '{}' broke off: {}", arm_, fault.what()));
+            throw OutputError(fmt::format("the arm '{}' terminated: {}", arm_, fault.what()));
         }
     }
 

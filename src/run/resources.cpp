@@ -58,12 +58,14 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
     const int width = static_cast<int>(experiment.image.width * scale),
               height = static_cast<int>(experiment.image.height * scale);
     std::string message = fmt::format(
-        "this run needs about {:.2g} GB of memory, and {:.2g} GB are to be had: every rung of every arm is held at {} "
+        "this run needs about {:.2g} GB of memory, and {:.2g} GB are available: every sample count of every arm is "
+        "held at {} "
         "x {} pixels",
         needed / 1e9, there / 1e9, experiment.image.width, experiment.image.height);
     if (width > 0 && height > 0)
         message += fmt::format(
-            "; expected fewer rungs, or a smaller image, such as --set image.width={} --set image.height={} with its "
+            "; expected fewer sample counts, or a smaller image, such as --set image.width={} --set image.height={} "
+            "with its "
             "boxes",
             width, height);
     return message;

@@ -12,7 +12,7 @@ template <class F> struct Cosine {
         {.lobe = "phong", .sharpness = 32, .lambert = true}, {.lobe = "ggx", .sharpness = 0.5, .lambert = true},
         {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = name,
-        .summary = "by the cosine with the normal: right for Lambert under even light",
+        .summary = "by the cosine with the normal: exact for Lambert under constant light",
         .formula = R"(\frac{(n\cdot\omega)}{\pi})",
         .draw = R"($\cos\theta=\sqrt{u_1}$)",
         .axis = "the normal $n$",

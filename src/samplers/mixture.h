@@ -23,7 +23,7 @@ template <class F> struct Mixture {
         .needs_s = true,
         .combines = true,
         .check_cases = check_cases,
-        .gl = {5e-6, "as phong; the cosine beside it bounds 1/p"}};
+        .gl = {5e-6, "as phong; the cosine part bounds 1/p"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     Phong<F> lobe;
     Cosine<F> diffuse;

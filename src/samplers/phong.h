@@ -35,7 +35,7 @@ template <class F> struct Phong {
         t.tail_k = tilted ? at.s / (at.s + 1) : (at.s - 1) / (at.s + 1);
         if (tilted) t.wrong = "support";
         t.why = tilted
-            ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the note's second error"
+            ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the article's second error"
             : "p falls off as (w.R)^s while Lambert only falls off as cos: the weight is Pareto, k = (s-1)/(s+1)";
         return t;
     }

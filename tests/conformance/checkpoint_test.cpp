@@ -79,7 +79,7 @@ TEST_F(Keeping, GivesOtherWorkNothing) {
     EXPECT_EQ(found(other), nothing) << "a brighter lamp, changed in code";
     other = experiment_;
     other.arms[1].n = {8, 16};
-    EXPECT_EQ(found(other), nothing) << "another ladder with as many rungs";
+    EXPECT_EQ(found(other), nothing) << "another ladder of equal length";
     other = experiment_;
     other.seed = 8;
     EXPECT_EQ(found(other), nothing) << "another seed";

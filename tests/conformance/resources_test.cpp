@@ -37,7 +37,7 @@ TEST(Needs, PointsAreNotKeptIfMemoryIsShort) {
 TEST(Needs, ThatAreNotThereAreToldWithWhatWouldFit) {
     EXPECT_EQ(why_too_large(tiny(96, 54), 2'000'000'000), "");
     const std::string message = why_too_large(tiny(16384, 16384), 8'000'000'000);
-    EXPECT_THAT(message, testing::HasSubstr("and 8 GB are to be had"));
+    EXPECT_THAT(message, testing::HasSubstr("and 8 GB are available"));
     const std::size_t at = message.find("image.width=");
     ASSERT_NE(at, std::string::npos) << message;
     const int width = std::stoi(message.substr(at + 12));

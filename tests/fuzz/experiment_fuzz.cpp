@@ -28,10 +28,10 @@ void keeps_its_promises(const Experiment& e) {
         ensure(r.box.x0 >= 0 && r.box.y0 >= 0 && r.box.width() > 0 && r.box.height() > 0 && r.box.x1 < e.image.width &&
                 r.box.y1 < e.image.height,
             "a region lies on the image");
-    for (const ArmPlan& arm : e.arms) ensure(!arm.n.empty() && arm.n.back() <= 16777216, "an arm has rungs");
+    for (const ArmPlan& arm : e.arms) ensure(!arm.n.empty() && arm.n.back() <= 16777216, "an arm has sample counts");
     for (const PlatePlan& plate : e.plates)
         for (const PlateRun& run : plate.runs)
-            ensure(e.find_arm(run.arm) && run.n > 0, "a plate's run names an arm and a rung");
+            ensure(e.find_arm(run.arm) && run.n > 0, "a plate's run names an arm and a sample count");
     for (const AssertionPlan& a : e.assertions) {
         std::string why;
         const auto again = parse_comparison(to_string(a.check), why);

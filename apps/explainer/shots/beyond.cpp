@@ -36,7 +36,7 @@ Shot beyond(const Data& data) {
         "under each its error in both regions.");
     shot.cues = {{0.5, Words("Two ways of aiming, each with its own failure. Can one estimator have both?"), true},
         {10,
-            both ? Words("Toss a coin between both lobes and divide by the mixture: neither region is starved.")
+            both ? Words("Toss a coin between both lobes and divide by the mixture: neither is undersampled.")
                  : Words("Toss a coin between both lobes and divide by the mixture of both densities.")},
         {15.8, Words("Aim at the light too, and weigh both kinds of ray: multiple importance sampling.")},
         {21.4,

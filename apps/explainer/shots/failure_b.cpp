@@ -101,7 +101,7 @@ Shot failure_b(const Data& data) {
     shot.name = "failure-b", shot.kind = Kind::photograph;
     shot.title = starved ? Words("Failure B: Phong starves the surround") : Words("The surround, both ways");
     shot.seen = Words(
-        "The whole picture by the Phong arm. Then the surround enlarged, cosine beside Phong; then the mean of the "
+        "The whole picture by the Phong arm. Then the surround enlarged, cosine next to Phong; then the mean of the "
         "frame as bars: "
         "reference, cosine, Phong.");
     shot.cues = cues_of(data);

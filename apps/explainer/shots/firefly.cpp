@@ -83,7 +83,7 @@ private:
         f.picture(now->block, crop_corner.x, crop_corner.y, crop_times);
         f.outline(marked_.inset(-3), highlight_ink, 6);
         f.text({crop_corner.x - 20, crop_corner.y + side + 6, side + 40, 40},
-            Words("photograph at N = ", count(now->n, "samples of a rung")), with(small_text, Align::centre));
+            Words("photograph at N = ", count(now->n, "samples at a count")), with(small_text, Align::centre));
     }
 
     /// Draws X of a direction as a column of factors, with a sampler's density.

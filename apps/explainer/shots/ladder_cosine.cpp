@@ -18,12 +18,11 @@ Shot ladder_cosine(const Data& data) {
         Words(number(more, 4, source), " times the rays, and the error falls ", figure(less, 3, source), " times."),
         l.slope < -0.35 && l.slope > -0.65
             ? Words("It falls like one over the root of N. To halve it you need four times the rays.")
-            : Words("Its slope here is ", figure(l.slope, 3, source),
-                  "; the law for independent samples is minus a half.")};
+            : Words("Its slope here is ", figure(l.slope, 3, source), "; independent samples give minus a half.")};
     Shot shot = ladder_shot(data, story);
     shot.name = "ladder-cosine", shot.title = Words("Failure A: cosine, and the highlight sparkles");
     shot.seen = Words(
-        "The highlight enlarged at four values of N, and beside it the error against N on two logarithmic axes, point "
+        "The highlight enlarged at four values of N, and the error against N on two logarithmic axes, point "
         "by point.");
     return shot;
 }

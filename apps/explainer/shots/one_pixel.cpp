@@ -236,7 +236,7 @@ Shot one_pixel(const Data& data) {
     shot.seen = Words(
         "A pixel of the crescent grows into the hemisphere above its surface point. Colours show in turn the "
         "reflectance f, "
-        "the light L, the cosine and their product; the estimator is written beside them, term by term.");
+        "the light L, the cosine and their product; the estimator is written next to them, term by term.");
     shot.seconds = end;
     shot.still = shot.seconds - 0.5;
     shot.cues = drawn->cues();

@@ -138,7 +138,7 @@ std::vector<Cue> Tilt::cues() const {
     std::vector<Cue> out;
     out.push_back({0.3, Words("On most surfaces R leans away from n.")});
     out.push_back(
-        {never, Words("Behind it ", data_.arm(data_.cast.phong), " has no density: it never looks there, at any N.")});
+        {never, Words("Behind it ", data_.arm(data_.cast.phong), " has no density: it never aims there, at any N.")});
     out.push_back({above, Words("From above, each dot is an equal share of light. The coloured are lost.")});
     out.push_back({sweep,
         Words("In region ", name(data_.cast.surround), ", R leans by ", tilt,

@@ -176,15 +176,15 @@ def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0
     mi = _library()
     it = _loaded(mi, emitter)
     if not _is(mi, it, _EMITTERS):
-        raise TypeError(f"{type(it).__name__} is no emitter: expected mi.Emitter, mi.Shape or mi.Scene, ...")
+        raise TypeError(f"{type(it).__name__} is not an emitter: expected mi.Emitter, mi.Shape or mi.Scene, ...")
     if isinstance(emitter, dict):
         known.setdefault("name", emitter["type"])
     scene = it if isinstance(it, mi.Scene) else mi.load_dict({"type": "scene", "it": it})
     if not scene.emitters():
-        raise ValueError(f"{known.get('name', type(it).__name__)}: there is no emitter in it")
+        raise ValueError(f"{known.get('name', type(it).__name__)}: it has no emitter")
     for light in scene.emitters():
         if light.flags() & (int(mi.EmitterFlags.DeltaPosition) | int(mi.EmitterFlags.DeltaDirection)):
-            raise ValueError(f"{type(light).__name__} shines from one direction: there is no density to check")
+            raise ValueError(f"{type(light).__name__} emits from one direction: it has no density to check")
     own = _Emitter(mi, scene, point)
     known.setdefault("name", "emitter")
     return Sampler(own.sample, own.pdf, wo="none", serial=True, **known)

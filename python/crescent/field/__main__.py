@@ -147,8 +147,8 @@ def _before_the_work(out: Path, only: list[str]) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m crescent.field", description=(__doc__ or "").partition("\n\n")[0])
-    parser.add_argument("--faults", metavar="FOLDER", help="tests/field where it is there")
-    parser.add_argument("--out", metavar="FILE", help="docs/field.md, or field.md where there is no docs")
+    parser.add_argument("--faults", metavar="FOLDER", help="tests/field, if it exists")
+    parser.add_argument("--out", metavar="FILE", help="docs/field.md, or field.md without a folder docs")
     parser.add_argument("--only", nargs="*", default=[], metavar="PLUGIN", help="these plugins alone")
     args = parser.parse_args(argv)
     out = Path(args.out or ("docs/field.md" if Path("docs").is_dir() else "field.md"))

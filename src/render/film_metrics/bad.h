@@ -7,7 +7,8 @@ namespace crescent::inline render {
 
 struct BadMetric {
     static constexpr MetricInfo info = {
-        .means = "samples that are not a number, infinite or negative; the arm's highest rung unless n is said",
+        .means =
+            "samples that are not a number, infinite or negative; the arm's highest sample count unless n is given",
         .in_tables = false,
         .of_single_samples = true};
     void add(const FilmPixel&, const FilmFacts&) {}

@@ -9,7 +9,7 @@ namespace crescent::inline render {
 
 struct LargestMetric {
     static constexpr MetricInfo info = {
-        .means = "largest single sample of the frame; the arm's highest rung unless n is said",
+        .means = "largest single sample of the frame; the arm's highest sample count unless n is given",
         .in_tables = false,
         .of_single_samples = true};
     double most = 0;

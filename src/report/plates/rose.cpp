@@ -178,9 +178,9 @@ std::string why_no_density(const Sheet& sheet, const std::string& arm) {
     return arm_name(arm, e) +
         (own && own->has_density() ? " says that its density is 0 in the plane of incidence"
                 : own              ? " is a library without crescent_sampler_pdf: its density is not known"
-                : !info            ? " comes from outside, and is not there to be asked for its density"
+                : !info            ? " is external, and its density cannot be evaluated"
                 : info->combines   ? " joins several densities, each with its own weight"
-                                   : " aims at lights: none shines where the camera sees");
+                                   : " aims at lights: none reaches what the camera sees");
 }
 
 void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
@@ -221,7 +221,7 @@ void draw_rose(Sheet& sheet) {
         "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i);
     if (sheet.in.backend == "CPU") sheet.notes.clear();  // nothing was measured
-    for (const std::string& note : {fmt::format("R stands {}° from n", number(tilt_deg)),
+    for (const std::string& note : {fmt::format("R is {}° from n", number(tilt_deg)),
              std::string(
                  "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
              std::string("polar: plane of incidence")})

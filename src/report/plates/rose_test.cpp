@@ -52,7 +52,7 @@ TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
     mine.asked = false;
     EXPECT_TRUE(says("a library without crescent_sampler_pdf"));
     in.outside = {};
-    EXPECT_TRUE(says("not there to be asked"));
+    EXPECT_TRUE(says("density cannot be evaluated"));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ void picture(Sheet& sheet, const View& v, const std::string& missing) {
     Rect slot = picture_slot;
     slot.y += std::floor((slot.h - f.out_h) / 2);
     paint_photograph(sheet, v, whole(v), slot);
-    sheet.notes.push_back("numbers are read off the float films, never off a photograph");
+    sheet.notes.push_back("numbers come from the float films, not the photograph");
     if (f.reduced) sheet.notes.push_back("area average in linear light, then tone-mapped");
     if (f.times > 1) sheet.notes.push_back("each pixel repeated " + to_string(f));
 }

@@ -37,7 +37,7 @@ std::vector<std::string> lobe_names() {
 }
 
 const LobeInfo& lobe_info(LobeKind kind) {
-    ensure(kind != LobeKind::none, "a lobe that is asked about is there");
+    ensure(kind != LobeKind::none, "a requested lobe exists");
     return lobe_infos().at(static_cast<std::size_t>(kind));
 }
 

@@ -9,14 +9,14 @@ namespace crescent::shapes {
 
 struct Disk {
     static constexpr std::string_view name = "disk";
-    static constexpr std::string_view summary = "a disk, which looks along its normal";
+    static constexpr std::string_view summary = "a disk, which faces along its normal";
     Vec3d center{}, normal{};  // normal: unit
     double radius = 0;
 
     static constexpr auto parameters() {
         return std::array{parameter::place("center", &Disk::center, "Centre."),
             parameter::length("radius", &Disk::radius, "Radius."),
-            parameter::direction("normal", &Disk::normal, "Where the face looks.")};
+            parameter::direction("normal", &Disk::normal, "The direction that it faces.")};
     }
 
     Intersection intersect(Vec3d x, Vec3d d) const {

@@ -15,7 +15,7 @@ struct Panel {
     static constexpr auto parameters() {
         return std::array{parameter::place("corner", &Panel::corner, "A corner of the opening."),
             parameter::place("edge_u", &Panel::edge_u, "First edge from the corner."),
-            parameter::place("edge_v", &Panel::edge_v, "Second edge; the opening looks along edge_u x edge_v."),
+            parameter::place("edge_v", &Panel::edge_v, "Second edge; the opening faces along edge_u x edge_v."),
             parameter::length("depth", &Panel::depth, "How far the panel is set back behind its opening."),
             parameter::albedo(
                 "reveal_rho_d", &Panel::reveal_rho_d, "rho_d", "Diffuse albedo of the four sides of the recess.")};

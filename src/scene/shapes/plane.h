@@ -14,7 +14,7 @@ struct Plane {
 
     static constexpr auto parameters() {
         return std::array{parameter::place("point", &Plane::point, "A point of the infinite plane."),
-            parameter::direction("normal", &Plane::normal, "Where the face looks.")};
+            parameter::direction("normal", &Plane::normal, "The direction that it faces.")};
     }
 
     Intersection intersect(Vec3d x, Vec3d d) const { return crossing_at(plane_t(point, normal, x, d), normal); }

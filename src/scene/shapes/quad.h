@@ -28,7 +28,7 @@ struct Quad {
     static constexpr auto parameters() {
         return std::array{parameter::place("corner", &Quad::corner, "A corner of the quad, or of the panel's opening."),
             parameter::place("edge_u", &Quad::edge_u, "First edge from the corner."),
-            parameter::place("edge_v", &Quad::edge_v, "Second edge; the face looks along edge_u x edge_v.")};
+            parameter::place("edge_v", &Quad::edge_v, "Second edge; it faces along edge_u x edge_v.")};
     }
     std::optional<Mistake> mistake() const { return mistake_of_edges(edge_u, edge_v); }
 

@@ -43,7 +43,7 @@ def tests(page, folder):
         assert "measured here" in said, f"{lesson}: {said}"
         kind = driver.find_element(By.CSS_SELECTOR, "#reveal [data-kind]")
         assert kind.text, f"{lesson}: nothing is said of '{kind.get_attribute('data-kind')}'"
-        assert "lesson has words for" not in kind.text, f"{lesson}: '{kind.get_attribute('data-kind')}' has no sentence"
+        assert "lesson has no sentence" not in kind.text, f"{lesson}: '{kind.get_attribute('data-kind')}' has no sentence"
         left = driver.execute_script(
             "return [...document.querySelectorAll('#choices select, #knobs [data-path], #lessons section select')]"
             ".filter((e) => e.checkVisibility()).map((e) => e.dataset.path ?? e.id)"
@@ -140,7 +140,7 @@ def tests(page, folder):
         apart = driver.execute_script(
             "const [words, bar] = ['.reference figcaption', '.bar'].map((css) => document.querySelector(css));"
             "return bar.getBoundingClientRect().top - words.getBoundingClientRect().bottom")
-        assert 0 <= apart < 24, f"the scale stands {apart} px under the reference's name"
+        assert 0 <= apart < 24, f"the scale is {apart} px under the reference's name"
 
     def other_colours_and_no_motion(driver):
         """Forced colours keep borders, outlines and focus; with reduced motion, as without, nothing moves by itself."""
