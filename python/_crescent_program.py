@@ -1,6 +1,6 @@
-"""The command `crescent` of the package: the program in it takes the place of this process.
+"""The command `crescent` of the package: the program in it replaces this process.
 
-It is beside the package, not in it: importing the package imports NumPy, which takes longer than the program does.
+It is not part of the package: importing the package imports NumPy, which takes longer than the program does.
 """
 
 import os

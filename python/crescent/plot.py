@@ -55,7 +55,7 @@ _NAMES = {"rmse": "RMSE", "rmse_frame": "RMSE of the frame", "var": "variance", 
 
 
 def style() -> AbstractContextManager[None]:
-    """The settings of these figures as a context, for figures of your own beside them."""
+    """The settings of these figures as a context, for other figures of the user."""
     import logging
 
     import matplotlib as mpl
@@ -343,7 +343,7 @@ def hemisphere(
     """A density over the upper hemisphere as seen from above, with contours of the integrand it is meant to follow.
 
     `pdf(wo[n,3], wi[n,3])` in 1/sr and `integrand(wo, wi)`, such as f cos theta L, are NumPy callables; w_o is at
-    `wo_deg` from the normal in the xz plane. A direction stands at (w.x, w.y). Contours are at 10, 50 and 90 % of the
+    `wo_deg` from the normal in the xz plane. A direction is at (w.x, w.y). Contours are at 10, 50 and 90 % of the
     integrand's largest value.
     """
     side = (np.arange(size) + 0.5) / size * 2 - 1

@@ -1,4 +1,4 @@
-// The fonts beside the program: a package that brings Inter with it needs none of the machine's.
+// Fonts installed with the program: a package that contains Inter needs none of the machine's.
 #pragma once
 
 namespace crescent::plates {
