@@ -173,7 +173,7 @@ std::string joined(const std::string& part, const std::string& layer) {
     return part.empty() || layer.empty() ? part + layer : part + "/" + layer;
 }
 
-/// What an back end or a mask wrote, by its name: no radiance.
+/// What a back end or a mask wrote, by its name: no radiance.
 bool is_data(const std::string& layer) {
     static constexpr const char* words[] = {"crypto", "normal", "depth", "position", "variance", "motion", "vector",
         "uv", "albedo", "error", "second_moment", "largest", "horizon", "hits", "stddev", "samplecount", "denois"};
