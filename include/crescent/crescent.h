@@ -43,6 +43,7 @@
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
 #include "experiment/queries.h"
+#include "experiment/sampler_files.h"
 #include "experiment/schema.h"
 #include "math/functions.h"
 #include "math/simd/random.h"

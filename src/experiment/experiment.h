@@ -98,10 +98,12 @@ constexpr const PlateInfo& plate_info(PlateKind kind) { return plate_infos[stati
 /// One sampler with its ladder: sample counts are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
-    std::string sampler;           // a word of arms/all.h; "": what exec or plugin names
+    std::string sampler;           // a word of arms/all.h; "": what exec, plugin or python names
     std::vector<std::uint64_t> n;  // ascending samples per pixel
     SourceLocation at;
-    std::optional<std::string> exec = {}, plugin = {};  // a command, the file of a shared library
+    // A command, the file of a shared library, a sampler in Python as "FILE.py:NAME" or "module:NAME".
+    std::optional<std::string> exec = {}, plugin = {}, python = {};
+    bool is_external() const { return exec || plugin || python; }
 };
 
 /// The exponent control: `arm` again at each s, which changes the pdf, the BRDF and the reference.
@@ -214,7 +216,7 @@ Experiment with_figures(Experiment experiment);
 /// The experiment as a file that is read as the same experiment: every key with its effective value, in one layout.
 std::string canonical_text(const Experiment& experiment);
 /// What identifies an experiment: XXH3 of every value but the number of seeds and, in place of their path, of the
-/// published figures. Computed anew at each call, so that it is right for an experiment that was made or changed in
+/// published figures, and of the contents of the files of samplers (sampler_files.h). Computed anew at each call, so that it is right for an experiment that was made or changed in
 /// code.
 std::uint64_t hash(const Experiment& experiment);
 

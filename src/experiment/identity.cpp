@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "experiment/sampler_files.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
@@ -148,6 +149,7 @@ std::uint64_t hash(const Experiment& experiment) {
     if (experiment.figures) counted.published.reset();  // what they say counts, not where they are
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);
+    text += sampler_file_hashes(experiment);
     if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code: no key says it
         text += toml_text(experiment.s_of);
     return XXH3_64bits(text.data(), text.size());

@@ -30,6 +30,7 @@ struct Engine {
     std::string isa{};                   // a name of isas(); "": the best of this machine
     std::shared_ptr<Backend> backend{};  // null: the CPU
     double timeout_s = 0;                // for one answer of a program or plugin; 0: 10 and 60 s
+    ExternalSamplers samplers{};         // of the caller, by arm: these are not opened
 };
 /// With nothing left open. Throws InputError where the instruction set is not known or not here.
 Engine settled(Engine engine);
