@@ -295,6 +295,48 @@ class Measured:
         rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
         return [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
 
+    def to_pandas(self) -> Any:
+        """The rows of :meth:`records` as a pandas.DataFrame."""
+        import pandas  # type: ignore[import-untyped,unused-ignore]
+
+        return pandas.DataFrame(self.records())
+
+    def to_latex(
+        self,
+        table: str = "rmse",
+        region: str | None = None,
+        *,
+        s: float | None = None,
+        bold: str | None = "best",
+        digits: int = 3,
+    ) -> str:
+        """A metric as a LaTeX table (booktabs): a row an arm, a column a sample count, means over seeds with the half
+        width of their 95 % intervals.
+
+        `bold="best"`: arms of which none is significantly worse than the best are bold, if some other arm is (paired t
+        over seeds at 5 %, shared by the arms); with one seed nothing is ranked. None: nothing is bold.
+        """
+        from ._tables import latex
+
+        if bold not in ("best", None):
+            raise ValueError(f"bold is {bold!r}: expected 'best' or None")
+        return latex(self, table, region, self.s if s is None else s, bold == "best", digits)
+
+    @property
+    def s(self) -> float:
+        """The experiment's own Phong exponent."""
+        return float(self._core.s)
+
+    @property
+    def provenance(self) -> str:
+        """One line for an appendix: program, experiment, hash, seeds, compiler."""
+        p = self.metrics["provenance"]
+        seeds = sorted({row["seed"] for row in self.records()})
+        return (
+            f"crescent {p['version']} ({p['commit']}, {p['compiler']}), experiment {p['experiment']['file']} "
+            f"{p['experiment']['hash']}, {len(seeds)} seed{'s' * (len(seeds) != 1)} from {seeds[0]}"
+        )
+
     def to_xarray(self) -> Any:
         """An xarray.Dataset: a variable a meter over (arm, n, s, seed), and region where it has one; NaN: not run."""
         import xarray

@@ -11,8 +11,8 @@ FOLDER = Path(os.environ.get("CRESCENT_NOTEBOOKS", Path(__file__).resolve().pare
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
-def test_there_are_two():
-    assert {n.stem for n in NOTEBOOKS} == {"check_a_numpy_sampler", "arms_at_equal_n"}
+def test_there_are_three():
+    assert {n.stem for n in NOTEBOOKS} == {"check_a_numpy_sampler", "arms_at_equal_n", "paper_figures"}
 
 
 def run_cell(source, names):

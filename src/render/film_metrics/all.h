@@ -9,15 +9,19 @@
 #include "render/film_metrics/fireflies.h"
 #include "render/film_metrics/horizon_frac.h"
 #include "render/film_metrics/largest.h"
+#include "render/film_metrics/rel_mse.h"
 #include "render/film_metrics/rmse.h"
 #include "render/film_metrics/rmse_frame.h"
+#include "render/film_metrics/smape.h"
 #include "render/film_metrics/var.h"
 #include "render/film_metrics/y_mean.h"
 
 // clang-format off: one a line
 #define CRESCENT_REGION_METRICS(metric) \
     metric(rmse, RmseMetric)            \
-    metric(var, VarMetric)
+    metric(var, VarMetric)              \
+    metric(rel_mse, RelMseMetric)       \
+    metric(smape, SmapeMetric)
 
 #define CRESCENT_FRAME_METRICS(metric)       \
     metric(fireflies, FirefliesMetric)       \
