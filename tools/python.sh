@@ -62,22 +62,28 @@ add_python_module() {
         say "going on without the Python package (log: $log_dir/python.log)"
 }
 
-# make_wheel ENVIRONMENT DIST: builds and repairs; sets `wheel` to the file.
+# make_sdist ENVIRONMENT DIST: the sources.
+make_sdist() {
+    local log="$log_dir/sdist.log"
+    "$1/bin/python" -m build --sdist --no-isolation -o "$2" "$root" >"$log" 2>&1 || fail 3 "$log" "making the sdist failed"
+}
+
+# make_wheel ENVIRONMENT DIST: builds and repairs; sets `wheel` to the file. Clang's kernels are a quarter faster than
+# those of g++ 12.
 make_wheel() {
     local tools=$1 dist=$2 raw="$root/build/python-raw" log="$log_dir/wheel.log" start=$SECONDS made
     say "building the wheel (log: ${log#"$root"/})"
     rm -rf "$raw"
-    # Clang's kernels are a quarter faster than those of g++ 12.
     (cd "$root" && CXX=${CXX:-$(command -v clang++-19 || echo c++)} PATH="$tools/bin:$PATH" \
         "$tools/bin/python" -m pip --disable-pip-version-check wheel -v . --no-build-isolation --no-deps -w "$raw") \
         >"$log" 2>&1 || fail 3 "$log" "building the wheel failed"
     made=$(ls "$raw"/*.whl) || fail 3 "$log" "no wheel came of it"
-    PATH="$tools/bin:$PATH" "$tools/bin/python" -m auditwheel repair --strip -w "$raw/repaired" "$made" >>"$log" 2>&1 ||
+    PATH="$tools/bin:$PATH" "$tools/bin/python" "$root/tools/repair_wheel.py" "$made" "$raw/repaired" >>"$log" 2>&1 ||
         fail 3 "$log" "auditwheel could not repair ${made##*/}"
     made=$(ls "$raw"/repaired/*.whl)
-    mkdir -p "$dist"
+    [ "$(stat -c %s "$made")" -lt 40000000 ] || fail 1 "$log" "${made##*/} has 40 MB or more"
     wheel="$dist/${made##*/}"
-    mv "$made" "$wheel.partial" && mv "$wheel.partial" "$wheel" || fail 3 "$log" "cannot write $wheel"
+    mv "$made" "$wheel" || fail 3 "$log" "cannot write $wheel"
     say "built ${wheel##*/} in $((SECONDS - start)) s"
 }
 

@@ -133,8 +133,13 @@ int exit_of(State state) {
 namespace {
 
 std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
-    if (!flags.exec.empty()) {
-        const auto adapter = start_pipe(flags.exec, limits_of(flags, monitor));
+    const bool python = names_python_sampler(flags.arm);
+    if (python && !flags.settings.empty())
+        throw InputError({"--set " + flags.settings.front(), 0, 0},
+            "is for built-in samplers, and " + flags.arm + " has its own parameters");
+    if (python || !flags.exec.empty()) {
+        const auto adapter = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
+                                    : start_pipe(flags.exec, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
         return make_user_cases(adapter, flags.full, grid_of(flags));
     }
@@ -152,6 +157,18 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
         math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
     t.wo = wo;
     return {t};
+}
+
+/// The sampler as the command line names it.
+std::string given_sampler(const CheckFlags& flags) {
+    return !flags.exec.empty() ? flags.exec : !flags.plugin.empty() ? flags.plugin : flags.arm;
+}
+
+/// --patience and --accept-few are for programs, a Python interpreter among them.
+void check_limits(const CheckFlags& flags) {
+    if (!flags.exec.empty() || names_python_sampler(flags.arm)) return;
+    for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
+        if (given) throw InputError({flag, 0, 0}, "needs --exec or a sampler in a Python file");
 }
 
 bool whole_list(const CheckFlags& flags) {
@@ -271,6 +288,7 @@ int check(const CheckFlags& given) {
     const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
+    check_limits(flags);
     try_files(flags);
     if (flags.right > 0) return check_right(flags, monitor);
     if (flags.planted) return check_planted(flags, monitor);
@@ -286,7 +304,7 @@ int check(const CheckFlags& given) {
         if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
         log_cost(check_cases, test_settings_of(flags), monitor);
         j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
-    } catch (const SamplerError& fault) { j = complaint(fault, flags, flags.exec.empty() ? flags.plugin : flags.exec); }
+    } catch (const SamplerError& fault) { j = complaint(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
     const bool all = whole_list(flags);
@@ -337,6 +355,8 @@ std::vector<CheckCase> others_of(
             throw InputError({"--against " + flags.against, 0, 0},
                 "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
                 "or a program");
+    if (names_python_sampler(flags.against) && flags.against.find(' ') == std::string::npos)
+        return sampler_against(start_python_sampler(flags.against, limits_of(flags, monitor)), a);
     try {
         return sampler_against(start_pipe(flags.against, limits_of(flags, monitor)), a);
     } catch (const InputError&) {  // start_pipe calls it --exec

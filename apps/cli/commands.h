@@ -35,6 +35,8 @@ struct RunFlags {
     bool quiet = false, preview = false, no_code = false;
 };
 int run(const RunFlags& flags);
+/// The file that was given, or the installed experiment of that name: `crescent run gallery`.
+std::string experiment_file(const std::string& given);
 
 struct JoinFlags {
     std::vector<std::string> parts;

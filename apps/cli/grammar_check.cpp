@@ -33,7 +33,7 @@ std::string verdicts_in_order() {
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
         "hold the sampler against a built-in arm or a program: same distribution, same f, variance ratio");
-    against->type_name("ARM|'PROGRAM'")->check(not_empty);
+    against->type_name("ARM|FILE.py:NAME|'PROGRAM'")->check(not_empty);
     return against;
 }
 
@@ -81,13 +81,12 @@ Own own_samplers(CLI::App& c, CheckFlags& f) {
 }
 
 /// How long a program may take.
-void limits(CLI::App& c, CheckFlags& f, CLI::Option* exec) {
-    c.add_option("--patience", f.patience, "s that --exec may take in all; default 120, with --full 3600")
+void limits(CLI::App& c, CheckFlags& f) {
+    c.add_option("--patience", f.patience, "s that a program may take in all; default 120, with --full 3600")
         ->type_name("SECONDS")
-        ->needs(exec)
         ->check(number(0.01, 1e6));
     timeout(c, f.timeout);
-    c.add_flag("--accept-few", f.accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
+    c.add_flag("--accept-few", f.accept_few, "judge a slow program by the w_o that there was time for");
 }
 
 }  // namespace
@@ -96,7 +95,7 @@ void add_check(CLI::App& app, Work& work) {
     std::shared_ptr<CheckFlags> f;
     CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
     c->footer(verdicts_in_order() + check_footer);
-    auto* arm = c->add_option("ARM", f->arm, "a built-in arm; without it, all")->type_name("");
+    auto* arm = c->add_option("ARM", f->arm, "a built-in arm, or FILE.py:NAME; without it, all")->type_name("");
     auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
                     ->type_name("KEY=VALUE")
                     ->take_all()
@@ -112,7 +111,7 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(arm)
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
-    limits(*c, *f, exec);
+    limits(*c, *f);
     auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters")
                       ->type_name("N")
                       ->check(whole_number(1, 1000000));

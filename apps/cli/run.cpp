@@ -40,6 +40,13 @@ int show_preview(const Experiment& experiment, const RunOptions& options, Progre
 
 }  // namespace
 
+std::string experiment_file(const std::string& given) {
+    std::error_code none;
+    const bool name = given.find_first_of("/.") == std::string::npos && !std::filesystem::exists(given, none);
+    const std::string installed = name ? shared_file("experiments/" + given + ".toml") : "";
+    return installed.empty() ? given : installed;
+}
+
 int run(const RunFlags& flags) {
     std::vector<std::string> overrides = flags.overrides;
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
@@ -47,7 +54,7 @@ int run(const RunFlags& flags) {
     if (!flags.only.empty()) options.parts = output_parts(flags.only);
     if (!flags.seed_range.empty())
         std::sscanf(flags.seed_range.c_str(), "%d:%d", &options.seeds.first, &options.seeds.last);
-    const Experiment experiment = load(flags.file, overrides);
+    const Experiment experiment = load(experiment_file(flags.file), overrides);
     if (flags.no_code) refuse_code(experiment);
 
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;

@@ -34,6 +34,7 @@
 #include "check/sources/cases.h"
 #include "check/sources/pipe.h"
 #include "check/sources/plugin.h"
+#include "check/sources/python_sampler.h"
 #include "check/sources/sample_file.h"
 #include "check/user.h"
 #include "check/verdict_names.h"

@@ -27,6 +27,9 @@ ARRAYS = {
     "lights": ("position", "normal", "edge_u", "edge_v", "shines", "radius", "radiance"),
 }
 
+#: The kinds of light by the number that a program receives.
+KINDS = ("disk", "sphere", "rectangle")
+
 #: The surface on which `crescent.check` tests a sampler that uses one, where `settings` gives no other.
 DEFAULTS = {"s": 32.0, "alpha": 0.24253562503633297, "rho_d": 0.5, "rho_s": 0.5}
 
@@ -83,6 +86,40 @@ def arrays_of(uses: Sequence[str], given: Mapping[str, Any], n: int) -> list[Any
             array = np.broadcast_to(array, (n, *np.shape(array)))
         out.append(array != 0 if name == "shines" else array)
     return out
+
+
+#: Columns of one light in a program's rows, in their order: its kind, then the parts of ARRAYS["lights"].
+_LIGHT = {"radius": 1, "radiance": 3, "position": 3, "normal": 3, "edge_u": 3, "edge_v": 3, "shines": 1}
+
+
+def columns_of(uses: Sequence[str], lights: int) -> int:
+    """Columns of a context in a program's rows, as src/check/sources/context_columns.h has them."""
+    widths = {"rho_d": 3, "lights": 1 + lights * (1 + sum(_LIGHT.values()))}
+    return sum(widths.get(name, 1) for name in uses)
+
+
+def decoded(uses: Sequence[str], rows: Array) -> tuple[tuple[str, ...], list[Any]]:
+    """The kinds of the lights and the arrays of `uses` from these columns."""
+    kinds: tuple[str, ...] = ()
+    given: dict[str, Any] = {}
+    at = 0
+    for name in uses:
+        if name == "lights":
+            lights = int(rows[0, at])
+            width = 1 + sum(_LIGHT.values())
+            table = rows[:, at + 1 : at + 1 + lights * width].reshape(len(rows), lights, width)
+            kinds = tuple(KINDS[k] if k < len(KINDS) else str(k) for k in table[0, :, 0].astype(int))
+            first = 1
+            for part, size in _LIGHT.items():
+                given[part] = table[:, :, first : first + size] if size > 1 else table[:, :, first]
+                first += size
+            given["radius"], given["radiance"] = given["radius"][0], given["radiance"][0]
+            at += 1 + lights * width
+        else:
+            width = 3 if name == "rho_d" else 1
+            given[name] = rows[:, at : at + width] if width > 1 else rows[:, at]
+            at += width
+    return kinds, arrays_of(uses, given, len(rows))
 
 
 class ContextCalls:

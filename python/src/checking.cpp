@@ -50,10 +50,6 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     return {make_user_cases(adapter, full, grid), adapter};
 }
 
-CheckCases of_adapter(const Adapter& adapter, bool full, const Grid& grid) {
-    return {make_user_cases(adapter, full, grid), adapter};
-}
-
 /// What was checked of what, in words and for files.
 struct CheckRun {
     CheckResult result;
@@ -240,25 +236,6 @@ void add_checking(nb::module_& m) {
             return CheckCases{make_cases(arm, settings, full, grid), nullptr};
         },
         "arm"_a, "settings"_a, "full"_a, "grid"_a);
-    m.def(
-        "cases_of_program",
-        [](const std::string& command, double patience, bool full, const Grid& grid) {
-            PipeLimits limits;
-            limits.total_seconds = patience > 0 ? patience : full ? 3600 : limits.total_seconds;
-            return of_adapter(start_pipe(command, limits), full, grid);
-        },
-        "command"_a, "patience"_a, "full"_a, "grid"_a);
-    m.def(
-        "cases_of_plugin",
-        [](const std::string& path, bool full, const Grid& grid) { return of_adapter(open_plugin(path), full, grid); },
-        "path"_a, "full"_a, "grid"_a);
-    m.def(
-        "cases_of_samples",
-        [](const std::string& samples, const std::string& table, double theta, double azimuth) {
-            const auto file = std::make_shared<SampleFile>(samples, table);
-            return CheckCases{{make_user_case(file, theta, azimuth)}, file};
-        },
-        "samples"_a, "table"_a, "theta"_a, "azimuth"_a);
     m.def("draw", &draw_batches, "cases"_a, "batches"_a,
         "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
     m.def("baseline_of", &arm_beside, "arm"_a, "cases"_a);

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <thread>
@@ -143,6 +144,13 @@ std::string program_file() {
 #else
     return "";
 #endif
+}
+
+std::string shared_file(const std::string& name) {
+    std::error_code none;
+    const std::filesystem::path program = std::filesystem::canonical(program_file(), none),
+                                file = program.parent_path().parent_path() / "share" / "crescent" / name;
+    return !program.empty() && std::filesystem::exists(file, none) ? file.string() : "";
 }
 
 Usage usage() {

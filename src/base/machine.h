@@ -27,6 +27,10 @@ std::string host_cpu();
 /// The file of the running program, "" where the system does not tell.
 std::string program_file();
 
+/// ../share/crescent/NAME, seen from the folder of the running program, as `cmake --install` and the Python package lay
+/// it out; "" where there is none.
+std::string shared_file(const std::string& name);
+
 /// The same read from files below `root` ("" in use), for tests. `own` is the process's /proc/self/cgroup.
 double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
 std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit

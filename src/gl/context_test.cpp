@@ -85,8 +85,9 @@ TEST(Contexts, AWrongChoiceIsTheReadersMistakeAndNamesWhatIsThere) {
 }
 
 TEST(Contexts, ALibraryThatIsNotThereIsNamedWithWhatNeedsIt) {
-    EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl"); }),
-        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file")));
+    EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl", "libnosuch7"); }),
+        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file"),
+            HasSubstr("install the packages libnosuch7")));
 }
 
 TEST(GlBackend, IsRegisteredByItsWordAndSaysWhatItRunsOn) {

@@ -17,7 +17,7 @@ namespace {
 
 /// libEGL with what it said; one for the process.
 struct Egl {
-    Library library{"libEGL.so.1", "--instrument gl"};
+    Library library{"libEGL.so.1", "--instrument gl", "libegl1, libegl-mesa0 and libgl1-mesa-dri"};
     DriverLog log;
     decltype(eglGetProcAddress)* address = library.function<decltype(eglGetProcAddress)>("eglGetProcAddress");
     decltype(eglQueryString)* query = library.function<decltype(eglQueryString)>("eglQueryString");

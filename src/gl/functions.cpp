@@ -9,11 +9,12 @@ namespace crescent::gl {
 // ---- dlopen() with every symbol bound at once and none given to others, dlsym(), no dlclose(); the reason is
 // dlerror()'s.
 
-Library::Library(const std::string& file, const std::string& needed_for)
+Library::Library(const std::string& file, const std::string& needed_for, const std::string& packages)
     : file_(file), handle_(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
     if (handle_) return;
     const char* why = ::dlerror();
-    throw OutputError(file + " cannot be opened, and " + needed_for + " needs it: " + (why ? why : "no reason given"));
+    throw OutputError(file + " cannot be opened, and " + needed_for + " needs it: " + (why ? why : "no reason given") +
+        "; install the packages " + packages + " of Debian, or their like");
 }
 
 void* Library::address_of(const char* name) const { return ::dlsym(handle_, name); }

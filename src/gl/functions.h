@@ -14,8 +14,8 @@ namespace crescent::gl {
 
 class Library {
 public:
-    /// Throws OutputError with the loader's own words; `needed_for` says what goes without it.
-    Library(const std::string& file, const std::string& needed_for);
+    /// Throws OutputError with the loader's own words; `needed_for` says what goes without it, `packages` what has it.
+    Library(const std::string& file, const std::string& needed_for, const std::string& packages);
     /// Null where the library has no such name.
     void* address_of(const char* name) const;
     /// The same as a function; throws OutputError where it is not there.

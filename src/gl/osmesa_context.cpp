@@ -17,7 +17,7 @@ namespace {
 
 class OsMesa : public Context {
 public:
-    OsMesa() : library_("libOSMesa.so.8", "--gl-context osmesa") {
+    OsMesa() : library_("libOSMesa.so.8", "--gl-context osmesa", "libosmesa6 and libgl1-mesa-dri") {
         make_current_ = library_.function<decltype(OSMesaMakeCurrent)>("OSMesaMakeCurrent");
         current_ = library_.function<decltype(OSMesaGetCurrentContext)>("OSMesaGetCurrentContext");
         destroy_ = library_.function<decltype(OSMesaDestroyContext)>("OSMesaDestroyContext");

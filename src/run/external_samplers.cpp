@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "check/sources/pipe.h"
 #include "check/sources/plugin.h"
+#include "check/sources/python_sampler.h"
 
 namespace crescent::inline runs {
 
@@ -53,13 +54,16 @@ std::shared_ptr<const ExternalSampler> open(
     const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin, limits);
-        std::shared_ptr<const ProgramSampler> program = start_pipe(*arm.exec, limits);
+        std::shared_ptr<const ProgramSampler> program =
+            arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits);
         refuse(program->traits());
         return program;
-    } catch (const InputError&) {
-        if (!arm.exec) throw;
-        const std::string key = fmt::format("arms.{}.exec", arm.name);
-        throw InputError(experiment.place_of(key), fmt::format("{}: the shell cannot start '{}'", key, *arm.exec));
+    } catch (const InputError& error) {
+        if (arm.plugin) throw;
+        const std::string key = fmt::format("arms.{}.{}", arm.name, arm.exec ? "exec" : "python");
+        const std::string what =
+            arm.exec ? fmt::format("the shell cannot start '{}'", *arm.exec) : error.diagnostics().front().message;
+        throw InputError(experiment.place_of(key), fmt::format("{}: {}", key, what));
     } catch (const std::runtime_error& fault) {  // OutputError, SamplerError
         throw OutputError(fmt::format("the arm '{}' does not start: {}", arm.name, fault.what()));
     }

@@ -5,7 +5,7 @@
 
 namespace crescent::inline runs {
 
-std::string version();   // "0.1.0"
+std::string version();   // "0.2.0"
 std::string commit();    // as `git describe` says it, or "unknown"
 std::string compiler();  // "GNU 12.2.0"
 

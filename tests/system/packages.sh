@@ -49,3 +49,10 @@ for need in $needs; do
     done
     [ -n "$found" ] || die "$need is needed to configure, and no package of the group 'build' is it"
 done
+
+# Every file that has to state the version states that of VERSION.
+version=$(cat VERSION)
+for stated in "CITATION.cff:^version: $version$" "examples/vcpkg/ports/crescent/vcpkg.json:\"version\": \"$version\"" \
+    "CHANGELOG.md:^## \[$version\]"; do
+    grep -q "${stated#*:}" "${stated%%:*}" || die "${stated%%:*} has another version than $version"
+done

@@ -27,9 +27,10 @@ double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1
 
 class PipeSampler : public ProgramSampler {
 public:
-    PipeSampler(const std::string& command, const PipeLimits& limits) : talk_(command, limits) {
+    PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label)
+        : talk_(command, limits, label) {
         try {
-            handshake_with_program();
+            handshake_with_program(label);
         } catch (const SamplerError&) {
             const std::string& broken = talk_.broken();
             const bool unknown =
@@ -226,11 +227,12 @@ private:
         }
     }
 
-    void handshake_with_program() {
+    void handshake_with_program(const std::string& label) {
         talk_.lines(
             1, "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
             [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
+                if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
                 Handshake hello;
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
                     talk_.fault("hello 2", 0, fault.got, fault.expected);
@@ -266,8 +268,9 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits) {
-    return std::make_shared<PipeSampler>(command, limits);
+std::shared_ptr<const ProgramSampler> start_pipe(
+    const std::string& command, const PipeLimits& limits, const std::string& label) {
+    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label);
 }
 
 // ---- A table of keys, each with what it takes, from which the messages are made too. The name is all that stands

@@ -36,10 +36,14 @@ public:
     std::string name() const override = 0;
 };
 
-/// Starts `command` with /bin/sh -c. Throws SamplerError that says at which request, what came and what was expected.
-std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits = {});
+/// Starts `command` with /bin/sh -c. Throws SamplerError that says at which request, what came and what was expected;
+/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is before what it
+/// writes to stderr and before that text; "": the command.
+std::shared_ptr<const ProgramSampler> start_pipe(
+    const std::string& command, const PipeLimits& limits = {}, const std::string& label = "");
 
-// ---- What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`, or 3; docs/samplers.md has the keys.
+// ---- What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`, or `hello 3 ...`;
+// docs/samplers.md has the keys.
 
 /// What a program declares of itself in its first line.
 struct Handshake {

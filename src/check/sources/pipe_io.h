@@ -82,9 +82,9 @@ inline void append(std::string& to, double v) {
 
 class PipeConnection {
 public:
-    /// Starts `command` by the shell.
-    PipeConnection(const std::string& command, const PipeLimits& limits)
-        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = command}) {}
+    /// Starts `command` by the shell; `label` is before what it writes to stderr.
+    PipeConnection(const std::string& command, const PipeLimits& limits, const std::string& label)
+        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = label}) {}
     PipeConnection(const PipeConnection&) = delete;
     PipeConnection& operator=(const PipeConnection&) = delete;
 

@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 #include "report/plates/canvas_surface.h"
+#include "report/plates/fonts.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {
@@ -343,6 +344,7 @@ cairo_status_t append(void* document, const unsigned char* bytes, unsigned int c
 
 Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how, Medium medium)
     : scale(pixels_a_unit), theme(how) {
+    use_fonts_beside_program();
     require_font(pango_cairo_font_map_get_default());
     image = medium == Medium::svg ? cairo_svg_surface_create_for_stream(append, &document, width, height)
                                   : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);

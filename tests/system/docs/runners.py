@@ -293,11 +293,29 @@ def _run_project(page: Page, fragment: Block, block: Block) -> str:
     return "".join(page.must(build / target) for target in targets)
 
 
+def run_yaml(page: Page, block: Block) -> str:
+    try:
+        import yaml
+    except ImportError:
+        raise Absent("PyYAML") from None
+    try:
+        yaml.safe_load(block.text)
+    except yaml.YAMLError as e:
+        raise Mistake(str(e)) from None
+    return ""
+
+
+def run_groovy(page: Page, block: Block) -> str:
+    raise Absent("Jenkins")
+
+
 RUNNERS = {
     "sh": run_sh,
     "python": run_python,
     "toml": run_toml,
     "json": run_json,
+    "yaml": run_yaml,
+    "groovy": run_groovy,
     "cmake": run_cmake,
     "c": run_cpp,
     "cpp": run_cpp,
