@@ -76,9 +76,8 @@ Table numbers_of(const ExternalBatch& batch, std::size_t rows, std::size_t count
 void add_lights(const ExternalBatch& batch, std::size_t rows, std::vector<Table>& to) {
     const std::size_t count = batch.lights.size();
     const auto vectors = [&](const char* name, Vec3d ExternalLightAt::* which) {
-        to.push_back(per_run(name, batch, rows, {count, 3}, [&](std::size_t r, std::size_t j) {
-            return component(batch.lights_at[r * count + j / 3].*which, j % 3);
-        }));
+        to.push_back(per_run(name, batch, rows, {count, 3},
+            [&](std::size_t r, std::size_t j) { return component(batch.lights_at[r * count + j / 3].*which, j % 3); }));
     };
     vectors("position", &ExternalLightAt::center);
     vectors("normal", &ExternalLightAt::normal);
@@ -113,8 +112,8 @@ std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, cons
     surface("alpha", &ExternalSurface::alpha);
     surface("rho_s", &ExternalSurface::lobe);
     if (uses.contains("rho_d"))
-        all.push_back(per_run("rho_d", batch, rows, {3},
-            [&](std::size_t r, std::size_t c) { return batch.runs[r].rho_d[c]; }));
+        all.push_back(
+            per_run("rho_d", batch, rows, {3}, [&](std::size_t r, std::size_t c) { return batch.runs[r].rho_d[c]; }));
     if (uses.contains("lights")) add_lights(batch, rows, all);
     return all;
 }
@@ -124,8 +123,8 @@ std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, cons
 void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) const {
     raised_.check();
     const std::size_t rows = out.pdf.size();
-    Table wo = per_run("wo", batch, rows, {3},
-        [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
+    Table wo =
+        per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
     Table u = numbers_of(batch, rows, static_cast<std::size_t>(plan_.numbers));
     std::vector<Table> tables = context_of(batch, rows, plan_.uses);
     const Locked held;

@@ -103,7 +103,8 @@ void check_light(ParseContext& context) {
 void check_external_arms(ParseContext& context) {
     for (const ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
-        const std::array keys = {std::pair("exec", arm.exec), {"plugin", arm.plugin}, {"python", arm.python}};
+        const std::array keys = {
+            std::pair("exec", arm.exec), std::pair("plugin", arm.plugin), std::pair("python", arm.python)};
         const auto given = std::ranges::count_if(keys, [](const auto& key) { return key.second.has_value(); });
         if (given + int(!arm.sampler.empty()) > 1)
             context.report(
@@ -111,8 +112,8 @@ void check_external_arms(ParseContext& context) {
         if (arm.python && !arm.python->empty() && python_file(*arm.python).empty() &&
             arm.python->find(':') == std::string::npos)
             context.report(path + ".python",
-                fmt::format("{}.python: expected \"FILE.py:NAME\", \"FILE.py\" or \"module:NAME\", found \"{}\"",
-                    path, *arm.python));
+                fmt::format("{}.python: expected \"FILE.py:NAME\", \"FILE.py\" or \"module:NAME\", found \"{}\"", path,
+                    *arm.python));
         for (const auto& [key, text] : keys)
             if (text && text->empty())
                 context.report(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));

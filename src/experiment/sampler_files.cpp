@@ -38,7 +38,8 @@ void refuse_code(const Experiment& experiment) {
         const char* key = arm.exec ? "exec" : arm.plugin ? "plugin" : "python";
         const std::string path = fmt::format("arms.{}.{}", arm.name, key);
         found.push_back({experiment.place_of(path),
-            fmt::format("{}: with --no-code, expected a built-in sampler (key 'sampler'); found code to run: '{}'", path,
+            fmt::format("{}: with --no-code, expected a built-in sampler (key 'sampler'); found code to run: '{}'",
+                path,
                 arm.exec         ? *arm.exec
                     : arm.plugin ? *arm.plugin
                                  : *arm.python)});

@@ -47,8 +47,7 @@ std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points) {
 void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vector<ExternalLightAt>& to) {
     for (const DiskArrays& disk : shading_points.disks) to.push_back(disk_at(disk, at));
     for (const LightArrays& arrays : shading_points.others)
-        with_light_kind(
-            arrays.kind, [&]<class Kind>() { to.push_back(light_at<Kind>(local_light(arrays, at))); });
+        with_light_kind(arrays.kind, [&]<class Kind>() { to.push_back(light_at<Kind>(local_light(arrays, at))); });
 }
 
 }  // namespace crescent::inline render

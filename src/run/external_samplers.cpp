@@ -1,4 +1,5 @@
-// A program (check/sources/pipe.h) has no limit to the whole; a library is opened by check/sources/plugin.h. A wrapper around either puts the arm's name into what it throws.
+// A program (check/sources/pipe.h) has no limit to the whole; a library is opened by check/sources/plugin.h. A wrapper
+// around either puts the arm's name into what it throws.
 #include "run/external_samplers.h"
 
 #include <algorithm>

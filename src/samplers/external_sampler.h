@@ -25,7 +25,7 @@ struct ExternalSurface {
 struct ExternalLight {
     std::string_view kind;  // its name in LightKinds
     Rgb radiance;           // W/(sr m^2)
-    double radius;          // m; of a light that is neither disk nor sphere: of a ball about its centre that contains it
+    double radius;  // m; of a light that is neither disk nor sphere: of a ball about its centre that contains it
 };
 
 /// A light as one surface point sees it, in the local frame of the point, m.

@@ -104,8 +104,7 @@ public:
         values("pdf_", "pdf", "one number", at, 1, out, example_, example_lights);
     }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        if (hello_.traits.channels == 1) 
-            return values("f___", "f", "one number", at, 1, out, example_, example_lights);
+        if (hello_.traits.channels == 1) return values("f___", "f", "one number", at, 1, out, example_, example_lights);
         std::vector<Vec3d> by_channel(out.size());
         f_channels(at, by_channel);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
@@ -161,11 +160,13 @@ private:
         if (hello_.uses_lights())
             for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(lights >> (8 * byte) & 255);
         const PipeConnection::Write write = writer(verb, given, in);
-        talk_.blocks({operation, count, given, got, in, out, [&](std::size_t i) {
-                          std::string line;
-                          write(i, line);
-                          return line;
-                      }, std::move(header)});
+        talk_.blocks({operation, count, given, got, in, out,
+            [&](std::size_t i) {
+                std::string line;
+                write(i, line);
+                return line;
+            },
+            std::move(header)});
     }
 
     bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {
