@@ -12,7 +12,6 @@
 #include "commands.h"
 #include "crescent/crescent.h"
 #include "progress.h"
-#include "python_sampler.h"
 #include "signals.h"
 
 namespace crescent::cli {

@@ -31,8 +31,8 @@ struct RunFlags {
     int gl_device = -1;            // -1: a GPU where there is one
     int seeds = 0, threads = 0;    // 0: the file's; as many as this process may use
     double keep_after = 10;        // s
-    double timeout = 0;            // s per response of a program or plugin; 0: the defaults
-    bool quiet = false, preview = false;
+    double timeout = 0;            // s that an answer of a program or plugin may take; 0: the defaults
+    bool quiet = false, preview = false, no_code = false;
 };
 int run(const RunFlags& flags);
 /// The file that was given, or the installed experiment of that name: `crescent run gallery`.
@@ -50,7 +50,7 @@ struct FilmFlags {
     std::string size = "1080p";
     int seeds = 0;  // 0: the file's
     ExplainerOptions options;
-    bool quiet = false;
+    bool quiet = false, no_code = false;
 };
 int film(const FilmFlags& flags);
 

@@ -21,6 +21,7 @@ int film(const FilmFlags& flags) {
     std::vector<std::string> overrides = flags.overrides;
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
     const Experiment experiment = load(experiment_file(flags.file), overrides);
+    if (flags.no_code) refuse_code(experiment);
     if (!film_maker()) throw OutputError("this build has no film: it was configured without CRESCENT_EXPLAINER");
 
     ExplainerOptions options = flags.options;

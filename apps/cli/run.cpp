@@ -55,6 +55,7 @@ int run(const RunFlags& flags) {
     if (!flags.seed_range.empty())
         std::sscanf(flags.seed_range.c_str(), "%d:%d", &options.seeds.first, &options.seeds.last);
     const Experiment experiment = load(experiment_file(flags.file), overrides);
+    if (flags.no_code) refuse_code(experiment);
 
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
     options.threads = flags.threads;

@@ -13,6 +13,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from . import _arrays, _crescent
+from ._context import on_one_surface
 from ._files import names_a_file, sampler_at
 from ._result import CheckResult
 from ._libraries import library_named, library_wanted
@@ -198,9 +199,11 @@ def _cases_and_title(
         if pdf is not None or f is not None or known:
             raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")
         return _crescent.cases_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
-    if settings:
-        raise TypeError("settings are of a built-in arm; a sampler of one's own has its parameters in itself")
     sampler = _sampler_of(sample, pdf, f, known)
+    if settings and not sampler.uses:
+        raise TypeError("settings are of a built-in arm, or of a sampler that uses a context: uses=('alpha',)")
+    if sampler.uses:
+        sampler = on_one_surface(sampler, settings or {})
     return _cases(sampler, full, wo_deg), sampler.title()
 
 
@@ -262,6 +265,7 @@ def check(
     if isinstance(against, str):
         other = _crescent.baseline_of(against, cases)
     elif isinstance(against, Sampler):
+        against = on_one_surface(against, settings or {}) if against.uses else against
         other = _cases(against, full, wo_deg)
     elif against is not None:
         raise TypeError(

@@ -40,10 +40,10 @@ class Library:
     def _made(self, rows: Array) -> Any:
         if self.name == "torch":
             kind = self._dtype or self._module.get_default_dtype()
-            return self._module.from_numpy(rows).to(device=self._device or "cpu", dtype=kind)
-        if self.name == "jax":  # padded to a power of two, so that few shapes are compiled
+            return self._module.from_numpy(np.require(rows, requirements="W")).to(device=self._device or "cpu", dtype=kind)
+        if self.name == "jax":  # filled up to a power of two, so that few shapes are compiled
             count = 1 << max(len(rows) - 1, 63).bit_length()
-            rows = np.concatenate([rows, np.broadcast_to(rows[-1:], (count - len(rows), rows.shape[1]))])
+            rows = np.concatenate([rows, np.broadcast_to(rows[-1:], (count - len(rows), *rows.shape[1:]))])
             made = self._module.asarray(rows, self._dtype or self._module.float32)
             if self._device is None:
                 return made

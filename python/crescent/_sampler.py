@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypedDict
 
@@ -13,10 +14,12 @@ from ._arrays import Array
 
 Domain = Literal["sphere", "hemisphere"]
 Asked = Literal["upper", "both", "none"]
+Use = Literal["s", "alpha", "rho_d", "rho_s", "lights"]
 
 
 _DOMAINS = ("sphere", "hemisphere")
 _SIDES = ("upper", "both", "none")
+_USES = ("s", "alpha", "rho_d", "rho_s", "lights")
 
 
 def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
@@ -28,6 +31,18 @@ def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
     if not least <= number <= most:
         raise ValueError(f"{what} is {number}: {expected}")
     return number
+
+
+def _uses(given: Any) -> tuple[str, ...]:
+    """The names of a sequence, each once."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise TypeError(f"uses is {given!r}: expected a sequence of {', '.join(_USES)}")
+    for name in (names := tuple(dict.fromkeys(given))):
+        if name not in _USES:
+            near = difflib.get_close_matches(str(name), _USES, 1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise ValueError(f"uses has {name!r}: expected {', '.join(_USES)}{hint}")
+    return names
 
 
 @dataclass(frozen=True)
@@ -49,9 +64,11 @@ class Sampler:
     eta: float | Sequence[float] | None = None  #: index of refraction below over above
     importance: bool = False  #: f is scaled for importance, not for radiance
     reciprocal: bool = True  #: False: f is known not to be reciprocal
-    own_random: bool = False  #: it draws random numbers of its own: the same u may give another result
-    serial: bool = False  #: its callables require the caller's thread
-    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: the arrays that they return
+    own_random: bool = False  #: it draws random numbers of its own: the same u may give another answer
+    serial: bool = False  #: its callables want one thread, the caller's own
+    #: what the callables use of the surface point, by a third argument: sample(wo, u, ctx), pdf(wo, wi, ctx)
+    uses: Sequence[Use] = ()
+    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
     array_module: Any = None
     device: Any = None  #: the device of these arrays, in that library's notation
 
@@ -67,6 +84,7 @@ class Sampler:
             if getattr(self, what) not in words:
                 expected = " or ".join(repr(w) for w in words if w is not None)
                 raise ValueError(f"{what} is {getattr(self, what)!r}: expected {expected}")
+        object.__setattr__(self, "uses", _uses(self.uses))
         if self.eta is not None:
             eta = np.atleast_1d(np.asarray(self.eta, np.float64))
             if eta.shape not in ((1,), (3,)) or not (np.isfinite(eta) & (eta > 0)).all():
@@ -91,6 +109,7 @@ class Known(TypedDict, total=False):
     reciprocal: bool
     own_random: bool
     serial: bool
+    uses: Sequence[Use]
     array_module: Any
     device: Any
 

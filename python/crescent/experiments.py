@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crescent
+from ._callable_arms import Samplers, all_counts, callable_arms, source_of
 from ._sampler import whole
 
 Progress = Callable[[str, float, float], None]
@@ -130,8 +131,10 @@ class Experiment:
     [4]}``, and removed by ``del e["arms.phong"]``. Values are read as copies.
     """
 
-    def __init__(self, core: _crescent.Experiment) -> None:
+    def __init__(self, core: _crescent.Experiment, samplers: Mapping[str, Any] | None = None) -> None:
         self._core = core
+        self.samplers = Samplers()  #: samplers in Python by the name of their arm, which :func:`run` adds
+        self.samplers.update(samplers or {})
 
     def _tree(self) -> dict[str, Any]:
         """Returns every value, including those that a shape inherits."""
@@ -165,7 +168,20 @@ class Experiment:
 
     def with_(self, changes: Mapping[str, Any]) -> Experiment:
         """Another experiment, with these keys changed all at once."""
-        return Experiment(_crescent.parse(self._core.text, self._core.file, _overrides(changes)))
+        core = _crescent.parse(self._core.text, self._core.file, _overrides(changes))
+        return Experiment(core, self.samplers)
+
+    def _with_arms(self) -> Experiment:
+        """With an arm for each of `samplers`, at the sample counts of the other arms."""
+        arms = self._tree()["arms"]
+        for name in self.samplers:
+            if name in arms:
+                raise ValueError(f"samplers: the experiment has an arm '{name}': expected another name")
+        if not self.samplers:
+            return self
+        counts = all_counts(arms.values())
+        tables = {f"arms.{_quoted(n)}": {"python": source_of(s), "n": counts} for n, s in self.samplers.items()}
+        return Experiment(_crescent.with_arms(self._core, _overrides(tables)))
 
     @property
     def text(self) -> str:
@@ -174,17 +190,24 @@ class Experiment:
 
     @property
     def hash(self) -> str:
-        """The identity of an experiment, computed from every value except the number of seeds."""
-        return self._core.hash
+        """What identifies an experiment: every value but the number of seeds, and the files of its samplers."""
+        return self._with_arms()._core.hash
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return parse, (self.text, self._core.file)
+        return _restored, (self.text, self._core.file, dict(self.samplers))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Experiment) and self.hash == other.hash and self["seeds"] == other["seeds"]
+        if not isinstance(other, Experiment) or self.samplers != other.samplers:
+            return False
+        return self.hash == other.hash and self["seeds"] == other["seeds"]
 
     def __repr__(self) -> str:
         return f"<Experiment {self._core.file} {self.hash}>"
+
+
+def _restored(text: str, name: str, samplers: Mapping[str, Any]) -> Experiment:
+    """An experiment that was pickled or copied."""
+    return Experiment(_crescent.parse(text, name, []), samplers)
 
 
 def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Experiment:
@@ -369,18 +392,34 @@ def run(
     studies: bool = False,
     out: str | PathLike[str] | None = None,
     progress: Progress | None = None,
+    code: bool = True,
 ) -> Measured:
     """Runs an experiment, or the file of one.
 
-    `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and article checks too.
-    `out`: a folder for metrics and films. Films have the same bits for any `threads` and `isa`.
+    `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and evidence too.
+    `out`: a folder for metrics and films. Films are the same bits whatever `threads` and `isa` say.
+
+    Each sampler of ``e.samplers`` is an arm of its name, at the sample counts of the other arms. What it raises is
+    raised here. `code`: False refuses an experiment whose file names a plugin, a program or a Python file.
     """
     folder = None if out is None else abspath(out)
     e = experiment if isinstance(experiment, Experiment) else load(experiment)
+    if not code:
+        _crescent.refuse_code(e._core)
     if len(np.shape(seeds)) != 1 or len(seeds) != 2:
         raise ValueError(f"seeds is {seeds!r}: expected the first and the last of the series, (1, 0) for all")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
-    core = _crescent.run(e._core, seeds[0], seeds[1], threads=threads, isa=isa, studies=studies, progress=progress)
+    with_arms = e._with_arms()
+    core = _crescent.run(
+        with_arms._core,
+        seeds[0],
+        seeds[1],
+        threads=threads,
+        isa=isa,
+        studies=studies,
+        progress=progress,
+        callables=callable_arms(e.samplers, with_arms._tree()["arms"]),
+    )
     measured = Measured(core)
     if folder is not None:
         measured.write(folder)

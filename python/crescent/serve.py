@@ -1,7 +1,8 @@
-"""``python -m crescent.serve FILE.py:NAME``: a sampler in Python behind the pipe protocol, for ``crescent check``.
+"""``python -m crescent.serve FILE.py:NAME``: a sampler in Python behind the pipe protocol, for ``check`` and ``run``.
 
 Protocol 2 in blocks of doubles (docs/samplers.md has its grammar): a request is four letters, a count and so many rows
-of w_o and u, or of w_o and w_i; an answer is the count and its rows. The sampler's own output goes to stderr.
+of w_o and u, or of w_o and w_i; an answer is the count and its rows. Protocol 3, of a sampler that uses a context, has
+the columns of the context after them. The sampler's own output goes to stderr.
 """
 
 from __future__ import annotations
@@ -18,18 +19,60 @@ import numpy as np
 from . import _arrays
 from ._arrays import Array
 from ._check import _look, _of_library
+from ._context import ContextCalls, columns_of, decoded, on_one_surface
 from ._files import sampler_at
 from ._sampler import Sampler
 
 Answer = Callable[[Array], Array]
 
 
-def _samples(s: Sampler, weights: int, delta: bool) -> Answer:
+class _Calls:
+    """The callables of a sampler on rows of w_o, a second part and the columns of a context."""
+
+    def __init__(self, s: Sampler) -> None:
+        self._uses, self._name, self._takes_wo = s.uses, s.title(), s.wo != "none"
+        self._calls = ContextCalls(s) if s.uses else None
+        self._sampler = s if s.uses else _of_library(s)
+
+    def sample(self, rows: Array) -> _arrays.Parts:
+        """All four parts of `sample`."""
+        end = 3 + self._sampler.u
+        wo, u = rows[:, :3], rows[:, 3:end]
+        if self._calls is None:
+            return _arrays.asks_sample(self._sampler.sample, self._name, self._takes_wo)(wo, u)
+        answer = self._calls.sample(wo, u, *decoded(self._uses, rows[:, end:]))
+        return _arrays.draws(answer, len(rows), self._name)
+
+    def _value(self, call: Callable[..., Any], rows: Array) -> Any:
+        wo, wi = rows[:, :3], rows[:, 3:6]
+        if self._calls is None:
+            return call(wo, wi) if self._takes_wo else call(wi)
+        return self._calls.value(call, wo, wi, *decoded(self._uses, rows[:, 6:]))
+
+    def pdf(self, rows: Array) -> Array:
+        """`pdf`, or 1 where the sampler has none."""
+        if self._sampler.pdf is None:
+            return np.ones(len(rows))
+        return _arrays.column(self._value(self._sampler.pdf, rows), len(rows), f"{self._name}: pdf")
+
+    def f(self, rows: Array, count: int) -> Array:
+        """f by channel, NaN where the sampler has none."""
+        if self._sampler.f is None:
+            return np.full((len(rows), count), np.nan)
+        call = self._sampler.f
+
+        def bound(wo: Array, wi: Array) -> Any:
+            return self._value(call, rows)
+
+        ask = _arrays.asks_f(bound, self._name, count)
+        return np.broadcast_to(ask(rows[:, :3], rows[:, 3:6]), (len(rows), count))
+
+
+def _samples(s: Sampler, calls: _Calls, weights: int, delta: bool) -> Answer:
     """Rows of w_o and u -> rows of w_i, pdf and weights; -q is the pdf of a delta part."""
-    ask = _arrays.asks_sample(s.sample, s.title(), s.wo != "none")
 
     def answer(rows: Array) -> Array:
-        wi, pdf, weight, chosen = ask(rows[:, :3], rows[:, 3:])
+        wi, pdf, weight, chosen = calls.sample(rows)
         out = np.empty((len(rows), 4 + weights))
         out[:, :3] = wi
         out[:, 3] = pdf if s.pdf is not None else pdf > 0
@@ -42,19 +85,6 @@ def _samples(s: Sampler, weights: int, delta: bool) -> Answer:
         return out
 
     return answer
-
-
-def _values(ask: Callable[[Array, Array], Array]) -> Answer:
-    """Rows of w_o and w_i -> values."""
-    return lambda rows: ask(rows[:, :3], rows[:, 3:])
-
-
-def _f(s: Sampler, count: int) -> Answer:
-    """f by channel, NaN where the sampler has none."""
-    if s.f is None:
-        return lambda rows: np.full((len(rows), count), np.nan)
-    ask = _arrays.asks_f(s.f, s.title(), count)
-    return lambda rows: np.broadcast_to(ask(rows[:, :3], rows[:, 3:]), (len(rows), count))
 
 
 def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
@@ -71,24 +101,28 @@ def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
     keys.update({key: value for key, (value, there) in given.items() if there})
     if s.eta is not None:
         keys["eta"] = ",".join(repr(float(v)) for v in np.atleast_1d(s.eta))
+    if s.uses:
+        keys["uses"] = ",".join(s.uses)
     name = " ".join(s.title().replace("=", "-").split()) or "sampler"
-    return f"hello 2 {name} " + " ".join(f"{key}={value}" for key, value in keys.items())
+    return f"hello {3 if s.uses else 2} {name} " + " ".join(f"{key}={value}" for key, value in keys.items())
 
 
-def _started(where: str) -> tuple[str, dict[bytes, tuple[int, Answer]]]:
-    """The handshake of the sampler there, and for each operation the columns of a request and its answer."""
-    s = _of_library(sampler_at(where))
-    channels, weighs, delta = _look(s)
+def _started(where: str) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]:
+    """The handshake of the sampler there, the sampler, and for each operation the columns before those of the context,
+    and its answer."""
+    s = sampler_at(where)
+    channels, weighs, delta = _look(on_one_surface(s, {}) if s.uses else _of_library(s))
     count = s.channels or channels
     delta = delta if s.delta is None else s.delta
     if delta and not weighs:
         raise ValueError(f"{where}: sample gives delta parts without weights; expected (wi, pdf, weight, delta)")
-    pdf = _arrays.asks_pdf(s.pdf, s.title(), s.wo != "none") if s.pdf is not None else lambda wo, wi: np.ones(len(wo))
-    return _handshake(s, count, weighs, delta), {
-        b"smpl": (3 + s.u, _samples(s, count if weighs else 0, delta)),
-        b"pdf_": (6, _values(pdf)),
-        b"f___": (6, _f(s, count)),
+    calls = _Calls(s)
+    operations: dict[bytes, tuple[int, Answer]] = {
+        b"smpl": (3 + s.u, _samples(s, calls, count if weighs else 0, delta)),
+        b"pdf_": (6, calls.pdf),
+        b"f___": (6, lambda rows: calls.f(rows, count)),
     }
+    return _handshake(s, count, weighs, delta), s, operations
 
 
 def _said(error: BaseException) -> str:
@@ -97,11 +131,13 @@ def _said(error: BaseException) -> str:
     return text if isinstance(error, ValueError) and text else f"{type(error).__name__}: {text}"
 
 
-def _serve(requests: BinaryIO, answers: BinaryIO, operations: dict[bytes, tuple[int, Answer]]) -> None:
+def _serve(requests: BinaryIO, answers: BinaryIO, s: Sampler, operations: dict[bytes, tuple[int, Answer]]) -> None:
     """Answers blocks until the input ends."""
     while len(head := requests.read(8)) == 8:
         columns, answer = operations[head[:4]]
         count = struct.unpack("<I", head[4:])[0]
+        lights = struct.unpack("<I", requests.read(4))[0] if "lights" in s.uses else 0
+        columns += columns_of(s.uses, lights)
         rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns)
         try:
             out = np.ascontiguousarray(answer(rows), "<f8")
@@ -126,7 +162,7 @@ def main() -> int:
     try:
         if len(sys.argv) != 2:
             raise ValueError("crescent.serve takes one FILE.py:NAME")
-        handshake, operations = _started(sys.argv[1])
+        handshake, sampler, operations = _started(sys.argv[1])
     except Exception as error:  # noqa: BLE001: an error of the module that is imported is one of the call
         answers.write(f"error {_said(error).removeprefix(sys.argv[-1] + ': ')}\n".encode())
         answers.flush()
@@ -134,7 +170,7 @@ def main() -> int:
     answers.write(handshake.encode(errors="replace") + b"\n")
     answers.flush()
     with np.errstate(all="ignore"):
-        _serve(requests, answers, operations)
+        _serve(requests, answers, sampler, operations)
     return 0
 
 

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+#include "callable_arm.h"
 #include "doors.h"
 #include "watched.h"
 
@@ -122,14 +123,24 @@ void restore(RunResult& into, const State& state) {
     }
 }
 
+/// (arm, draw, numbers, uses, serial) of each arm whose sampler is a callable, see callable_arm.h.
+using CallableArms = std::vector<std::tuple<std::string, nb::object, int, std::vector<std::string>, bool>>;
+
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
-    bool studies, const nb::object& progress) {
+    bool studies, const nb::object& progress, const CallableArms& callables) {
     PolledMonitor monitor;
     Raised raised(monitor);
     RunResult out;
-    watched(monitor, raised, progress, false, [&] {
+    bool serial = false;
+    ExternalSamplers samplers;
+    for (const auto& [name, draw, numbers, uses, one_thread] : callables) {
+        serial = serial || one_thread;
+        samplers[name] = std::make_shared<CallableArm>(
+            CallableArmPlan{name, draw, numbers, {uses.begin(), uses.end()}, one_thread}, raised);
+    }
+    watched(monitor, raised, progress, serial, [&] {
         const RunPlan what = plan(experiment, {first, last});
-        const Engine engine = settled({.threads = threads, .isa = isa, .backend = nullptr});
+        const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Prepared prepared = prepare(what, engine, monitor);
         std::vector<JobResult> results;
         for (const Job& job : what.jobs) {
@@ -179,7 +190,10 @@ Experiment settled_paths(Experiment e) {
     };
     e = with_figures(std::move(e));
     absolute(e.published);
-    for (ArmPlan& arm : e.arms) absolute(arm.plugin);
+    for (ArmPlan& arm : e.arms) {
+        absolute(arm.plugin);
+        if (arm.python && !python_file(*arm.python).empty()) absolute(arm.python);
+    }
     return e;
 }
 
@@ -203,6 +217,15 @@ void add_experiments(nb::module_& m) {
             return settled_paths(parse(text, name, overrides));
         },
         "text"_a, "name"_a, "overrides"_a = Overrides{});
+    m.def("refuse_code", &refuse_code, "experiment"_a);
+    m.def(
+        "with_arms",
+        [](const Experiment& e, const Overrides& arms) {
+            Experiment out = settled_paths(parse(canonical_text(e), e.file, arms));
+            out.overrides = e.overrides;  // what was changed by the user has columns in metrics.csv
+            return out;
+        },
+        "experiment"_a, "arms"_a, "With these keys of arms, KEY=VALUE each.");
     m.def(
         "nearest", [](const std::string& word, const std::vector<std::string>& valid) { return nearest(word, valid); },
         "word"_a, "valid"_a, "The word of `valid` nearest to `word`; empty where none is near.");
@@ -227,7 +250,7 @@ void add_experiments(nb::module_& m) {
         },
         "parts"_a);
     m.def("run", &run_experiment, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a,
-        "progress"_a.none());
+        "progress"_a.none(), "callables"_a = CallableArms{});
 }
 
 }  // namespace crescent::python

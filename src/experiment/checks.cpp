@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "experiment/parser.h"
 #include "experiment/queries.h"
+#include "experiment/sampler_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {
@@ -101,9 +103,18 @@ void check_light(ParseContext& context) {
 void check_external_arms(ParseContext& context) {
     for (const ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
-        if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
-            context.report(path, fmt::format("{}: expected one of sampler, exec and plugin, found several", path));
-        for (const auto& [key, text] : {std::pair("exec", arm.exec), std::pair("plugin", arm.plugin)})
+        const std::array keys = {
+            std::pair("exec", arm.exec), std::pair("plugin", arm.plugin), std::pair("python", arm.python)};
+        const auto given = std::ranges::count_if(keys, [](const auto& key) { return key.second.has_value(); });
+        if (given + int(!arm.sampler.empty()) > 1)
+            context.report(
+                path, fmt::format("{}: expected one of sampler, exec, plugin and python, found several", path));
+        if (arm.python && !arm.python->empty() && python_file(*arm.python).empty() &&
+            arm.python->find(':') == std::string::npos)
+            context.report(path + ".python",
+                fmt::format("{}.python: expected \"FILE.py:NAME\", \"FILE.py\" or \"module:NAME\", found \"{}\"", path,
+                    *arm.python));
+        for (const auto& [key, text] : keys)
             if (text && text->empty())
                 context.report(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
     }

@@ -98,10 +98,12 @@ constexpr const PlateInfo& plate_info(PlateKind kind) { return plate_infos[stati
 /// One sampler with its sample counts, which are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
-    std::string sampler;           // a name of samplers/all.h; "": given by exec or plugin
+    std::string sampler;           // a word of arms/all.h; "": what exec, plugin or python names
     std::vector<std::uint64_t> n;  // ascending samples per pixel
     SourceLocation at;
-    std::optional<std::string> exec = {}, plugin = {};  // a command, the file of a shared library
+    // A command, the file of a shared library, a sampler in Python as "FILE.py:NAME" or "module:NAME".
+    std::optional<std::string> exec = {}, plugin = {}, python = {};
+    bool is_external() const { return exec || plugin || python; }
 };
 
 /// The exponent control: `arm` repeated at each s, which changes the pdf, the BRDF and the reference.
@@ -214,9 +216,9 @@ Experiment with_figures(Experiment experiment);
 /// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
 /// layout.
 std::string canonical_text(const Experiment& experiment);
-/// Returns the identity of an experiment: XXH3 of every value except the number of seeds; the content of the published
-/// values is used instead of their path. Computed at each call, so that it is correct for an experiment that was made
-/// or changed in code.
+/// What identifies an experiment: XXH3 of every value but the number of seeds and, in place of their path, of the
+/// published figures, and of the contents of the files of samplers (sampler_files.h). Computed anew at each call, so
+/// that it is right for an experiment that was made or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 
 /// Returns the keys with types, units, ranges and defaults, made from the table that parses them.

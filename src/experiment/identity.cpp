@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "experiment/sampler_files.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
@@ -149,7 +150,8 @@ std::uint64_t hash(const Experiment& experiment) {
     if (experiment.figures) counted.published.reset();  // their content counts, not their path
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);
-    if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code
+    text += sampler_file_hashes(experiment);
+    if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code: no key says it
         text += toml_text(experiment.s_of);
     return XXH3_64bits(text.data(), text.size());
 }

@@ -12,6 +12,7 @@
 
 #include "experiment/experiment.h"
 #include "experiment/queries.h"
+#include "experiment/sampler_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {
@@ -122,7 +123,7 @@ private:
     void default_value(const Key& key, const std::string& path, void* object) {
         if (key.type == Type::sampler) {  // the arm's own name, unless exec or plugin is given
             const auto& arm = *static_cast<const ArmPlan*>(object);
-            if (arm.exec || arm.plugin) return;
+            if (arm.is_external()) return;
             Node name;
             name.kind = Node::Kind::text;
             name.text = static_cast<const ArmPlan*>(object)->name;
@@ -383,8 +384,10 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     Experiment& e = context.e;
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     if (e.published) e.published = (folder / *e.published).string();
-    for (ArmPlan& arm : e.arms)
+    for (ArmPlan& arm : e.arms) {
         if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
+        if (arm.python && !python_file(*arm.python).empty()) arm.python = (folder / *arm.python).string();
+    }
     return context;
 }
 

@@ -13,6 +13,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "render/external_lights.h"
 
 namespace crescent::inline render {
 
@@ -227,11 +228,7 @@ namespace crescent::inline render {
 
 namespace {
 
-/// Number of rows fetched at once: they fit a core's cache. A shading point with more samples is fetched in parts. Does
-/// not depend on the number of threads.
-constexpr std::uint64_t longest_batch = 8192;
-
-/// The sampler of these kernels: returns the fetched draws, sample after sample.
+/// The arm of the kernels: hands out what was drawn, sample after sample.
 template <class F> struct Prefetched {
     mutable const Drawn<F>* next;
     explicit Prefetched(const Drawn<F>* first) : next(first) {}
@@ -271,6 +268,9 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
     }
 }
 
+/// rho_d of rho_d / pi.
+Rgb albedo(const Rgb& lambert) { return {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}; }
+
 using PointKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
 
 template <class L> void estimate_point(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
@@ -291,8 +291,13 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
     const std::uint64_t n = call.sample_counts.back();
     const auto numbers = static_cast<std::size_t>(sampler.numbers());
     const PointKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(shading_points.lobe + 1)];
+    // The same batches for any number of threads; a shading point of more samples is fetched in parts.
+    const std::uint64_t longest_batch = sampler.batch_rows();
     const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
+    const std::vector<ExternalLight> lights =
+        sampler.uses_lights() ? lights_of(shading_points) : std::vector<ExternalLight>{};
     std::vector<ExternalRun> runs;
+    std::vector<ExternalLightAt> lights_at;
     std::vector<double> u, pdf;
     std::vector<Vec3<double>> wi;
     std::vector<Drawn<float>> drawn;
@@ -302,18 +307,19 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
         for (std::uint64_t first = 0; first < n; first += longest_batch) {
             if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
             const std::uint64_t count = std::min(longest_batch, n - first);
-            runs.clear(), u.clear();
+            runs.clear(), u.clear(), lights_at.clear();
             for (std::size_t at = i; at < end; ++at) {
                 const Vec3<double> wo{
                     double(shading_points.wox[at]), double(shading_points.woy[at]), double(shading_points.woz[at])};
                 runs.push_back({wo,
                     {double(shading_points.s[at]), double(shading_points.alpha[at]), double(shading_points.diffuse[at]),
                         shading_points.rho_s_exact[at]},
-                    static_cast<std::size_t>(count)});
+                    static_cast<std::size_t>(count), albedo(shading_points.lambert[at])});
+                if (!lights.empty()) add_lights_at(shading_points, at, lights_at);
                 add_numbers(shading_points.pixel[at], call.seed, first, count, numbers, u);
             }
             wi.resize(runs.size() * count), pdf.resize(wi.size());
-            sampler.draw({runs, u}, {wi, pdf});
+            sampler.draw({runs, u, lights, lights_at}, {wi, pdf});
             for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
         }
         for (std::size_t at = i; at < end; ++at) kernel(call, at, drawn.data() + (at - i) * n);

@@ -73,10 +73,12 @@ ShadingPoints empty_points(const Scene& scene, int lobe) {
             arrays.radius = static_cast<float>(disk->radius);
             arrays.two_sided = disk->two_sided;
             arrays.power = share(light);
+            arrays.radiance = light.radiance;
         } else {
             LightArrays& arrays = shading_points.others.emplace_back();
             arrays.kind = light.form.index();
             arrays.power = share(light);
+            arrays.radiance = light.radiance;
         }
     }
     for (const Occluder& o : scene.occluders()) shading_points.occluders.push_back(occluder_about(o, scene.origin()));

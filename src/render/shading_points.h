@@ -27,6 +27,7 @@ struct DiskArrays {
     float radius = 0;
     bool two_sided = false;
     float power = 0;  // Y(L) pi r^2, relative to all disks
+    Rgb radiance{};   // W/(sr m^2)
 };
 
 /// A light that is not a disk as each pixel sees it (scene/lights/light_kind.h), and the value of a sample that meets
@@ -36,6 +37,7 @@ struct LightArrays {
     std::array<std::vector<float>, local_numbers> numbers;
     std::vector<float> d, s;  // like DiskArrays::d, s
     float power = 0;
+    Rgb radiance{};  // W/(sr m^2)
 };
 
 /// Constants of one surface: luminance of f L for the fill and for each disk light.

@@ -1,5 +1,5 @@
 // The run's folder is named by the XXH3-64 of its key: version, commit, the files of program and library, the
-// experiment's hash, the back end and the seeds, the plugins. Metrics are CBOR records of a Journal, tiles a file for
+// experiment's hash, the back end and the seeds. Metrics are CBOR records of a Journal, tiles a file for
 // each pass.
 #include "run/checkpoint.h"
 
@@ -16,7 +16,6 @@
 #include <xxhash.h>
 
 #include "base/machine.h"
-#include "run/external_samplers.h"
 #include "run/version.h"
 
 namespace crescent::inline runs {
@@ -62,8 +61,7 @@ bool are_of(const Experiment& experiment, const std::vector<RegionMetrics>& metr
 }
 
 std::string key_of(const Experiment& experiment, const std::string& work) {
-    return fmt::format(
-        "{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), work, marks_of(experiment));
+    return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), hash(experiment), work);
 }
 
 /// The run's folder must be its own: if a link there leads elsewhere, nothing is kept.

@@ -89,7 +89,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
     if (out.geometry_pixels == 0)
         throw InputError(experiment.place_of("camera"),
             "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
-    out.outside = open_external(experiment, engine.timeout_s);
+    out.outside = open_external(experiment, engine.timeout_s, engine.samplers);
     TiledScene view = out.scene;
     if (can_keep_points(plan, out.scene, available_memory())) view.keep_points();
     out.views = views_at(view, plan.exponents);

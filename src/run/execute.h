@@ -26,7 +26,8 @@ struct Engine {
     int threads = 0;                     // 0: usable_threads()
     std::string isa{};                   // a name of isas(); "": the best of this machine
     std::shared_ptr<Backend> backend{};  // null: the CPU
-    double timeout_s = 0;                // for one response of a program or plugin; 0: 10 and 60 s
+    double timeout_s = 0;                // for one answer of a program or plugin; 0: 10 and 60 s
+    ExternalSamplers samplers{};         // of the caller, by arm: these are not opened
 };
 /// Returns the engine with all defaults filled in. Throws InputError if the instruction set is unknown or unsupported.
 Engine settled(Engine engine);

@@ -1,63 +1,28 @@
-// samplers/pipe.h communicates with a program, one query after another under a lock and without a total limit;
-// samplers/plugin.h opens a library. A wrapper around either adds the arm's name to exceptions.
+// A program (check/sources/pipe.h) has no limit to the whole; a library is opened by check/sources/plugin.h. A wrapper
+// around either puts the arm's name into what it throws.
 #include "run/external_samplers.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
-#include <mutex>
 
 #include "base/errors.h"
 #include "check/sources/pipe.h"
 #include "check/sources/plugin.h"
+#include "check/sources/python_sampler.h"
 
 namespace crescent::inline runs {
 
 namespace {
 
-/// A program answers one query after another.
-class Program : public ExternalSampler {
-public:
-    explicit Program(std::shared_ptr<const SamplerAdapter> program) : program_(std::move(program)) {}
-    std::string name() const override { return program_->name(); }
-    int numbers() const override { return program_->traits().numbers; }
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
-        const auto count = static_cast<std::size_t>(numbers());
-        std::size_t first = 0;
-        for (const ExternalRun& run : batch.runs) {
-            std::vector<PrimarySample> u(run.rows);
-            for (std::size_t i = 0; i < run.rows; ++i)
-                for (std::size_t k = 0; k < count; ++k) u[i][static_cast<int>(k)] = batch.u[(first + i) * count + k];
-            std::vector<Draw> draws(run.rows);
-            {
-                const std::lock_guard<std::mutex> one_at_a_time(lock_);
-                program_->sample(0, run.wo, u, draws);
-            }
-            for (std::size_t i = 0; i < run.rows; ++i)
-                out.wi[first + i] = draws[i].wi, out.pdf[first + i] = draws[i].pdf;
-            first += run.rows;
-        }
-    }
-    bool has_density() const override { return program_->traits().has_pdf; }
-    void density(
-        Vec3d wo, const ExternalSurface& /*surface*/, std::span<const Vec3d> wi, std::span<double> out) const override {
-        std::vector<Pair> at;
-        for (const Vec3d& w : wi) at.push_back({wo, w});
-        const std::lock_guard<std::mutex> one_at_a_time(lock_);
-        program_->pdf(0, at, out);
-    }
-
-private:
-    std::shared_ptr<const SamplerAdapter> program_;
-    mutable std::mutex lock_;
-};
-
-/// Adds the arm's name to exceptions.
+/// What it throws names the arm.
 class Named : public ExternalSampler {
 public:
     Named(std::string arm, std::shared_ptr<const ExternalSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
     std::string name() const override { return of_->name(); }
     int numbers() const override { return of_->numbers(); }
+    std::size_t batch_rows() const override { return of_->batch_rows(); }
+    bool uses_lights() const override { return of_->uses_lights(); }
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         named([&] { of_->draw(batch, out); });
     }
@@ -90,13 +55,16 @@ std::shared_ptr<const ExternalSampler> open(
     const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin, limits);
-        std::shared_ptr<const SamplerAdapter> program = start_pipe(*arm.exec, limits);
+        std::shared_ptr<const ProgramSampler> program =
+            arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits);
         refuse(program->traits());
-        return std::make_shared<Program>(std::move(program));
-    } catch (const InputError&) {
-        if (!arm.exec) throw;
-        const std::string key = fmt::format("arms.{}.exec", arm.name);
-        throw InputError(experiment.place_of(key), fmt::format("{}: the shell cannot start '{}'", key, *arm.exec));
+        return program;
+    } catch (const InputError& error) {
+        if (arm.plugin) throw;
+        const std::string key = fmt::format("arms.{}.{}", arm.name, arm.exec ? "exec" : "python");
+        const std::string what =
+            arm.exec ? fmt::format("the shell cannot start '{}'", *arm.exec) : error.diagnostics().front().message;
+        throw InputError(experiment.place_of(key), fmt::format("{}: {}", key, what));
     } catch (const std::runtime_error& fault) {  // OutputError, SamplerError
         throw OutputError(fmt::format("the arm '{}' does not start: {}", arm.name, fault.what()));
     }
@@ -104,25 +72,18 @@ std::shared_ptr<const ExternalSampler> open(
 
 }  // namespace
 
-ExternalSamplers open_external(const Experiment& experiment, double timeout_s) {
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s, ExternalSamplers given) {
     PipeLimits limits;
     limits.total_seconds = std::numeric_limits<double>::infinity();
     limits.limit_answers(timeout_s);
-    ExternalSamplers all;
     for (const ArmPlan& arm : experiment.arms)
-        if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment, limits));
-    return all;
-}
-
-std::string marks_of(const Experiment& experiment) {
-    std::string all;
-    for (const ArmPlan& arm : experiment.arms)
-        if (arm.plugin) all += fmt::format(" {}={:016x}", arm.name, plugin_mark(*arm.plugin));
-    return all;
+        if (arm.is_external() && !given.contains(arm.name))
+            given[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment, limits));
+    return given;
 }
 
 bool may_change(const Experiment& experiment) {
-    return std::ranges::any_of(experiment.arms, [](const ArmPlan& arm) { return arm.exec.has_value(); });
+    return std::ranges::any_of(experiment.arms, [](const ArmPlan& arm) { return arm.exec || arm.python; });
 }
 
 }  // namespace crescent::inline runs

@@ -6,14 +6,12 @@
 
 namespace crescent::inline runs {
 
-/// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name, if
-/// one does not start, is not a sampler, or cannot be used for an estimate (no pdf, delta parts). `timeout_s`: the
-/// limit of one response; 0: the defaults of PipeLimits.
-ExternalSamplers open_external(const Experiment& experiment, double timeout_s = 0);
+/// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name,
+/// where one does not start, is no sampler, or cannot be estimated with (no pdf, delta parts). `timeout_s`: what an
+/// answer may take; 0: the defaults of PipeLimits. Arms that `given` has are not opened; its samplers are returned too.
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s = 0, ExternalSamplers given = {});
 
-/// Identifies the libraries by more than their names; "" if there are none. Films of other libraries are other films.
-std::string marks_of(const Experiment& experiment);
-/// A program may change between two runs without notice.
+/// A program, or what a Python file imports, may change between two runs without a trace in the experiment's hash.
 bool may_change(const Experiment& experiment);
 
 }  // namespace crescent::inline runs

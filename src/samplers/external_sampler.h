@@ -21,17 +21,35 @@ struct ExternalSurface {
     double lobe;     // rho_s
 };
 
-/// Consecutive rows at one surface point.
+/// A light of the scene, the same for every surface point.
+struct ExternalLight {
+    std::string_view kind;  // its name in LightKinds
+    Rgb radiance;           // W/(sr m^2)
+    double radius;  // m; of a light that is neither disk nor sphere: of a ball about its centre that contains it
+};
+
+/// A light as one surface point sees it, in the local frame of the point, m.
+struct ExternalLightAt {
+    Vec3<double> center;
+    Vec3<double> normal;          // unit; 0 where the light has none
+    Vec3<double> edge_u, edge_v;  // from the centre to the middle of an edge; 0 where it has no edges
+    bool shines;                  // false: the point is on its dark side, in its plane or in it. Occlusion is ignored
+};
+
+/// Rows that follow one another at one surface point.
 struct ExternalRun {
     Vec3<double> wo;
     ExternalSurface surface;
     std::size_t rows;
+    Rgb rho_d{};  // by channel
 };
 
 /// A batch of draws. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
 struct ExternalBatch {
     std::span<const ExternalRun> runs;
     std::span<const double> u;
+    std::span<const ExternalLight> lights{};       // empty if the sampler does not use them
+    std::span<const ExternalLightAt> lights_at{};  // [run][light]
 };
 
 /// The output of a batch, one entry per row. pdf 0: nothing was drawn.
@@ -47,7 +65,11 @@ public:
     virtual std::string name() const = 0;
     /// Returns the number of random numbers per sample, 1 to 8.
     virtual int numbers() const = 0;
-    /// Draws once for each row of u. May be called by many threads at once. Throws OutputError if it does not respond.
+    /// Rows of a batch at most; the default stays in the cache of a core.
+    virtual std::size_t batch_rows() const { return 8192; }
+    /// Whether draw() reads the lights of a batch.
+    virtual bool uses_lights() const { return false; }
+    /// One draw a row of u. May be called by many threads at once. Throws OutputError if it does not answer.
     virtual void draw(const ExternalBatch& batch, const ExternalDraws& out) const = 0;
     /// Returns whether it can evaluate the density of any direction.
     virtual bool has_density() const { return false; }

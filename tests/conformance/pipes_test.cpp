@@ -2,6 +2,7 @@
 #include <csignal>
 #include <gtest/gtest.h>
 
+#include "check/sources/context_columns.h"
 #include "check/sources/pipe.h"
 #include "check/sources/sampler_adapter.h"
 
@@ -71,6 +72,19 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_EQ(g.traits.bits, 24);
 }
 
+TEST(Greetings, SayWhatAProgramUsesOfTheSurface) {
+    Handshake g;
+    EXPECT_EQ(read_handshake("hello 3 mine uses=lights,rho_d,s", g).got, "");
+    EXPECT_EQ(g.protocol, 3);
+    EXPECT_EQ(g.uses, (std::vector<std::string>{"lights", "rho_d", "s"}));
+    EXPECT_TRUE(g.uses_lights());
+    EXPECT_EQ(context_columns(g.uses, 2), 1 + 2 * 18 + 3 + 1);
+    const std::vector<double> one = example_context(g.uses);
+    ASSERT_EQ(one.size(), context_columns(g.uses, 1));
+    EXPECT_EQ(one.front(), 1);  // lights
+    EXPECT_EQ(one.back(), 32);  // s
+}
+
 TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     const auto fault = [](const char* answer) {
         Handshake g;
@@ -84,7 +98,9 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
     EXPECT_NE(fault("hello 2 x u=3 wo=both u=2").find("got the key 'u' twice"), std::string::npos);
     EXPECT_NE(fault("hello 2 u=3").find("no name"), std::string::npos);
-    EXPECT_NE(fault("hello 3 x").find("got 'hello 3 x'"), std::string::npos);
+    EXPECT_NE(fault("hello 4 x").find("got 'hello 4 x'"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x uses=alpha").find("after 'hello 3' for uses, got 'alpha'"), std::string::npos);
+    EXPECT_NE(fault("hello 3 x uses=alpha,alpha").find("got 'alpha,alpha'"), std::string::npos);
     EXPECT_EQ(fault("hello 1 x y=z"), "") << "protocol 1 has no keys: that is its name";
 }
 

@@ -18,11 +18,11 @@ struct WeightTail {
     bool weighed = false;  // every draw has a weight
     bool whole = false;    // some draws go below the surface
     statistics::Spread spread;
-    double variance_error = 0;       // relative standard error of the variance
+    double variance_error = 0;            // relative standard error of the variance
     std::optional<statistics::Tail> fit;  // none where the largest weights do not spread
-    std::size_t times_largest = 0;   // draws of the largest weight
-    bool bounded = false;            // the largest weight is no more than a few means
-    double due = 0;                  // integral of f L cos where p > 0, by the points; with that of delta parts
+    std::size_t times_largest = 0;        // draws of the largest weight
+    bool bounded = false;                 // the largest weight is no more than a few means
+    double due = 0;                       // integral of f L cos where p > 0, by the points; with that of delta parts
     // Where weights are larger than any drawn, by technique summed:
     double unseen = 0, unseen_error = 0;  // integral of f L cos, and its standard error
     double unseen_chance = 0;             // integral of p

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <mutex>
 #include <set>
 #include <vector>
 
 #include "base/errors.h"
 #include "base/text.h"
+#include "check/sources/context_columns.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/sampler_adapter.h"
 
@@ -23,7 +25,7 @@ namespace {
 /// A multiple of 2^-24, which single precision holds.
 double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1 - 0x1p-24); }
 
-class PipeSampler : public SamplerAdapter {
+class PipeSampler : public ProgramSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label)
         : talk_(command, limits, label) {
@@ -53,29 +55,56 @@ public:
     bool has_drawn_f() const override { return has_f_ || hello_.weight; }
     QueryUsage spending() const override { return talk_.spending(); }
 
+    int numbers() const override { return hello_.traits.numbers; }
+    bool uses_lights() const override { return hello_.uses_lights(); }
+    bool has_density() const override { return hello_.traits.has_pdf && !hello_.uses_lights(); }
+
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        const std::size_t numbers = static_cast<std::size_t>(hello_.traits.numbers), given = 3 + numbers,
-                          got = 4 + weights();
         const Vec3d o = asked(wo);
-        std::vector<double> in, answers(u.size() * got);
+        std::vector<double> in;
         for (const PrimarySample& v : u) {
-            for (double x : {o.x, o.y, o.z}) in.push_back(x);
-            for (int k = 0; k < hello_.traits.numbers; ++k) in.push_back(hello_.protocol == 1 ? v[k] : for_float(v[k]));
+            in.insert(in.end(), {o.x, o.y, o.z});
+            for (int k = 0; k < hello_.traits.numbers; ++k) in.push_back(number_for(v[k]));
+            in.insert(in.end(), example_.begin(), example_.end());
         }
-        std::vector<bool> delta(u.size());
-        if (hello_.blocks) query_block("smpl", "sample", u.size(), given, got, in, answers);
-        else
-            talk_.lines(
-                u.size(), sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
-                });
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = drawn(std::span(answers).subspan(i * got, got), delta[i]);
+        query_samples(in, example_lights, out);
+    }
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
+        const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        const std::size_t numbers = static_cast<std::size_t>(hello_.traits.numbers), lights = batch.lights.size();
+        std::vector<double> in, context;
+        const double* u = batch.u.data();
+        for (std::size_t r = 0; r < batch.runs.size(); ++r) {
+            const ExternalRun& run = batch.runs[r];
+            const Vec3d o = asked(run.wo);
+            context.clear();
+            add_context(hello_.uses, run, batch.lights,
+                lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
+            for (std::size_t i = 0; i < run.rows; ++i, u += numbers) {
+                in.insert(in.end(), {o.x, o.y, o.z});
+                for (std::size_t k = 0; k < numbers; ++k) in.push_back(number_for(u[k]));
+                in.insert(in.end(), context.begin(), context.end());
+            }
+        }
+        std::vector<Draw> draws(out.pdf.size());
+        query_samples(in, lights, draws);
+        for (std::size_t i = 0; i < draws.size(); ++i) out.wi[i] = draws[i].wi, out.pdf[i] = draws[i].pdf;
+    }
+    void density(
+        Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+        const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        std::vector<Pair> at;
+        for (const Vec3d& w : wi) at.push_back({wo, w});
+        std::vector<double> context;
+        const double grey = surface.diffuse;
+        add_context(hello_.uses, {wo, surface, 1, {grey, grey, grey}}, {}, {}, context);
+        values("pdf_", "pdf", "one number", at, 1, out, context, 0);
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
-        values("pdf_", "pdf", "one number", at, 1, out);
+        values("pdf_", "pdf", "one number", at, 1, out, example_, example_lights);
     }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        if (hello_.traits.channels == 1) return values("f___", "f", "one number", at, 1, out);
+        if (hello_.traits.channels == 1) return values("f___", "f", "one number", at, 1, out, example_, example_lights);
         std::vector<Vec3d> by_channel(out.size());
         f_channels(at, by_channel);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
@@ -83,14 +112,17 @@ public:
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
         if (hello_.traits.channels == 1) return SamplerAdapter::f_channels(at, out);
         std::vector<double> answers(3 * out.size());
-        values("f___", "f", "three numbers, one a channel", at, 3, answers);
+        values("f___", "f", "three numbers, one a channel", at, 3, answers, example_, example_lights);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};
     }
 
 private:
     mutable PipeConnection talk_;
+    static constexpr std::size_t example_lights = 1;  // of example_context()
     Handshake hello_;
+    std::vector<double> example_;  // the columns of a context in a check
     bool has_f_ = false;
+    mutable std::mutex lock_;
 
     std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
     Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
@@ -106,15 +138,35 @@ private:
             for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
         };
     }
+    double number_for(double u) const { return hello_.protocol == 1 ? u : for_float(u); }
+    /// Rows of w_o, u and the context -> a draw for each.
+    void query_samples(const std::vector<double>& in, std::size_t lights, std::span<Draw> out) const {
+        const std::size_t given = 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights),
+                          got = 4 + weights();
+        std::vector<double> answers(out.size() * got);
+        std::vector<bool> delta(out.size());
+        if (hello_.blocks) query_block("smpl", "sample", out.size(), given, got, in, answers, lights);
+        else
+            talk_.lines(
+                out.size(), sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+                });
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = drawn(std::span(answers).subspan(i * got, got), delta[i]);
+    }
     void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
-        const std::vector<double>& in, std::span<double> out) const {
+        const std::vector<double>& in, std::span<double> out, std::size_t lights) const {
         if (count == 0) return;
+        std::string header;
+        if (hello_.uses_lights())
+            for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(lights >> (8 * byte) & 255);
         const PipeConnection::Write write = writer(verb, given, in);
-        talk_.blocks({operation, count, given, got, in, out, [&](std::size_t i) {
-                          std::string line;
-                          write(i, line);
-                          return line;
-                      }});
+        talk_.blocks({operation, count, given, got, in, out,
+            [&](std::size_t i) {
+                std::string line;
+                write(i, line);
+                return line;
+            },
+            std::move(header)});
     }
 
     bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {
@@ -142,19 +194,21 @@ private:
 
     /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
-        std::size_t columns, std::span<double> out) const {
+        std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
+        const std::size_t given = 6 + context.size();
         const auto counts = [&](const Pair& p) { return !hello_.hemisphere || p.wi.z > 0; };
         std::vector<double> in;
         for (const Pair& p : all) {
             if (!counts(p)) continue;
             const Vec3d o = asked(p.wo);
             for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
+            in.insert(in.end(), context.begin(), context.end());
         }
-        const std::size_t count = in.size() / 6;
+        const std::size_t count = in.size() / given;
         std::vector<double> answers(count * columns);
-        if (hello_.blocks) query_block(operation, verb, count, 6, columns, in, answers);
+        if (hello_.blocks) query_block(operation, verb, count, given, columns, in, answers, lights);
         else if (count > 0)
-            talk_.lines(count, expected, writer(verb, 6, in), [&](std::size_t i, std::string_view s) {
+            talk_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
                 if (operation[0] == 'f' && s == "-") {
                     std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
                     return true;
@@ -176,7 +230,7 @@ private:
 
     void handshake_with_program(const std::string& label) {
         talk_.lines(
-            1, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
+            1, "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
             [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
@@ -184,6 +238,7 @@ private:
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
                     talk_.fault("hello 2", 0, fault.got, fault.expected);
                 hello_ = hello;
+                example_ = example_context(hello.uses);
                 return true;
             });
         talk_.greeted();
@@ -192,17 +247,18 @@ private:
     /// Whether there is a BRDF: `-`, or NaN in a block, is none.
     void probe_f() {
         const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
-        const std::vector<double> normal = {0, 0, 1, 0, 0, 1};
+        std::vector<double> normal = {0, 0, 1, 0, 0, 1};
+        normal.insert(normal.end(), example_.begin(), example_.end());
         std::vector<double> answer(columns);
         if (hello_.blocks) {
-            query_block("f___", "f", 1, 6, columns, normal, answer);
+            query_block("f___", "f", 1, normal.size(), columns, normal, answer, example_lights);
             has_f_ = !std::isnan(answer[0]);
             return;
         }
         talk_.lines(1,
             columns == 1 ? "one number, or '-' where there is no BRDF"
                          : "three numbers, one a channel, or '-' where there is no BRDF",
-            writer("f", 6, normal), [&](std::size_t, std::string_view s) {
+            writer("f", normal.size(), normal), [&](std::size_t, std::string_view s) {
                 has_f_ = s != "-";
                 for (std::size_t k = 0; has_f_ && k < columns; ++k)
                     if (!take_float(s, answer[k])) return false;
@@ -213,7 +269,7 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const SamplerAdapter> start_pipe(
+std::shared_ptr<const ProgramSampler> start_pipe(
     const std::string& command, const PipeLimits& limits, const std::string& label) {
     return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label);
 }
@@ -252,15 +308,29 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     return true;
 }
 
+/// Names of a context separated by commas, each once.
+bool uses_names(std::string_view value, std::vector<std::string>& out) {
+    out.clear();
+    for (std::size_t first = 0; first <= value.size();) {
+        const std::size_t end = std::min(value.find(',', first), value.size());
+        const std::string name(value.substr(first, end - first));
+        const bool known = std::ranges::find(context_names(), name) != context_names().end();
+        if (!known || std::ranges::find(out, name) != out.end()) return false;
+        out.push_back(name);
+        first = end + 1;
+    }
+    return true;
+}
+
 struct HandshakeKey {
     const char* name;
     const char* values;
     std::function<bool(std::string_view, Handshake&)> read;
 };
 
-const std::array<HandshakeKey, 14>& keys() {
+const std::array<HandshakeKey, 15>& keys() {
     using S = std::string_view;
-    static const std::array<HandshakeKey, 14> all = {{
+    static const std::array<HandshakeKey, 15> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
         {"domain", "hemisphere or sphere",
@@ -296,6 +366,8 @@ const std::array<HandshakeKey, 14>& keys() {
                 return v == "f32" || v == "f64";
             }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
+        {"uses", "names from s, alpha, rho_d, rho_s and lights, separated by commas, after 'hello 3'",
+            [](S v, Handshake& g) { return g.protocol == 3 && uses_names(v, g.uses); }},
     }};
     return all;
 }
@@ -322,10 +394,11 @@ HandshakeError read_key(std::string_view word, Handshake& out) {
 }  // namespace
 
 HandshakeError read_handshake(std::string_view answer, Handshake& out) {
-    const std::string form = "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'";
-    const bool one = answer.starts_with("hello 1 "), two = answer.starts_with("hello 2 ");
+    const std::string form = "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'";
+    const bool one = answer.starts_with("hello 1 "), three = answer.starts_with("hello 3 "),
+               two = three || answer.starts_with("hello 2 ");
     if ((!one && !two) || blank(answer.substr(8))) return {form, "got " + shown(answer) + only_answers};
-    out.protocol = one ? 1 : 2;
+    out.protocol = one ? 1 : three ? 3 : 2;
     std::string_view rest = answer.substr(8), name = rest;
     const std::size_t key = two ? rest.find('=') : rest.npos;
     if (key != rest.npos) {

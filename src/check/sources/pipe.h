@@ -1,14 +1,18 @@
 // A sampler in another process, over its stdin and stdout. It is greeted with `hello 2` and says what it is; one that
-// answers `hello 1 NAME` is spoken to in protocol 1, which is protocol 2 without keys. Text lines, or blocks of doubles
+// answers `hello 1 NAME` is spoken to in protocol 1, which is protocol 2 without keys; one that answers `hello 3` may
+// name what it uses of the surface point and the lights. Text lines, or blocks of doubles
 // where it asks for them; docs/samplers.md has the grammar. Local frame, n = +z; end of input ends it.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "check/sources/sampler_adapter.h"
+#include "samplers/external_sampler.h"
 
 namespace crescent::inline sources {
 
@@ -26,13 +30,20 @@ struct PipeLimits {
     }
 };
 
+/// A program: checked by itself, or an arm of an experiment. Its requests are sequential, whoever makes them.
+class ProgramSampler : public ExternalSampler, public SamplerAdapter {
+public:
+    std::string name() const override = 0;
+};
+
 /// Starts `command` with /bin/sh -c. Throws SamplerError that says at which request, what came and what was expected;
 /// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is before what it
 /// writes to stderr and before that text; "": the command.
-std::shared_ptr<const SamplerAdapter> start_pipe(
+std::shared_ptr<const ProgramSampler> start_pipe(
     const std::string& command, const PipeLimits& limits = {}, const std::string& label = "");
 
-// ---- What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`; docs/samplers.md has the keys.
+// ---- What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`, or `hello 3 ...`;
+// docs/samplers.md has the keys.
 
 /// What a program declares of itself in its first line.
 struct Handshake {
@@ -42,6 +53,8 @@ struct Handshake {
     bool hemisphere = false;  // a draw under the horizon is nothing drawn
     bool f_cos = false;       // f comes with |cos|
     bool weight = false, delta = false, blocks = false;
+    std::vector<std::string> uses;  // protocol 3: of context_names()
+    bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
 
 /// What was expected of a greeting, and what came in place of it; both empty where it could be read.

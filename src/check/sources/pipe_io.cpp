@@ -152,6 +152,7 @@ void PipeConnection::blocks(const Rows& rows) {
         const auto head = static_cast<std::uint32_t>(n);
         x.outgoing.append(rows.operation, 4);
         x.outgoing.append(reinterpret_cast<const char*>(&head), sizeof head);
+        x.outgoing += rows.header;
         x.outgoing.append(
             reinterpret_cast<const char*>(rows.in.data() + x.written * rows.given), n * rows.given * sizeof(double));
         due.push_back(n);

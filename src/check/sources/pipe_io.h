@@ -99,6 +99,7 @@ public:
         std::span<const double> in;
         std::span<double> out;
         std::function<std::string(std::size_t)> describe;
+        std::string header{};  // bytes between the count and the rows
     };
     void blocks(const Rows& rows);
 

@@ -3,7 +3,6 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +23,6 @@
 #endif
 
 #include "base/errors.h"
-#include "base/files.h"
 #include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -338,11 +336,6 @@ static_assert(sizeof(Vec3d) == 3 * sizeof(double) && sizeof(ExternalSurface) == 
 std::shared_ptr<const PluginSampler> open_plugin(
     const std::string& path, const PipeLimits& limits, const ExternalSurface& surface) {
     return std::make_shared<Plugin>(path, limits, surface);
-}
-
-std::uint64_t plugin_mark(const std::string& path) {
-    const std::string bytes = contents_of(path);
-    return XXH3_64bits(bytes.data(), bytes.size());
 }
 
 }  // namespace crescent::inline sources

@@ -3,7 +3,6 @@
 // where all that it does to its process stays.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -24,8 +23,5 @@ public:
 /// limits.call_seconds, here or in a later call.
 std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
     const ExternalSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
-
-/// XXH3 of the file: films of another library are other films.
-std::uint64_t plugin_mark(const std::string& path);
 
 }  // namespace crescent::inline sources

@@ -63,8 +63,8 @@ struct Index : std::optional<Vec3d> {
 struct Traits {
     enum class WoDomain { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
     using Asked = WoDomain;
-    int numbers = 2;                            // random numbers of a sample
-    int channels = 1;                           // of f and of the weight, 1 or 3
+    int numbers = 2;   // random numbers of a sample
+    int channels = 1;  // of f and of the weight, 1 or 3
     WoDomain wo = WoDomain::upper;
     bool has_pdf = true;      // false: no pdf(w), and the pdf of a draw is 1 or 0
     bool own_random = false;  // it draws random numbers of its own: the same u may give another answer

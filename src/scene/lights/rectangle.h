@@ -61,6 +61,10 @@ struct Rectangle {
             {u / 2, v / 2, all > 1e-4 ? all : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[6] > number<F>(0); }
+    /// From the centre to the middle of an edge, along edge_u and edge_v.
+    template <class F> static std::array<Vec3<F>, 2> half_edges(const LocalLight<F>& l) {
+        return {l.b * l.number[0], l.c * l.number[1]};
+    }
 
     /// w meets its plane at (height / v) w; testing whether that point is inside needs no division.
     template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {

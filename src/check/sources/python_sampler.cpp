@@ -1,11 +1,15 @@
-#include "python_sampler.h"
+// crescent.serve of the Python package answers in the pipe protocol.
+#include "check/sources/python_sampler.h"
 
 #include <algorithm>
 #include <cstdlib>
 
 #include <fmt/format.h>
 
-namespace crescent::cli {
+#include "base/errors.h"
+#include "base/text.h"
+
+namespace crescent::inline sources {
 
 bool names_python_sampler(const std::string& word) {
     if (word.ends_with(".py")) return true;
@@ -19,7 +23,7 @@ bool names_python_sampler(const std::string& word) {
     return where.ends_with(".py") || std::ranges::all_of(where, [&](char c) { return in_name(c) || c == '.'; });
 }
 
-std::shared_ptr<const SamplerAdapter> start_python_sampler(const std::string& word, const PipeLimits& limits) {
+std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits) {
     const char* given = std::getenv("CRESCENT_PYTHON");
     const std::string python = given && *given ? given : "python3";
     // -P: a file of the current folder does not take the place of a module that the package imports. An interpreter
@@ -39,4 +43,4 @@ std::shared_ptr<const SamplerAdapter> start_python_sampler(const std::string& wo
     }
 }
 
-}  // namespace crescent::cli
+}  // namespace crescent::inline sources

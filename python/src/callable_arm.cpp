@@ -1,0 +1,151 @@
+// The arrays of a batch are filled with the lock free, handed over and called under it, and the answer is copied with
+// the lock free. Columns are contiguous: an array [n, K, 3] has one column for each of its 3 K components.
+#include "callable_arm.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+
+#include <memory>
+#include <vector>
+
+namespace crescent::python {
+
+namespace {
+
+using Owned = nb::ndarray<nb::numpy, double>;
+using Rows = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
+using Column = nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>;
+
+double component(const Vec3d& v, std::size_t j) { return j == 0 ? v.x : j == 1 ? v.y : v.z; }
+
+/// An array that is filled before Python owns it: rows, and the shape of one row.
+class Table {
+public:
+    Table(std::string name, std::size_t rows, std::vector<std::size_t> of_row)
+        : name_(std::move(name)), rows_(rows), of_row_(std::move(of_row)) {
+        for (const std::size_t k : of_row_) columns_ *= k;
+        data_.reset(new double[std::max<std::size_t>(1, rows_ * columns_)]);
+    }
+    const std::string& name() const { return name_; }
+    std::size_t columns() const { return columns_; }
+    double* column(std::size_t k) { return data_.get() + k * rows_; }
+
+    /// With the lock held, once.
+    nb::object take() {
+        std::vector<std::size_t> shape{rows_};
+        std::vector<std::int64_t> strides{1};
+        std::int64_t stride = static_cast<std::int64_t>(rows_ * columns_);
+        for (const std::size_t k : of_row_) {
+            stride /= static_cast<std::int64_t>(std::max<std::size_t>(1, k));
+            shape.push_back(k), strides.push_back(stride);
+        }
+        double* data = data_.release();
+        const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+        return nb::cast(Owned(data, shape.size(), shape.data(), owner, strides.data()));
+    }
+
+private:
+    std::string name_;
+    std::size_t rows_;
+    std::vector<std::size_t> of_row_;
+    std::size_t columns_ = 1;
+    std::unique_ptr<double[]> data_;
+};
+
+/// One value a run, at(run, column), repeated over its rows.
+template <class At> Table per_run(
+    const char* name, const ExternalBatch& batch, std::size_t rows, std::vector<std::size_t> of_row, At&& at) {
+    Table out(name, rows, std::move(of_row));
+    for (std::size_t j = 0; j < out.columns(); ++j) {
+        double* to = out.column(j);
+        for (std::size_t r = 0; r < batch.runs.size(); ++r) to = std::fill_n(to, batch.runs[r].rows, at(r, j));
+    }
+    return out;
+}
+
+Table numbers_of(const ExternalBatch& batch, std::size_t rows, std::size_t count) {
+    Table out("u", rows, {count});
+    for (std::size_t k = 0; k < count; ++k) {
+        double* to = out.column(k);
+        for (std::size_t i = 0; i < rows; ++i) to[i] = batch.u[i * count + k];
+    }
+    return out;
+}
+
+/// What the lights are to each row.
+void add_lights(const ExternalBatch& batch, std::size_t rows, std::vector<Table>& to) {
+    const std::size_t count = batch.lights.size();
+    const auto vectors = [&](const char* name, Vec3d ExternalLightAt::* which) {
+        to.push_back(per_run(name, batch, rows, {count, 3},
+            [&](std::size_t r, std::size_t j) { return component(batch.lights_at[r * count + j / 3].*which, j % 3); }));
+    };
+    vectors("position", &ExternalLightAt::center);
+    vectors("normal", &ExternalLightAt::normal);
+    vectors("edge_u", &ExternalLightAt::edge_u);
+    vectors("edge_v", &ExternalLightAt::edge_v);
+    to.push_back(per_run("shines", batch, rows, {count},
+        [&](std::size_t r, std::size_t j) { return batch.lights_at[r * count + j].shines ? 1.0 : 0.0; }));
+}
+
+/// The constants of the lights, with the lock held.
+void put_lights(std::span<const ExternalLight> lights, nb::dict& to) {
+    nb::list kinds;
+    Table radius("radius", lights.size(), {}), radiance("radiance", lights.size(), {3});
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+        kinds.append(nb::str(lights[k].kind.data(), lights[k].kind.size()));
+        radius.column(0)[k] = lights[k].radius;
+        for (std::size_t c = 0; c < 3; ++c) radiance.column(c)[k] = lights[k].radiance[c];
+    }
+    to["kind"] = kinds;
+    to["radius"] = radius.take();
+    to["radiance"] = radiance.take();
+}
+
+std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, const std::set<std::string>& uses) {
+    std::vector<Table> all;
+    const auto surface = [&](const char* name, double ExternalSurface::* which) {
+        if (!uses.contains(name)) return;
+        all.push_back(
+            per_run(name, batch, rows, {}, [&](std::size_t r, std::size_t) { return batch.runs[r].surface.*which; }));
+    };
+    surface("s", &ExternalSurface::s);
+    surface("alpha", &ExternalSurface::alpha);
+    surface("rho_s", &ExternalSurface::lobe);
+    if (uses.contains("rho_d"))
+        all.push_back(
+            per_run("rho_d", batch, rows, {3}, [&](std::size_t r, std::size_t c) { return batch.runs[r].rho_d[c]; }));
+    if (uses.contains("lights")) add_lights(batch, rows, all);
+    return all;
+}
+
+}  // namespace
+
+void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) const {
+    raised_.check();
+    const std::size_t rows = out.pdf.size();
+    Table wo =
+        per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
+    Table u = numbers_of(batch, rows, static_cast<std::size_t>(plan_.numbers));
+    std::vector<Table> tables = context_of(batch, rows, plan_.uses);
+    const Locked held;
+    try {
+        nb::dict context;
+        for (Table& table : tables) context[table.name().c_str()] = table.take();
+        if (plan_.uses.contains("lights")) put_lights(batch.lights, context);
+        const nb::tuple answer = nb::cast<nb::tuple>(call_python(plan_.draw, wo.take(), u.take(), context));
+        const Rows wi = nb::cast<Rows>(answer[0]);
+        const Column pdf = nb::cast<Column>(answer[1]);
+        if (wi.shape(0) != rows || wi.shape(1) != 3 || pdf.shape(0) != rows)
+            throw nb::value_error("crescent._context let an array of another shape through");
+        {
+            const Unlocked free;
+            for (std::size_t i = 0; i < rows; ++i) out.wi[i] = {wi(i, 0), wi(i, 1), wi(i, 2)}, out.pdf[i] = pdf(i);
+        }
+        if (plan_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
+    } catch (...) {
+        raised_.keep();
+        throw Interrupted{};
+    }
+}
+
+}  // namespace crescent::python

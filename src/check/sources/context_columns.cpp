@@ -1,0 +1,75 @@
+// One table: each quantity with the number of its columns and what fills them.
+#include "check/sources/context_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/errors.h"
+#include "scene/lights/all.h"
+
+namespace crescent::inline sources {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> names = {"s", "alpha", "rho_d", "rho_s", "lights"};
+constexpr std::size_t columns_of_light = 18;
+
+/// 0 disk, 1 sphere, 2 rectangle, and the later kinds of LightKinds.
+double kind_number(std::string_view kind) {
+    double number = 0, found = 0;
+    const auto among = [&]<class... Kind>(KindList<Kind...>) {
+        ((Kind::name == kind ? void(found = number) : void(), ++number), ...);
+    };
+    among(LightKinds{});
+    return found;
+}
+
+void add_vector(const Vec3<double>& v, std::vector<double>& to) { to.insert(to.end(), {v.x, v.y, v.z}); }
+
+void add_light(const ExternalLight& light, const ExternalLightAt& at, std::vector<double>& to) {
+    to.push_back(kind_number(light.kind));
+    to.push_back(light.radius);
+    to.insert(to.end(), light.radiance.begin(), light.radiance.end());
+    for (const Vec3<double>& v : {at.center, at.normal, at.edge_u, at.edge_v}) add_vector(v, to);
+    to.push_back(at.shines ? 1 : 0);
+}
+
+}  // namespace
+
+std::span<const std::string_view> context_names() { return names; }
+
+std::size_t context_columns(std::span<const std::string> uses, std::size_t lights) {
+    std::size_t columns = 0;
+    for (const std::string& name : uses)
+        columns += name == "lights" ? 1 + lights * columns_of_light : name == "rho_d" ? 3 : 1;
+    return columns;
+}
+
+void add_context(std::span<const std::string> uses, const ExternalRun& point, std::span<const ExternalLight> lights,
+    std::span<const ExternalLightAt> at, std::vector<double>& to) {
+    for (const std::string& name : uses) {
+        if (name == "s") to.push_back(point.surface.s);
+        else if (name == "alpha") to.push_back(point.surface.alpha);
+        else if (name == "rho_s") to.push_back(point.surface.lobe);
+        else if (name == "rho_d") to.insert(to.end(), point.rho_d.begin(), point.rho_d.end());
+        else {
+            ensure(name == "lights", "a handshake names known quantities only");
+            to.push_back(static_cast<double>(lights.size()));
+            for (std::size_t k = 0; k < lights.size(); ++k) add_light(lights[k], at[k], to);
+        }
+    }
+}
+
+std::vector<double> example_context(std::span<const std::string> uses) {
+    const ExternalRun point{{0, 0, 1}, {32, 0.24253562503633297, 0.5, 0.5}, 1, {0.5, 0.5, 0.5}};
+    const Vec3<double> center{0.6, 0.3, 1.8};
+    const double distance = std::sqrt(dot(center, center));
+    const ExternalLight light{"disk", {10, 10, 10}, 0.4};
+    const ExternalLightAt at{center, center * (-1 / distance), {}, {}, true};
+    std::vector<double> out;
+    add_context(uses, point, {&light, 1}, {&at, 1}, out);
+    return out;
+}
+
+}  // namespace crescent::inline sources
