@@ -93,7 +93,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")
         ->type_name("N")
         ->check(whole_number(0, 1023));
-    c->add_flag("--no-code", f->no_code, "refuse a file that names a plugin, program or Python file");
+    c->add_flag("--no-code", f->no_code, "refuse a file that names a program or plugin");
     timeout(*c, f->timeout);
     c->add_option("--keep-after", f->keep_after, "longer work is kept as it goes; default 10")
         ->type_name("SECONDS")
@@ -139,7 +139,7 @@ void add_film(CLI::App& app, Work& work) {
         ->expected(1)
         ->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds (--set seeds=K)")->type_name("K")->check(whole_number(1, 4096));
-    c->add_flag("--no-code", f->no_code, "refuse a file that names a plugin, program or Python file");
+    c->add_flag("--no-code", f->no_code, "refuse a file that names a program or plugin");
     timeout(*c, o.timeout_s);
     c->add_option("--threads", o.threads, "default: as many as this process may use")
         ->type_name("N")

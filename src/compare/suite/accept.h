@@ -8,6 +8,7 @@
 
 namespace crescent::inline comparison {
 
+/// Which views of a candidate become the baseline, and what the manifest states of it.
 struct Acceptance {
     std::vector<std::string> views;      // names; empty: all that have a candidate
     std::string because, date, program;  // for the manifest

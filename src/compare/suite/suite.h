@@ -20,6 +20,7 @@ inline constexpr double share_of_means = 0.75;
 /// How --accept stores a baseline: its renders, or the mean and the variance of each pixel.
 enum class BaselineStorage { renders, moments };
 
+/// The table [suite] of a suite file.
 struct SuiteOptions {
     std::string title = "golden images";
     double alpha = 0.01;                           // false alarms of the whole suite
@@ -40,6 +41,7 @@ struct SuiteView {
     std::vector<std::string> baseline, candidate;  // files, sorted
 };
 
+/// A suite file with the files that its patterns found.
 struct Suite {
     std::string file;  // "": none
     SuiteOptions options;
@@ -73,9 +75,11 @@ std::vector<MatchedFile> match_views(const std::string& pattern);
 std::optional<std::string> path_from(
     const std::string& pattern, const std::string& view, const std::vector<std::string>& wildcards);
 
+/// What a comparison of one view finds, the most severe first.
 enum class ViewState { changed, noisier, too_few, missing, added, improved, same };
 inline constexpr std::array<const char*, 7> view_state_names = {
     "changed", "noisier", "too few renders", "missing", "new", "improved", "same"};
+/// Returns the state as outputs name it.
 inline const char* name_of(ViewState state) { return view_state_names[static_cast<std::size_t>(state)]; }
 
 /// Welch's test over renders of the variance of a pixel, mean over a region.
@@ -94,6 +98,7 @@ struct ViewPictures {
     double scale = 0;  // relative difference at the ends of the colours of `difference`
 };
 
+/// One view: its state, the sentence that states it, its tests and pictures.
 struct ViewResult {
     std::string name;
     ViewState state = ViewState::same;
@@ -113,6 +118,7 @@ struct ViewResult {
     ViewPictures pictures;
 };
 
+/// All views of a suite.
 struct SuiteResult {
     std::vector<ViewResult> views;
     std::size_t tested = 0;  // views that share alpha

@@ -2,4 +2,6 @@
 // BRDF".
 #include "shading_point.glsl"
 
-float lobe_phong(vec3 wo, vec3 wi) { return (shading_point.s + 2.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), shading_point.s); }
+float lobe_phong(vec3 wo, vec3 wi) {
+    return (shading_point.s + 2.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), shading_point.s);
+}
