@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-#define CRESCENT_SAMPLER_ABI 1
+#define CRESCENT_SAMPLER_ABI 2
 
 /* CRESCENT_SAMPLER_ABI as it was when the library was compiled. */
 unsigned crescent_sampler_abi(void);
@@ -22,8 +22,26 @@ unsigned crescent_sampler_numbers(void);
 /* Not 0: one call at a time; default 0. */
 int crescent_sampler_serial(void);
 
-/* Draws `count` directions. Rows: wo 3; u crescent_sampler_numbers() numbers in [0, 1); surface 4: Phong exponent s,
- * GGX roughness alpha, luminance of the diffuse albedo, specular albedo. Writes rows of wi (3) and of pdf (1); pdf 0:
+/* What the columns of `surface` are, since ABI 2: names separated by commas, in any order. Default, and in ABI 1: 4
+ * columns, Phong exponent s, GGX roughness alpha, luminance of the diffuse albedo, specular albedo.
+ *   s, alpha, rho_s  1 column each
+ *   rho_d            3 columns, the diffuse albedo by channel
+ *   lights           1 column, the number of lights, then a crescent_light for each; the same number in all rows */
+const char* crescent_sampler_uses(void);
+
+/* A light as the surface point sees it, 18 doubles; m and W/(sr m^2), in the local frame. */
+typedef struct crescent_light {
+    double kind;                 /* 0 disk, 1 sphere, 2 rectangle */
+    double radius;               /* of a rectangle that of the circle through its corners */
+    double radiance[3];          /* linear Rec. 709 */
+    double position[3];          /* of the centre */
+    double normal[3];            /* unit; 0 for a sphere */
+    double edge_u[3], edge_v[3]; /* of a rectangle, from the centre to the middle of an edge; otherwise 0 */
+    double shines;               /* 1: it faces the point; occlusion is ignored */
+} crescent_light;
+
+/* Draws `count` directions. Rows: wo 3; u crescent_sampler_numbers() numbers in [0, 1); surface as
+ * crescent_sampler_uses() says. Writes rows of wi (3) and of pdf (1); pdf 0:
  * nothing was drawn. Returns 0, or a number that is told and ends the run. */
 int crescent_sampler_sample(
     size_t count, const double* wo, const double* u, const double* surface, double* wi, double* pdf);

@@ -103,6 +103,24 @@ expect 0 "$CRESCENT" run unasked.toml --out unasked --quiet --only plates
 rose unasked
 [ "$mine" -lt $((built_in * 4 / 5)) ] || die "a rose without a density: $mine colours, with one $built_in"
 
+# Version 2 of the interface: the material by channel and the lights in the frame of each point. Version 1 still runs.
+cp "$here/lights_plugin.c" lights.c && cc_shared lights
+sed 's/^\[arms.cosine\]/[arms.light-area]/; s/^radiance = \[1.2.*/radiance = [0, 0, 0]/
+    s/^\[arms.uniform\]/[arms.mine]\nplugin = "lights.so"/' "$tiny" >lights.toml
+expect 0 "$CRESCENT" run lights.toml --out lights --only metrics --quiet
+expect 0 python3 - <<'PY'
+import json
+m = json.load(open("lights/metrics.json"))
+mean = {r["arm"]: r["y_mean"] for r in m["runs"] if r["n"] == 16}
+assert mean["mine"] > 0 and abs(mean["mine"] / mean["light-area"] - 1) < 0.01, mean
+PY
+expect 0 "$CRESCENT" check --quiet --plugin ./lights.so --wo 30
+sed 's/"rho_d,lights"/"rho_d,lamps"/' lights.c >lamps.c && cc_shared lamps
+told 'plugin = "lamps.so"' 3 "crescent_sampler_uses gives 'rho_d,lamps': expected s, alpha, rho_d, rho_s, lights"
+sed 's/return CRESCENT_SAMPLER_ABI/return 1/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >first.c && cc_shared first
+sed 's|^plugin = .*|plugin = "first.so"|' mine.toml >first.toml
+expect 0 "$CRESCENT" run first.toml --out first --only metrics --quiet
+
 # What a plugin may do to its process. odd NAME [-D HOOK]...: odd_plugin.c as NAME.so and an experiment NAME.toml.
 odd() {
     local name=$1

@@ -61,14 +61,28 @@ void add_context(std::span<const std::string> uses, const ExternalRun& point, st
     }
 }
 
+bool take_context_names(std::string_view text, std::vector<std::string>& out) {
+    out.clear();
+    for (std::size_t first = 0; first <= text.size();) {
+        const std::size_t end = std::min(text.find(',', first), text.size());
+        const std::string name(text.substr(first, end - first));
+        if (std::ranges::find(names, name) == names.end() || std::ranges::find(out, name) != out.end()) return false;
+        out.push_back(name);
+        first = end + 1;
+    }
+    return true;
+}
+
+ExampleLight example_light() {
+    const Vec3<double> center{0.6, 0.3, 1.8};
+    return {{"disk", {10, 10, 10}, 0.4}, {center, center * (-1 / std::sqrt(dot(center, center))), {}, {}, true}};
+}
+
 std::vector<double> example_context(std::span<const std::string> uses) {
     const ExternalRun point{{0, 0, 1}, {32, 0.24253562503633297, 0.5, 0.5}, 1, {0.5, 0.5, 0.5}};
-    const Vec3<double> center{0.6, 0.3, 1.8};
-    const double distance = std::sqrt(dot(center, center));
-    const ExternalLight light{"disk", {10, 10, 10}, 0.4};
-    const ExternalLightAt at{center, center * (-1 / distance), {}, {}, true};
+    const ExampleLight example = example_light();
     std::vector<double> out;
-    add_context(uses, point, {&light, 1}, {&at, 1}, out);
+    add_context(uses, point, {&example.light, 1}, {&example.at, 1}, out);
     return out;
 }
 

@@ -21,6 +21,16 @@ std::size_t context_columns(std::span<const std::string> uses, std::size_t light
 void add_context(std::span<const std::string> uses, const ExternalRun& point, std::span<const ExternalLight> lights,
     std::span<const ExternalLightAt> at, std::vector<double>& to);
 
+/// Reads names of context_names() separated by commas, each at most once; false if it is anything else.
+bool take_context_names(std::string_view text, std::vector<std::string>& out);
+
+/// The light of a check.
+struct ExampleLight {
+    ExternalLight light;
+    ExternalLightAt at;
+};
+ExampleLight example_light();
+
 /// The columns on the surface on which `crescent check` tests a sampler: the default of a plugin, below one disk light.
 std::vector<double> example_context(std::span<const std::string> uses);
 

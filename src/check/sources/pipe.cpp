@@ -308,20 +308,6 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     return true;
 }
 
-/// Names of a context separated by commas, each once.
-bool uses_names(std::string_view value, std::vector<std::string>& out) {
-    out.clear();
-    for (std::size_t first = 0; first <= value.size();) {
-        const std::size_t end = std::min(value.find(',', first), value.size());
-        const std::string name(value.substr(first, end - first));
-        const bool known = std::ranges::find(context_names(), name) != context_names().end();
-        if (!known || std::ranges::find(out, name) != out.end()) return false;
-        out.push_back(name);
-        first = end + 1;
-    }
-    return true;
-}
-
 struct HandshakeKey {
     const char* name;
     const char* values;
@@ -367,7 +353,7 @@ const std::array<HandshakeKey, 15>& keys() {
             }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
         {"uses", "names from s, alpha, rho_d, rho_s and lights, separated by commas, after 'hello 3'",
-            [](S v, Handshake& g) { return g.protocol == 3 && uses_names(v, g.uses); }},
+            [](S v, Handshake& g) { return g.protocol == 3 && take_context_names(v, g.uses); }},
     }};
     return all;
 }

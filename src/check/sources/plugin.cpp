@@ -26,6 +26,7 @@
 #include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "check/sources/context_columns.h"
 #include "check/sources/plugin_host.h"
 #include "check/sources/sampler_adapter.h"
 
@@ -56,6 +57,7 @@ struct About {
     std::string name;
     int numbers = 2;
     bool pdf = false, f = false, serial = false;
+    std::vector<std::string> uses{};  // of context_names(); empty: the four columns of ABI 1
 };
 
 struct Call {
@@ -124,16 +126,24 @@ public:
     const About& about() const { return about_; }
 
     /// One request: its runs, and the random numbers or directions of its rows. The answer is there until the next.
-    PluginRows ask(char operation, std::span<const ExternalRun> runs, std::span<const double> given, std::size_t rows,
-        const Call& call) {
+    PluginRows ask(
+        char operation, const ExternalBatch& batch, std::span<const double> given, std::size_t rows, const Call& call) {
         const PluginRows block(memory_.at(), rows, given.size() / rows);
         std::ranges::copy(given, block.given);
-        const PluginRequest head{operation, static_cast<std::uint32_t>(runs.size()), static_cast<std::uint32_t>(rows)};
+        const std::size_t lights = batch.lights.size();
+        const std::size_t surface = about_.uses.empty() ? 4 : context_columns(about_.uses, lights);
+        const PluginRequest head{operation, static_cast<std::uint32_t>(batch.runs.size()),
+            static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(surface)};
         std::vector<double> columns;
-        for (const ExternalRun& r : runs)
-            for (const double v : {static_cast<double>(r.rows), r.wo.x, r.wo.y, r.wo.z, r.surface.s, r.surface.alpha,
-                     r.surface.diffuse, r.surface.lobe})
-                columns.push_back(v);
+        for (std::size_t i = 0; i < batch.runs.size(); ++i) {
+            const ExternalRun& r = batch.runs[i];
+            columns.insert(columns.end(), {static_cast<double>(r.rows), r.wo.x, r.wo.y, r.wo.z});
+            if (about_.uses.empty())
+                columns.insert(columns.end(), {r.surface.s, r.surface.alpha, r.surface.diffuse, r.surface.lobe});
+            else
+                add_context(
+                    about_.uses, r, batch.lights, batch.lights_at.subspan(lights ? i * lights : 0, lights), columns);
+        }
         std::string front(reinterpret_cast<const char*>(&head), sizeof head);
         front.append(reinterpret_cast<const char*>(columns.data()), columns.size() * sizeof(double));
         const std::string what = call.text();
@@ -186,8 +196,16 @@ private:
                                : fmt::format("the plugin {} closed its pipe to crescent {}", library_, what));
     }
 
+    void read_uses(std::string_view names) {
+        if (!take_context_names(names, about_.uses))
+            throw OutputError(
+                fmt::format("cannot open the plugin {}: crescent_sampler_uses gives '{}': expected {}, each "
+                            "once, separated by commas",
+                    library_, printable(names, 200), fmt::join(context_names(), ", ")));
+    }
+
     void read_handshake(std::string_view line) {
-        const std::string expected = fmt::format("{}... columns={}", plugin_handshake, plugin_columns);
+        const std::string expected = fmt::format("{}... name=NAME", plugin_handshake);
         const auto refuse = [&](std::string_view got) {
             throw OutputError(fmt::format("cannot open the plugin {}: {} answers '{}', expected '{}'", library_,
                 printable(host_program()), printable(got, 200), expected));
@@ -196,7 +214,6 @@ private:
         std::string_view rest = line.substr(std::strlen(plugin_handshake));
         if (rest.starts_with("error "))
             throw OutputError(fmt::format("cannot open the plugin {}: {}", library_, printable(rest.substr(6))));
-        bool columns = false;
         while (!rest.empty() && about_.name.empty()) {
             const std::size_t equals = std::min(rest.find('='), rest.size() - 1);
             const std::string_view key = rest.substr(0, equals);
@@ -208,9 +225,9 @@ private:
             if (key == "pdf") about_.pdf = value == "1";
             if (key == "f") about_.f = value == "1";
             if (key == "serial") about_.serial = value == "1";
-            if (key == "columns") columns = value == plugin_columns;
+            if (key == "uses") read_uses(value);
         }
-        if (!columns || about_.name.empty()) refuse(line);
+        if (about_.name.empty()) refuse(line);
     }
 };
 
@@ -236,7 +253,7 @@ public:
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const Call call{"crescent_sampler_sample", batch.runs.front().wo};
         on_host([&](Host& host) {
-            const PluginRows rows = host.ask('s', batch.runs, batch.u, out.pdf.size(), call);
+            const PluginRows rows = host.ask('s', batch, batch.u, out.pdf.size(), call);
             std::copy_n(rows.wi, 3 * out.wi.size(), doubles(out.wi).data());
             std::copy_n(rows.values, out.pdf.size(), out.pdf.begin());
         });
@@ -250,8 +267,8 @@ public:
             numbers.clear(), wi.resize(rows), pdf.resize(rows);
             for (const PrimarySample& row : u.subspan(first, rows))
                 for (int k = 0; k < about_.numbers; ++k) numbers.push_back(row[k]);
-            const ExternalRun run{wo, surface_, rows};
-            draw({{&run, 1}, numbers}, {wi, pdf});
+            const std::vector<ExternalRun> run = {on_surface(wo, surface_, rows)};
+            draw(with_example_light(run, numbers), {wi, pdf});
             for (std::size_t i = 0; i < rows; ++i) out[first + i] = Draw{wi[i], pdf[i]};
         }
         count(u.size());
@@ -262,7 +279,8 @@ public:
     void f(std::span<const Pair> at, std::span<double> out) const override {
         values('f', "crescent_sampler_f", at, surface_, out);
     }
-    bool has_density() const override { return about_.pdf; }
+    bool uses_lights() const override { return std::ranges::find(about_.uses, "lights") != about_.uses.end(); }
+    bool has_density() const override { return about_.pdf && !uses_lights(); }
     void density(
         Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
         std::vector<Pair> at;
@@ -271,6 +289,17 @@ public:
     }
 
 private:
+    /// The surface of a check: a grey albedo.
+    static ExternalRun on_surface(Vec3d wo, const ExternalSurface& surface, std::size_t rows) {
+        return {wo, surface, rows, {surface.diffuse, surface.diffuse, surface.diffuse}};
+    }
+    /// Below the light of a check, if the plugin uses lights.
+    ExternalBatch with_example_light(std::span<const ExternalRun> runs, std::span<const double> u) const {
+        if (!uses_lights()) return {runs, u};
+        static thread_local std::vector<ExternalLightAt> at;
+        at.assign(runs.size(), example_.at);
+        return {runs, u, {&example_.light, 1}, at};
+    }
     static std::span<double> doubles(std::span<Vec3d> v) { return {&v.data()->x, 3 * v.size()}; }
 
     void values(char operation, const char* function, std::span<const Pair> at, const ExternalSurface& on,
@@ -283,12 +312,13 @@ private:
             for (const auto& [wo, direction] : at.subspan(first, rows)) {
                 const bool same =
                     !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
-                if (!same) runs.push_back({wo, on, 0});
+                if (!same) runs.push_back(on_surface(wo, on, 0));
                 ++runs.back().rows;
                 wi.push_back(direction);
             }
             on_host([&](Host& host) {
-                const PluginRows block = host.ask(operation, runs, doubles(wi), rows, {function, runs[0].wo});
+                const PluginRows block =
+                    host.ask(operation, with_example_light(runs, {}), doubles(wi), rows, {function, runs[0].wo});
                 std::copy_n(block.values, rows, out.subspan(first, rows).begin());
             });
         }
@@ -324,6 +354,7 @@ private:
     PipeLimits limits_;
     ExternalSurface surface_;
     About about_;
+    ExampleLight example_ = example_light();
     mutable std::mutex serial_, lock_;
     mutable std::vector<std::unique_ptr<Host>> free_;  // both under lock_
     mutable std::string fault_;

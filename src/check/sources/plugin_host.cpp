@@ -33,8 +33,6 @@ const char* const plugin_host_name = "crescent-plugin-host";
 
 namespace {
 
-constexpr std::size_t columns = 7;  // doubles of plugin_columns
-
 /// Ends the host and all that the plugin started in its group. Its exit handlers do not run: it may have threads.
 [[noreturn]] void end_group() {
     if (::getpgrp() == ::getpid()) ::kill(0, SIGKILL);
@@ -127,7 +125,7 @@ struct Library {
     Answer pdf = nullptr, f = nullptr;
     unsigned numbers = 2;
     bool serial = false;
-    std::string name;
+    std::string name, uses;
 
     explicit Library(const std::string& path) {
         // dlopen takes a name without a slash for one of the system's libraries.
@@ -140,11 +138,16 @@ struct Library {
         };
         unsigned (*abi)() = nullptr, (*how_many)() = nullptr;
         int (*one_at_a_time)() = nullptr;
-        const char* (*calls_itself)() = nullptr;
+        const char* (*calls_itself)() = nullptr, *(*names)() = nullptr;
         if (!find("crescent_sampler_abi", abi)) throw missing("crescent_sampler_abi");
-        if (const unsigned version = called("crescent_sampler_abi", abi); version != CRESCENT_SAMPLER_ABI)
+        const unsigned version = called("crescent_sampler_abi", abi);
+        if (version < 1 || version > CRESCENT_SAMPLER_ABI)
             throw Fault{"it has version " + std::to_string(version) + " of the interface; this program has version " +
                 std::to_string(CRESCENT_SAMPLER_ABI)};
+        if (version >= 2 && find("crescent_sampler_uses", names))
+            if (const char* own = called("crescent_sampler_uses", names)) uses = own;
+        if (uses.find_first_of(" \n") != std::string::npos)
+            throw Fault{"crescent_sampler_uses gives '" + uses + "': expected names separated by commas"};
         if (!find("crescent_sampler_sample", sample)) throw missing("crescent_sampler_sample");
         find("crescent_sampler_pdf", pdf), find("crescent_sampler_f", f);
         if (find("crescent_sampler_numbers", how_many)) numbers = called("crescent_sampler_numbers", how_many);
@@ -168,13 +171,14 @@ struct Columns {
     std::vector<double> run, wo, surface;
 
     bool read(const Pipes& pipes, const PluginRequest& request) {
-        wo.resize(3 * request.rows), surface.resize(4 * request.rows);
-        run.resize((1 + columns) * request.runs);
+        const std::size_t columns = request.columns;
+        wo.resize(3 * request.rows), surface.resize(columns * request.rows);
+        run.resize((4 + columns) * request.runs);
         if (!pipes.read(run.data(), run.size() * sizeof(double))) return false;
         std::size_t row = 0;
-        for (const double* r = run.data(); r != run.data() + run.size(); r += 1 + columns)
+        for (const double* r = run.data(); r != run.data() + run.size(); r += 4 + columns)
             for (auto left = static_cast<std::size_t>(r[0]); left > 0 && row < request.rows; --left, ++row)
-                std::copy_n(r + 1, 3, &wo[3 * row]), std::copy_n(r + 4, 4, &surface[4 * row]);
+                std::copy_n(r + 1, 3, &wo[3 * row]), std::copy_n(r + 4, columns, surface.data() + columns * row);
         return true;
     }
 };
@@ -199,8 +203,8 @@ void answer(
 std::string handshake(const Library& library) {
     const auto number = [](const char* key, unsigned value) { return key + std::to_string(value) + " "; };
     return plugin_handshake + number("numbers=", library.numbers) + number("pdf=", library.pdf != nullptr) +
-        number("f=", library.f != nullptr) + number("serial=", library.serial) + "columns=" + plugin_columns +
-        " name=" + library.name + "\n";
+        number("f=", library.f != nullptr) + number("serial=", library.serial) +
+        (library.uses.empty() ? "" : "uses=" + library.uses + " ") + "name=" + library.name + "\n";
 }
 
 /// Loaded for good: a plugin may have threads, and is never unloaded.

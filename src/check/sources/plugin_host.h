@@ -1,15 +1,14 @@
 // The process that a plugin runs in, and what it and crescent say to each other over two pipes.
 //
-// The host begins with one line: "crescent-plugin 1", then "error TEXT", or KEY=VALUE words and at last name=NAME:
+// The host begins with one line: "crescent-plugin 2", then "error TEXT", or KEY=VALUE words and at last name=NAME:
 //   numbers=N     random numbers of a sample
 //   pdf=0|1 f=0|1 whether the plugin has these functions
 //   serial=0|1    whether it is to be called by one host at a time
-//   columns=A,B   the quantities of a surface point that it needs, in this order, each one or more doubles
+//   uses=A,B      what crescent_sampler_uses() gives; absent: s, alpha, the luminance of rho_d, rho_s
 // Then it answers requests. Rows come in runs that share the columns; the rows themselves are in shared memory, which
 // the host has as descriptor 3:
-//   request  PluginRequest, and of each run how many rows it has (as a double) and its columns
+//   request  PluginRequest, and of each run how many rows it has (as a double), w_o and the columns of the surface
 //   answer   PluginAnswer; 0 rows: an error, whose text follows
-// A version of the interface that needs other quantities names them in its columns.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +16,11 @@
 
 namespace crescent::inline sources {
 
-inline constexpr const char* plugin_handshake = "crescent-plugin 1 ";
-inline constexpr const char* plugin_columns = "wo,s,alpha,rho_d,rho_s";
+inline constexpr const char* plugin_handshake = "crescent-plugin 2 ";
 
 struct PluginRequest {
-    char operation;  // 's'ample, 'p'df, 'f'
-    std::uint32_t runs, rows;
+    char operation;                     // 's'ample, 'p'df, 'f'
+    std::uint32_t runs, rows, columns;  // doubles of the surface of a run
 };
 struct PluginAnswer {
     std::uint32_t rows, bytes;  // bytes of the text, where there is no row
