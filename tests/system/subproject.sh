@@ -47,7 +47,7 @@ END
 # Every field of the structs that users fill in, by its name, in the order of declaration.
 fields() { # TYPE HEADER
     sed 's, *//.*,,' "$CRESCENT_SOURCE/src/$2" |
-        awk -v start="struct $1 {" '$0 == start { inside = 1; next } inside && /^};/ { exit } inside' |
+        awk -v start="struct $1 {" '$0 == start { inside = 1; next } inside && /^};/ { exit } inside && !/ using /' |
         grep -E '^    [^ ].*;$' | grep -vE '\(|^    (enum|static) ' |
         sed -E 's/\{[^}]*\}|= *[^,;]+//g; s/^.*[ >]([a-z_]+) *, *([a-z_]+) *;$/\1\n\2/; s/^.* ([a-z_]+) *;$/\1/'
 }

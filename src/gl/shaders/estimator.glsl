@@ -134,7 +134,8 @@ void take(uint pixel, uvec4 h, uint sample_index) {
     vec2 u = unit_floats(odd ? h.zw : h.xy);
 #ifdef TWO_TECHNIQUES
     uvec4 second = draws(pixel, sample_index >> 1u, 1u, seed);
-    Drawn a = sample_mixture(shading_point.wo, u), b = sample_light_area(shading_point.wo, unit_floats(odd ? second.zw : second.xy));
+    Drawn a = sample_mixture(shading_point.wo, u),
+          b = sample_light_area(shading_point.wo, unit_floats(odd ? second.zw : second.xy));
     float x = accumulate(a, weight_of(a.pdf, pdf_light_area(shading_point.wo, a.wi)), -1, false);
     x += accumulate(b, weight_of(b.pdf, pdf_mixture(shading_point.wo, b.wi)), aimed_disk, aimed_met);
 #else

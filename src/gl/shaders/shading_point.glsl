@@ -45,7 +45,8 @@ Surroundings load_point(ivec2 at) {
          n = texelFetch(shading_points, ivec3(at, 5), 0);
     shading_point = ShadingPoint(a.xyz, a.w, b.x, b.y, b.z);
     for (int k = 0; k < DISKS; ++k) {
-        vec4 center = texelFetch(shading_points, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(shading_points, ivec3(at, 7 + 2 * k), 0);
+        vec4 center = texelFetch(shading_points, ivec3(at, 6 + 2 * k), 0),
+             normal = texelFetch(shading_points, ivec3(at, 7 + 2 * k), 0);
         float height = dot(center.xyz, normal.xyz);
         bool apart = abs(height) > 1e-6 * (length(center.xyz) + disk_kind[k].x);
         disks[k] =

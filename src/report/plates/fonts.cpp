@@ -1,3 +1,4 @@
+// Points Fontconfig at the fonts that are installed with the program, by its environment variable FONTCONFIG_FILE.
 #include "report/plates/fonts.h"
 
 #include <cstdlib>

@@ -15,6 +15,7 @@ Drawn sample_blinn(vec3 wo, vec2 u) {
 }
 float pdf_blinn(vec3 wo, vec3 wi) {
     vec3 m = halfway(wo, wi);
-    return above_horizon(
-        wo, wi, (shading_point.s + 1.0) * (0.5 / pi) * cosine_power(m, vec3(0.0, 0.0, 1.0), shading_point.s) / half_jacobian(dot(wo, m)));
+    return above_horizon(wo, wi,
+        (shading_point.s + 1.0) * (0.5 / pi) * cosine_power(m, vec3(0.0, 0.0, 1.0), shading_point.s) /
+            half_jacobian(dot(wo, m)));
 }

@@ -6,7 +6,8 @@
 #include "lobes/ggx.glsl"
 
 float ggx_vndf_density(vec3 wo, vec3 wi, vec3 m) {
-    return above_horizon(wo, wi, ggx_G1(wo, shading_point.alpha) * ggx_D(m, shading_point.alpha) / (4.0 * max(wo.z, 1e-12)));
+    return above_horizon(
+        wo, wi, ggx_G1(wo, shading_point.alpha) * ggx_D(m, shading_point.alpha) / (4.0 * max(wo.z, 1e-12)));
 }
 Drawn sample_ggx_vndf(vec3 wo, vec2 u) {
     float a = shading_point.alpha;

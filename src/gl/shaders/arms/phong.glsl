@@ -12,4 +12,6 @@ Drawn sample_phong(vec3 wo, vec2 u) {
     float p = (shading_point.s + 1.0) * (0.5 / pi) * (u.x / cos);
     return Drawn(to_world(frame_about(mirror(wo)), vec3(sin * phi.cos, sin * phi.sin, cos)), p);
 }
-float pdf_phong(vec3 wo, vec3 wi) { return (shading_point.s + 1.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), shading_point.s); }
+float pdf_phong(vec3 wo, vec3 wi) {
+    return (shading_point.s + 1.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), shading_point.s);
+}
