@@ -48,16 +48,10 @@ SAMPLERS = {
 
 
 def scene():
-    """The gallery, small, with the cosine arm alone."""
-    e = crescent.load(ROOT / "experiments/gallery.toml").with_({"image.width": 320, "image.height": 180})
-    for table in ("assertions", "plates", "regions", "exponent", "furnaces", "published"):
-        if table in e:
-            del e[table]
-    for arm in list(e["arms"]):
-        if arm != "cosine":
-            del e[f"arms.{arm}"]
-    e["arms.cosine.n"] = [SAMPLES]
-    return e
+    """The small scene of the system tests, larger, with the cosine arm alone."""
+    text = (ROOT / "tests/system/tiny.toml").read_text()
+    e = crescent.parse(text[: text.index("[arms.uniform]")] + f"[arms.cosine]\nn = [{SAMPLES}]\n")
+    return e.with_({"image.width": 320, "image.height": 180})
 
 
 def best(repeats, work):
