@@ -88,7 +88,7 @@ for line in sys.stdin:
         print("-", flush=True)
 """
 
-OTHER = '[disks.other]\ncenter = [-2, 2, 2]\nnormal = [0.6, -0.4, -0.6]\nradius = 0.2\nradiance = [20, 40, 60]\n'
+OTHER = '[disks.other]\ncenter = [-2, 2, 2]\nnormal = [0.48, -0.64, -0.6]\nradius = 0.2\nradiance = [20, 40, 60]\n'
 
 
 @pytest.fixture
@@ -141,6 +141,7 @@ def test_a_program_of_protocol_3_receives_the_surface(run, tmp_path):
     python = sys.executable
     assert run("check", "--exec", f"{python} text.py", "--wo", "30", "--patience", "600").returncode == 0
     words = ("--seeds", "1", "--only", "metrics", "--quiet", "--out", "out", "--set", "cosine.n=16", "--set", "phong.n=16")
+    words += ("--set", "ball.s=2", "--set", "key.radius=1.2")
     text = with_arm(tmp_path, f'exec = "{python} text.py"')
     plain = (tmp_path / text).read_text().replace("n = [16, 64]", "n = [16]").replace("(phong, n=4)", "(phong, n=16)")
     (tmp_path / text).write_text(plain)
@@ -166,7 +167,7 @@ def test_a_sampler_with_a_context_is_checked_by_the_program(run):
         ('python = "mien.py:sampler"', 2, r"arm.toml:\d+:\d+: arms.mine.python: .*no such file.*mine.py"),
         ('python = "mine"', 2, r"arm.toml:\d+:\d+: arms.mine.python: expected .FILE.py:NAME"),
         ('python = ""', 2, r"arms.mine.python"),
-        ('python = "mine.py:fails"', 3, "the arm 'mine' broke off: .*no table here"),
+        ('python = "mine.py:fails"', 3, "the arm 'mine' terminated: .*no table here"),
     ],
 )
 def test_an_arm_that_cannot_run_is_an_error(run, tmp_path, lines, code, said):

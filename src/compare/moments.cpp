@@ -108,7 +108,7 @@ double deviation_scale(const MeanFilm& film) {
         for (const double m2 : film.planes[q].m2)
             if (std::isfinite(m2)) most = std::max(most, m2 / static_cast<double>(film.count - 1));
     constexpr int bits = 14;
-    return most > 0 ? std::exp2(std::ceil(std::log2(std::sqrt(most))) - bits) : 1;
+    return most > 0 ? std::ldexp(1.0, std::ilogb(std::sqrt(most)) + 1 - bits) : 1;
 }
 
 double deviation_of(const std::vector<double>& values) {

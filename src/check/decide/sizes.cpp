@@ -9,6 +9,7 @@
 
 #include "check/constants.h"
 #include "check/verdicts/statistics.h"
+#include "math/functions.h"
 #include "math/simd/frame.h"
 #include "math/statistics.h"
 
@@ -502,7 +503,7 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
             const auto at = static_cast<std::size_t>(k);
             ratios[at].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));
-            if (by == 1) changed[at] = std::hypot(c * one.distance, s * other.distance);
+            if (by == 1) changed[at] = math::hypot(c * one.distance, s * other.distance);
         }
     }
     // About an axis of symmetry, or next to it, nothing is turned.
