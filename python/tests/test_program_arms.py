@@ -140,15 +140,15 @@ def test_the_program_and_the_package_run_the_same_arm(run, tmp_path):
 def test_a_program_of_protocol_3_receives_the_surface(run, tmp_path):
     python = sys.executable
     assert run("check", "--exec", f"{python} text.py", "--wo", "30", "--patience", "600").returncode == 0
-    words = ("--seeds", "1", "--only", "metrics", "--quiet", "--out", "out", "--set", "cosine.n=16", "--set", "phong.n=16")
-    words += ("--set", "ball.s=2", "--set", "key.radius=1.2")
+    words = ("--seeds", "1", "--only", "metrics", "--quiet", "--out", "out", "--set", "cosine.n=16")
+    words += ("--set", "phong.n=256", "--set", "ball.s=2", "--set", "key.radius=1.2")
     text = with_arm(tmp_path, f'exec = "{python} text.py"')
-    plain = (tmp_path / text).read_text().replace("n = [16, 64]", "n = [16]").replace("(phong, n=4)", "(phong, n=16)")
+    plain = (tmp_path / text).read_text().replace("n = [16, 64]", "n = [256]").replace("(phong, n=4)", "(phong, n=256)")
     (tmp_path / text).write_text(plain)
     done = run("run", text, *words)
     assert done.returncode == 0, done.stderr
     found = means(tmp_path, "out")
-    assert found["mine", 16] == pytest.approx(found["phong", 16], rel=0.2)
+    assert found["mine", 256] == pytest.approx(found["phong", 256], rel=0.2)
     bad = run("check", "--exec", "read h; echo hello 2 x uses=alpha", "--wo", "30")
     assert bad.returncode == 3 and "hello 3" in bad.stdout + bad.stderr
     bad = run("check", "--exec", "read h; echo hello 3 x uses=alpha,roughness", "--wo", "30")

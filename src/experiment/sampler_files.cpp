@@ -2,6 +2,7 @@
 #include "experiment/sampler_files.h"
 
 #include <fmt/format.h>
+#define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include "base/errors.h"
