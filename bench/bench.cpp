@@ -1,7 +1,7 @@
-// crescent_bench FILE.toml N: one turn. One line an arm, as JSON, of the seconds that a film takes crescent's kernels
-// and the straightforward version, both on all cores, each the best of three films: what else the machine does can only
-// add to it. bench/compare.py takes several turns. The means of both are printed too: they must be of the same
-// integral.
+// crescent_bench FILE.toml N: one round. One line per arm, as JSON, of the seconds that a film takes with crescent's
+// kernels and with the straightforward version, both on all cores, each the best of three films, because other load can
+// only increase a time. bench/compare.py runs several rounds. The means of both are printed too: they must be of the
+// same integral.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -51,7 +51,7 @@ int main(int argc, char** argv) try {
     const Experiment experiment = load(argv[1]);
     const std::uint64_t n = std::stoull(argv[2]);
     Scene scene(experiment);
-    scene.remember_primaries();  // as a run does, once for all its films
+    scene.remember_primaries();  // once for all films, as in a run
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     std::uint64_t pixels = 0;
     for (std::int16_t shape : shape_map(scene).shape) pixels += shape >= 0;

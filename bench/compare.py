@@ -37,7 +37,7 @@ def build():
 
 
 def mitsuba_python():
-    """The interpreter of a virtual environment that has Mitsuba, made where it is not there; None where that fails."""
+    """Returns the interpreter of a virtual environment that has Mitsuba, creating it if needed; None if that fails."""
     python = BUILD / "mitsuba" / "bin" / "python"
     imports = [str(python), "-c", "import mitsuba, numpy"]
     if python.exists() and subprocess.run(imports, stderr=subprocess.DEVNULL).returncode == 0:
@@ -60,7 +60,7 @@ def processor():
 
 
 def turn(bench, python, args):
-    """One round: the facts of the bench, and each arm's seconds by program."""
+    """Runs one round and returns its facts, and each arm's seconds by program."""
     facts, *rows = lines([bench, args.experiment, args.n])
     seconds = {row["arm"]: {"crescent": row["crescent"], "straightforward": row["straightforward"]} for row in rows}
     if python:
@@ -72,7 +72,7 @@ def turn(bench, python, args):
 
 
 def summary(turns, arm, samples):
-    """Rates by program and, by peer, the ratios of crescent to it in each round."""
+    """Returns rates by program and, by peer, the ratios of crescent to it in each round."""
     peers = [peer for peer in ("straightforward", "mitsuba") if all(peer in one[arm] for one in turns)]
     rate = lambda who: samples / statistics.median(one[arm][who] for one in turns) * 1e-6
     return {"arm": arm, "rates": {who: rate(who) for who in ("crescent", *peers)},

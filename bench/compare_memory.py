@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Time and memory of `crescent compare` on many large renders: 64 of 3840 x 2160, half floats, made up here.
+"""Time and memory of `crescent compare` on many large synthetic renders: 64 of 3840 x 2160, half floats.
 
     python3 bench/compare_memory.py --crescent build/crescent [--renders 64] [--zip] [--write docs/compare.md]
 
-The renders are written into a temporary folder and deleted after. Time stands beside that of reading the same files and
-doing nothing with them. With --write the table goes between the two lines of the page that say "measured by
-compare_memory.py" and "end of compare_memory.py". Needs NumPy.
+The renders are written into a temporary folder and deleted afterwards. The time is compared with that of reading the
+same files and doing nothing with them. With --write the table goes between the two lines of the page that say "measured
+by compare_memory.py" and "end of compare_memory.py". Needs NumPy.
 """
 import argparse
 import os
@@ -27,7 +27,7 @@ def attribute(name, kind, value):
 
 
 def header(compressed):
-    """Of a scanline file with channels B, G, R of half floats (OpenEXR file layout)."""
+    """Returns the header of a scanline file with channels B, G, R of half floats (OpenEXR file layout)."""
     channels = b"".join(c + b"\0" + struct.pack("<iBBBBii", 1, 0, 0, 0, 0, 1, 1) for c in (b"B", b"G", b"R")) + b"\0"
     window = struct.pack("<4i", 0, 0, WIDTH - 1, HEIGHT - 1)
     return (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute("channels", "chlist", channels)
@@ -49,7 +49,7 @@ def packed(raw):
 
 
 def write(path, planes, compressed):
-    """planes: HEIGHT x 3 x WIDTH half floats, a row's B, G, R one after another, as the file has them."""
+    """planes: HEIGHT x 3 x WIDTH half floats, a row's B, G, R one after another, in the order of the file."""
     step = LINES if compressed else 1
     blocks = []
     for y in range(0, HEIGHT, step):
@@ -68,7 +68,7 @@ def write(path, planes, compressed):
 
 
 def render(noise, size, seed):
-    """1 + size * noise, the noise turned by as much as the seed says."""
+    """Returns 1 + size * noise, with the noise rotated by the seed."""
     turned = np.roll(noise, (seed * 977 % HEIGHT, seed * 3301 % WIDTH), axis=(0, 2))
     return (1 + size * turned).astype(np.float16)
 
@@ -83,7 +83,7 @@ def read_alone(folder):
 
 
 def row(args, folder, out, more, words):
-    """One call, as a line of the table."""
+    """Runs one call and returns a line of the table."""
     command = [args.crescent, "compare", "--arm", f"a={folder}/a*.exr", "--arm", f"b={folder}/b*.exr", "--out", out]
     start = time.monotonic()
     with subprocess.Popen(command + more + ["--quiet"], stdout=subprocess.DEVNULL) as process:

@@ -1,6 +1,6 @@
-// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample. What an arm
-// and a lobe do is counted in their own source; what the kernels add to it is written out once more in accumulate().
-// + - * / and sqrt count one each; comparisons, selections and integers none.
+// A float that counts its operations, in the vocabulary of simd/scalar.h: the arithmetic of one sample. The operations
+// of a sampler and a lobe are counted in their own source; those of the kernels are repeated in accumulate(). + - * /
+// and sqrt count one each; comparisons, selections and integers none.
 #pragma once
 
 #include "crescent/crescent.h"
@@ -44,33 +44,35 @@ template <> inline Counted to_float<Counted>(std::uint32_t u) { return Counted(t
 
 namespace bench {
 
-/// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there
+/// The estimator's operations for a direction: g = cos/p, X, its square, the test against one disk; the lobe if there
 /// is one.
-template <class L> Counted accumulate(const ShadingPoint<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
-    const LocalDisk<Counted>& disk = site.disks[0];
-    const L lobe(site.s, site.alpha);
-    const Counted g = weight * (drawn.wi.z / drawn.pdf.v), f = lobe(site.wo, drawn.wi);
-    const Counted x = g * (site.diffuse + f * site.lobe), off = x - site.diffuse;
+template <class L>
+Counted accumulate(const ShadingPoint<Counted>& shading_point, const Drawn<Counted>& drawn, Counted weight) {
+    const LocalDisk<Counted>& disk = shading_point.disks[0];
+    const L lobe(shading_point.s, shading_point.alpha);
+    const Counted g = weight * (drawn.wi.z / drawn.pdf.v), f = lobe(shading_point.wo, drawn.wi);
+    const Counted x = g * (shading_point.diffuse + f * shading_point.lobe), off = x - shading_point.diffuse;
     const Counted along = dot(drawn.wi, disk.normal);
     const Vec3<Counted> miss = drawn.wi * disk.radius - disk.to_center * along;
     return dot(miss, miss) * (along * along) + (off * off + g) + g * f;
 }
 
-/// Operations of one sample of an arm on a surface with lobe L under one disk, without shadows and random integers.
+/// Returns the operations of one sample of a sampler on a surface with lobe L under one disk, without shadows and
+/// random integers.
 template <template <class> class A, class L> std::uint64_t operations_per_sample() {
     const auto c = [](double x) { return Counted(static_cast<float>(x)); };
     const LocalDisk<Counted> disk{{c(1), c(0.5), c(2)}, {c(0), c(0), c(-1)}, c(0.1), c(0), c(1)};
-    const ShadingPoint<Counted> site{{c(0.6), c(0), c(0.8)}, c(32), c(0.2), c(0.17), c(0.12), &disk, 1};
-    const A<Counted> arm(site);
+    const ShadingPoint<Counted> shading_point{{c(0.6), c(0), c(0.8)}, c(32), c(0.2), c(0.17), c(0.12), &disk, 1};
+    const A<Counted> arm(shading_point);
     Counted::operations = 0;
     const Vec2<Counted> u{unit_float<Counted>(0x51234567u), unit_float<Counted>(0x9abcdef0u)};
     if constexpr (requires { A<Counted>::techniques; }) {
-        const Drawn<Counted> a = arm.template sample_technique<0>(site.wo, u),
-                             b = arm.template sample_technique<1>(site.wo, u);
-        accumulate<L>(site, a, arm.template weight<0>(site.wo, a)),
-            accumulate<L>(site, b, arm.template weight<1>(site.wo, b));
+        const Drawn<Counted> a = arm.template sample_technique<0>(shading_point.wo, u),
+                             b = arm.template sample_technique<1>(shading_point.wo, u);
+        accumulate<L>(shading_point, a, arm.template weight<0>(shading_point.wo, a)),
+            accumulate<L>(shading_point, b, arm.template weight<1>(shading_point.wo, b));
     } else {
-        accumulate<L>(site, arm.sample(site.wo, u), c(1));
+        accumulate<L>(shading_point, arm.sample(shading_point.wo, u), c(1));
     }
     return Counted::operations;
 }

@@ -1,9 +1,9 @@
-"""A page's part that a program measures: what stands between its two lines."""
+"""Replaces the part of a page that a program measures, between its two lines."""
 import re
 
 
 def write_between(path, program, text):
-    """Puts `text` between the lines of `path` that say "measured by PROGRAM" and "end of PROGRAM"."""
+    """Writes `text` between the lines of `path` that say "measured by PROGRAM" and "end of PROGRAM"."""
     with open(path, encoding="utf-8") as file:
         page = file.read()
     name = re.escape(program)

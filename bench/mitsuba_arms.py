@@ -1,8 +1,8 @@
-"""The gallery in Mitsuba 3, its arms as a BSDF: mitsuba_arms.py FILE.toml N, one turn: one JSON line an arm with
-seconds a film, the best of three.
+"""The gallery in Mitsuba 3, its arms as a BSDF: mitsuba_arms.py FILE.toml N runs one round and prints one JSON line per
+arm with seconds per film, the best of three.
 
-Integrator `direct` without emitter sampling, N BSDF samples, one primary ray a pixel, emitters hidden from the camera,
-variant llvm_ad_rgb: the estimator of the arms, nothing else. Compiling is not counted: the first film of each arm is
+Integrator `direct` without emitter sampling, N BSDF samples, one primary ray per pixel, emitters hidden from the
+camera, variant llvm_ad_rgb: only the estimator of the arms. Compiling is not counted: the first film of each arm is
 rendered before the clock starts.
 """
 import json
@@ -18,7 +18,7 @@ T = mi.ScalarTransform4f
 
 
 class Arm(mi.BSDF):
-    """f = rho_d/pi + rho_s (s+2)/(2 pi) (w.R)^s, sampled by one arm; weight 0 under the horizon."""
+    """f = rho_d/pi + rho_s (s+2)/(2 pi) (w.R)^s, sampled by one arm; weight 0 below the horizon."""
 
     def __init__(self, props):
         mi.BSDF.__init__(self, props)
@@ -83,7 +83,7 @@ def cross(a, b):
 
 
 def parallelogram(corner, u, v):
-    """A rectangle whose corner and edges are given; its normal is u x v."""
+    """Returns a rectangle with a given corner and edges; its normal is u x v."""
     n = cross(u, v)
     size = sum(c * c for c in n) ** 0.5
     center = [c + (a + b) / 2 for c, a, b in zip(corner, u, v)]
@@ -110,7 +110,7 @@ def geometry(shape):
         return {"type": "rectangle", "to_world": facing(shape["point"], shape["normal"], 100)}
     if kind == "disk":
         return {"type": "disk", "to_world": facing(shape["center"], shape["normal"], shape["radius"])}
-    # A panel's recess is cut into the wall; here its back lies just before the wall, which costs the same rays.
+    # A panel's recess is cut into the wall; here its back is directly before the wall, which costs the same rays.
     corner = shape["corner"] if kind == "quad" else [c + o for c, o in zip(shape["corner"], [0, 0, 1e-3])]
     return parallelogram(corner, shape["edge_u"], shape["edge_v"])
 

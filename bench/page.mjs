@@ -22,9 +22,9 @@ function native() {
   return { commit: provenance.commit, arms: arms.filter((a) => a.n === n && a.s === 32) };
 }
 
-const { Door } = await import(join(build, "door.mjs"));
-const door = new Door(await WebAssembly.compile(readFileSync(join(build, "crescent.wasm"))));
-const d = door.ask("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: [], published: "" });
+const { Api } = await import(join(build, "api.mjs"));
+const api = new Api(await WebAssembly.compile(readFileSync(join(build, "crescent.wasm"))));
+const d = api.ask("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: [], published: "" });
 
 /** Seconds of all tiles of one call; `before` is called first, uncounted. */
 function page(call, given, before) {
@@ -34,7 +34,7 @@ function page(call, given, before) {
       const box = [x0, y0, Math.min(x0 + 64, d.width), Math.min(y0 + 64, d.height)];
       before?.(box);
       const start = performance.now();
-      door.number(call, ...given, ...box);
+      api.number(call, ...given, ...box);
       seconds += (performance.now() - start) / 1000;
     }
   return seconds;
@@ -47,12 +47,12 @@ for (let turn = 0; turn < times; ++turn) {
   commit = program.commit;
   for (const a of program.arms) {
     const arm = d.arms.findIndex(({ name }) => name === a.arm);
-    const seconds = page("tile", [arm, n], (box) => door.number("tile", arm, 1, ...box)); // traces the rays, and keeps them
+    const seconds = page("tile", [arm, n], (box) => api.number("tile", arm, 1, ...box)); // traces the rays, and keeps them
     const here = (best[a.arm] ??= { arm: a.arm, program: 0, page: 0 });
     here.program = Math.max(here.program, a.samples / a.seconds / 1e6);
     here.page = Math.max(here.page, a.samples / seconds / 1e6);
   }
 }
 for (const row of Object.values(best)) console.log(JSON.stringify(row));
-for (let said = door.say("prepare_reference"); said.includes("more"); said = door.say("go_on"));
+for (let response = api.say("prepare_reference"); response.includes("more"); response = api.say("go_on"));
 console.log(JSON.stringify({ commit, engine: `node ${process.version}, V8 ${process.versions.v8}`, reference: page("reference_tile", []) }));

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Speed of the page: its module in node beside the program's SSE4 code, and the page itself in Chromium.
+"""Speed of the page: its module in node against the program's SSE4 code, and the page itself in Chromium.
 
     bench/page.py [--build FOLDER] [--page FILE] [--crescent PROGRAM] [--write]
 
-What ./page has built is measured: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
-three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last meter, and from a
+Measures what ./page has built: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
+three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last metric, and from a
 slider's move to the first new pixels, the median of twenty moves, and to N = 64 again. --write puts all of it under
-"Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
+"Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, like the tests of the page.
 """
 import argparse
 import datetime
@@ -36,7 +36,7 @@ def rates(crescent, build):
 
 
 def opened(page):
-    """ms to the first picture, to the last film, to the last meter, of a browser that was just started."""
+    """Returns ms to the first picture, to the last film, to the last metric, of a browser that was just started."""
     driver = browser.chromium()
     try:
         browser.open_page(driver, page)
@@ -56,8 +56,8 @@ def move(driver, to):
 
 
 def moved(page, turns=20, whole=3):
-    """ms from the move of the slider of s to the first new pixels, each time while the reference is being computed: the
-    median and the largest; and to the last film, where no other move follows: the least."""
+    """Returns ms from the move of the slider of s to the first new pixels, while the reference is being computed: the
+    median and the largest; and to the last film, if no other move follows: the smallest."""
     driver = browser.chromium()
     try:
         browser.open_page(driver, page)
@@ -69,7 +69,7 @@ def moved(page, turns=20, whole=3):
             time.sleep(0.4)
         for turn in range(whole):
             move(driver, 300 + 10 * turn)
-            time.sleep(3)  # asking it would keep a core busy
+            time.sleep(3)  # polling it would keep a core busy
             browser.wait(driver, "document.documentElement.dataset.took")
             films.append(int(driver.execute_script("return document.documentElement.dataset.films")))
         return statistics.median(first), max(first), min(films)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The rate of a plugin arm: plugin.py CRESCENT [SAMPLES [ROUNDS [OTHER]]] runs examples/plugin/cosine.c as an arm of a
-small scene and prints millions of samples a second of each round, and of processor time with all children. OTHER is
-another build of the program, which runs in turn with the first."""
+small scene and prints millions of samples per second of each round, and of processor time with all children. OTHER
+is another build of the program, which alternates with the first."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""How fast `crescent.check` asks NumPy callables: draws a second through the door alone, and in a whole judgement.
+"""The rate at which `crescent.check` calls NumPy callables: draws per second by the calls alone, and in a whole check.
 
     PYTHONPATH=build/python python bench/python_draws.py [--repeats 20] [--write docs/python.md]
 
@@ -33,7 +33,7 @@ def f(wo, wi):
 
 
 def best(repeats, work):
-    """The least processor time of `work()`, in s."""
+    """Returns the smallest processor time of `work()`, in s."""
     times = []
     for _ in range(repeats):
         start = time.process_time()
@@ -50,7 +50,7 @@ def numpy_alone():
 
 
 def asked():
-    """Rows that one judgement asks of sample, pdf and f."""
+    """Returns the rows that one check evaluates with sample, pdf and f."""
     rows = {"sample": 0, "pdf": 0, "f": 0}
 
     def counted(call):
@@ -65,7 +65,7 @@ def asked():
 
 
 def spent_in_callables():
-    """The part of a judgement's processor time that the callables themselves take."""
+    """Returns the part of a check's processor time that the callables themselves take."""
     spent = [0.0]
 
     def timed(call):
@@ -83,16 +83,16 @@ def spent_in_callables():
 
 
 def table(repeats):
-    trials = _check._trials(crescent.Sampler(sample, pdf, f), False, [])
+    cases = _check._cases(crescent.Sampler(sample, pdf, f), False, [])
     rows = asked()
     lines = [
         "| | draws | million draws per second of processor time | time relative to `sample` |",
         "|---|---|---|---|",
     ]
-    alone = None  # s of processor time a draw
+    alone = None  # s of processor time per draw
     for what, draws, work in (
         ("`sample` alone, in NumPy", BATCHES * 32768, numpy_alone()),
-        ("drawn by crescent and discarded", BATCHES * 32768, lambda: _crescent.draw(trials, BATCHES)),
+        ("drawn by crescent and discarded", BATCHES * 32768, lambda: _crescent.draw(cases, BATCHES)),
         ("a complete check, nine verdicts at 8 w_o", rows["sample"], lambda: crescent.check(sample, pdf, f)),
     ):
         cpu = best(repeats, work)

@@ -1,5 +1,6 @@
 // Lo = (1/N) sum f L_i cos / p, written plainly: a loop over pixels, a loop over samples, double precision, a generator
-// from the standard library, std::pow, std::cos, and scene queries one ray at a time. Same scene, same arms, same N.
+// from the standard library, std::pow, std::cos, and scene queries one ray at a time. Same scene, same samplers, same
+// N.
 #include "straightforward.h"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ Vec3d draw(const std::string& sampler, const Point& at, double u1, double u2, do
     return about(at.mirror_basis, cos, phi);
 }
 
-/// Does the segment from x to y cross the body? A chord of next to no length at y.
+/// Returns whether the segment from x to y crosses the body, by a very short chord at y.
 bool blocks(const Occluder& body, Vec3d x, Vec3d y) {
     const auto parts = hidden(body, x, y, y + 1e-9 * frame_about(normalize(y - x)).t);
     return !parts[0].empty() || !parts[1].empty();

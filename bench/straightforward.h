@@ -1,4 +1,4 @@
-// The estimator as one would first write it: what the kernels are measured against.
+// A straightforward version of the estimator, with which the kernels are compared.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace crescent::bench {
 
-/// Mean luminance of the whole frame, n samples a geometry pixel, rows shared out over `threads`.
+/// Returns the mean luminance of the whole frame, n samples per geometry pixel, rows distributed over `threads`.
 double straightforward(const Scene& scene, const std::string& sampler, int n, std::uint32_t seed, int threads);
 
 }  // namespace crescent::bench

@@ -1,5 +1,5 @@
 # cmake -DROOT=src -DNAME=folder -DALLOWED=a|b|c -DSTAMP=file -P check_includes.cmake
-# Fails, naming the file and its include, where a file of ROOT/NAME includes a folder that is not in ALLOWED. Public
+# Fails, naming the file and its include, if a file of ROOT/NAME includes a folder that is not in ALLOWED. Public
 # headers (crescent/*.h) may be included, and files next to the including one.
 file(GLOB_RECURSE files ${ROOT}/${NAME}/*.h ${ROOT}/${NAME}/*.cpp)
 set(wrong "")

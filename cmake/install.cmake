@@ -1,4 +1,4 @@
-# cmake --install: the libraries with their headers, what find_package(crescent) reads and, where they are built, the
+# cmake --install: the libraries with their headers, the files for find_package(crescent) and, if they are built, the
 # program and the experiments.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

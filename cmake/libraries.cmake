@@ -1,8 +1,8 @@
-# The libraries of others. crescent::check needs four; what makes runs is looked for with CRESCENT_RUN=ON alone. All
-# that is missing is said at once. A target that the parent project has already is taken as it is.
+# External libraries. crescent::check needs four; those for runs are searched only with CRESCENT_RUN=ON. All missing
+# ones are reported at once. A target that the parent project already has is used.
 set(crescent_missing "")
 
-# crescent_need(PACKAGE TARGET): find_package, or a name more in crescent_missing.
+# crescent_need(PACKAGE TARGET): find_package; a missing one is added to crescent_missing.
 macro(crescent_need package target)
   if(NOT TARGET ${target})
     find_package(${package} QUIET)

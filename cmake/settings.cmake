@@ -1,9 +1,9 @@
-# Compiler settings and the shape of a target.
+# Compiler settings.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-if(PROJECT_IS_TOP_LEVEL)  # as a part of another project, its choice
+if(PROJECT_IS_TOP_LEVEL)  # else the parent project decides
   if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release)
   endif()
@@ -23,20 +23,20 @@ add_library(crescent_compile_options INTERFACE)
 target_compile_options(crescent_compile_options INTERFACE -ffp-contract=off)
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(crescent_compile_options INTERFACE -Wall -Wextra -Wpedantic
-    $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)  # in one file, a name of another file is no shadow
+    $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)  # with unity builds, names of other files would count as shadowed
 else()
-  # Part of another project: its warnings. Debug code of a check takes several times as long to run, and what is more
-  # than -O1 takes longer to compile than it saves.
+  # Part of another project, which sets the warnings. Unoptimised code of a check takes several times as long to run,
+  # and more than -O1 takes longer to compile than it saves.
   target_compile_options(crescent_compile_options INTERFACE -O1)
 endif()
 target_compile_options(crescent_compile_options INTERFACE -fno-math-errno
-  # g++ 12 sees overlaps and overflows in std::string's operator+ that are not there (GCC bug 105651).
+  # g++ 12 reports overlaps and overflows in std::string's operator+ that do not exist (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>
-  # Masks of one lane are plain bool, and & on them is meant.
+  # Masks of one lane are plain bool, and & on them is intended.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
 if(CRESCENT_SANITIZE)
-  # AddressSanitizer itself stops at null and behind an object's end; looking for these twice, and for the type behind
-  # each pointer, takes a fifth of the build and of the tests.
+  # AddressSanitizer itself detects null and accesses beyond an object; checking these twice, and the type behind each
+  # pointer, takes a fifth of the build and of the tests.
   target_compile_options(crescent_compile_options INTERFACE -fsanitize=${CRESCENT_SANITIZE}
     -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   target_link_options(crescent_compile_options INTERFACE -fsanitize=${CRESCENT_SANITIZE})
@@ -48,7 +48,7 @@ if(CRESCENT_FUZZ)
   set(crescent_fuzzed base experiment)  # counts what it covers; where no fuzzer listens, ASan's runtime ignores it
 endif()
 
-# What nearly every file reads, read once a target: two thirds of the time to compile is spent in these.
+# Headers used by nearly every file, parsed once per target: they take two thirds of the compile time.
 option(CRESCENT_PCH "precompile the standard library's headers" ON)
 function(crescent_use_pch target)
   if(CRESCENT_PCH)
@@ -56,13 +56,14 @@ function(crescent_use_pch target)
       <functional> <map> <memory>
       <optional> <span> <sstream> <string> <string_view> <variant> <vector> <fmt/format.h> ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
-    # CMake gives its list of headers the time of older files: by their hash ninja sees that they are others.
+    # CMake gives its list of headers the time of older files: their hash shows ninja that they changed.
     string(MD5 headers "${ARGN}")
     target_compile_definitions(${target} PRIVATE CRESCENT_HEADERS=0x${headers})
   endif()
 endfunction()
 
-# Files that run once and take long to optimise, JSON above all. Without it they cannot use the precompiled headers.
+# Files that run once and take long to optimise, mostly JSON. Without optimisation they cannot use the precompiled
+# headers.
 function(crescent_low_optimization)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
 endfunction()

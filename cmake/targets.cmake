@@ -12,12 +12,12 @@ function(crescent_add_static_library target)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:crescent_compile_options>)
-  if(NOT PROJECT_IS_TOP_LEVEL)  # another project builds what it links
+  if(NOT PROJECT_IS_TOP_LEVEL)  # another project builds only what it links
     set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
   endif()
 endfunction()
 
-# A file of src/NAME that includes a folder which NAME does not depend on fails the build.
+# A file of src/NAME that includes a folder which NAME does not depend on makes the build fail.
 function(crescent_check_includes name)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.h ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
   set(stamp ${PROJECT_BINARY_DIR}/includes/${name}.stamp)
@@ -63,7 +63,7 @@ function(crescent_library name)
   endif()
 endfunction()
 
-# crescent::check without the rest: all folders it depends on are one target, compiled a few files at a time.
+# crescent::check alone: all folders it depends on are one target, compiled a few files at a time.
 function(crescent_check_alone)
   crescent_add_static_library(crescent_check ${crescent_sources})
   add_library(crescent::check ALIAS crescent_check)

@@ -1,4 +1,4 @@
-# The target xxHash::xxhash, where no package that CMake finds has made it: Debian's has a header and a library alone.
+# The target xxHash::xxhash, if no package found by CMake defines it: Debian's has only a header and a library.
 if(NOT TARGET xxHash::xxhash)
   find_path(xxHash_INCLUDE_DIR xxhash.h)
   find_library(xxHash_LIBRARY xxhash)

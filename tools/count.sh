@@ -1,6 +1,6 @@
-# Shell functions behind ./test: runs tests and counts them into `passed` and `failures`. Sourced after setup.sh.
+# Shell functions of ./test: run tests and count them into `passed` and `failures`. Sourced after setup.sh.
 
-passed=0 failures=0
+passed=0 failures=0 skipped=0
 
 add() { passed=$((passed + $1)) failures=$((failures + $2)); }
 
@@ -16,7 +16,7 @@ sum() {
     ' "$@"
 }
 
-# failed_tests LOG: of each test of ctest that failed, its line and the last ones of what it printed.
+# failed_tests LOG: for each test of ctest that failed, its line and the last lines of its output.
 failed_tests() {
     awk -v most=16 '
         function tell() {
@@ -34,7 +34,13 @@ failed_tests() {
     ' "$1"
 }
 
-# check PRESET: ctest on its build. A unit program counts as its test cases, a script as one.
+# longest LOG: the five slowest tests of ctest.
+longest() {
+    sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +([^ ]+) .* ([0-9]+)\.[0-9]+ sec.*/\2 \1/p' "$1" | sort -rn | head -n 5 |
+        awk '{ printf "%s%s %d s", NR > 1 ? ", " : "", $2, $1 }'
+}
+
+# check PRESET [OPTION...]: runs ctest on its build. A test program counts as its test cases, a script as one.
 check() {
     local dir log xml start=$SECONDS before=$passed broken=$failures
     dir=$(binary_dir "$1")
@@ -42,26 +48,26 @@ check() {
     rm -rf "$dir/results"
     mkdir -p "$dir/results"
     say "testing $1 (log: ${log#"$root"/})"
-    ctest --test-dir "$dir" -j "$(nproc)" --output-on-failure >"$log" 2>&1
+    ctest --test-dir "$dir" -j "$(nproc)" --output-on-failure "${@:2}" >"$log" 2>&1
     # Lines such as " 3/12 Test  #5: unit-1 .......   Passed    0.41 sec".
     while read -r name outcome; do
         xml="$dir/results/$name.xml"
-        if [[ $name == unit-* ]] && [ -f "$xml" ]; then
+        if [ -f "$xml" ]; then
             local all bad
             all=$(sum tests "$xml") bad=$(($(sum failures "$xml") + $(sum errors "$xml")))
-            # A program that ends badly after its last test has failed too.
+            # A program that fails after its last test has failed too.
             [ "$outcome" != passed ] && [ "$bad" -eq 0 ] && bad=1
             add $((all - bad)) "$bad"
         elif [ "$outcome" = passed ]; then add 1 0
         elif [ "$outcome" = failed ]; then add 0 1
-        else say "  skipped: $name"
+        else skipped=$((skipped + 1)) && say "  skipped: $name"
         fi
     done < <(sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +//p' "$log" |
         sed -nE 's/^([^ ]+) .*(Passed|Skipped|Failed|Timeout|Exception|Not Run).*/\1 \2/p' |
         sed -E 's/Passed$/passed/; s/Skipped$/skipped/; s/(Failed|Timeout|Exception|Not Run)$/failed/')
     # A suite that never ran is a failure of its own.
     [ $((passed - before + failures - broken)) -gt 0 ] || add 0 1
-    say "  $((passed - before)) passed, $((failures - broken)) failed in $((SECONDS - start)) s"
+    say "  $((passed - before)) passed, $((failures - broken)) failed in $((SECONDS - start)) s; longest: $(longest "$log")"
     [ "$failures" -eq "$broken" ] || failed_tests "$log" >&2
 }
 
@@ -70,7 +76,7 @@ fuzz() {
     local target log found
     target="$(binary_dir "$1")/tests/fuzz/$2"
     log="$log_dir/$2.log"
-    [ -x "$target" ] || { say "  skipped: $2"; return; }
+    [ -x "$target" ] || { skipped=$((skipped + 1)) && say "  skipped: $2"; return; }
     found="$(binary_dir "$1")/tests/fuzz/found"
     mkdir -p "$found"
     say "fuzzing $2 for $3 s"

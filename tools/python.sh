@@ -1,7 +1,7 @@
-# Shell functions behind ./wheel and ./test: environments, the Python module in the build tree, the wheel, its trial.
-# Sourced after setup.sh. PyPI is asked for nothing that an environment has already.
+# Shell functions of ./wheel and ./test: environments, the Python module in the build tree, the wheel, its tests.
+# Sourced after setup.sh. Nothing is downloaded from PyPI that an environment already has.
 
-# find_python [GIVEN]: the interpreter to build for; the system's python3 where none is given.
+# find_python [GIVEN]: the interpreter to build for; by default the system's python3.
 find_python() {
     local python=${1:-/usr/bin/python3}
     "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo "$python"; return; }
@@ -9,8 +9,8 @@ find_python() {
     return 1
 }
 
-# later_pythons: each CPython from 3.12 on that has its headers, one a version: of PATH, or of pyenv, whose commands in
-# PATH do not start where another version is chosen.
+# later_pythons: each CPython from 3.12 on that has its headers, one per version: from PATH, or from pyenv, whose
+# commands in PATH do not start if another version is selected.
 later_pythons() {
     local minor at
     for minor in $(seq 12 30); do
@@ -34,7 +34,7 @@ serving() {
     done
 }
 
-# make_environment DIR PYTHON PACKAGE...: a virtual environment that has these packages. Exit 3 where PyPI has none.
+# make_environment DIR PYTHON PACKAGE...: a virtual environment that has these packages. Exit 3 if PyPI has none.
 make_environment() {
     local dir=$1 python=$2 log
     shift 2
@@ -49,8 +49,8 @@ make_environment() {
     printf '%s' "$*" >"$dir/has"
 }
 
-# add_python_module DIR: brings the Python module into the release build, with an environment of its own in DIR. Says so
-# and leaves it out where that cannot be had: nothing else stands on it.
+# add_python_module DIR: adds the Python module to the release build, with an environment of its own in DIR. If that is
+# not possible, prints a message and omits it: nothing else depends on it.
 add_python_module() {
     local python packages=(nanobind numpy pytest mypy matplotlib xarray mitsuba jax)
     python=$(find_python) && (make_environment "$1" "$python" "${packages[@]}") ||
@@ -62,27 +62,33 @@ add_python_module() {
         say "going on without the Python package (log: $log_dir/python.log)"
 }
 
-# make_wheel ENVIRONMENT DIST: builds and repairs; sets `wheel` to the file.
+# make_sdist ENVIRONMENT DIST: the sources.
+make_sdist() {
+    local log="$log_dir/sdist.log"
+    "$1/bin/python" -m build --sdist --no-isolation -o "$2" "$root" >"$log" 2>&1 || fail 3 "$log" "making the sdist failed"
+}
+
+# make_wheel ENVIRONMENT DIST: builds and repairs; sets `wheel` to the file. Clang's kernels are a quarter faster than
+# those of g++ 12.
 make_wheel() {
     local tools=$1 dist=$2 raw="$root/build/python-raw" log="$log_dir/wheel.log" start=$SECONDS made
     say "building the wheel (log: ${log#"$root"/})"
     rm -rf "$raw"
-    # Clang's kernels are a quarter faster than those of g++ 12.
     (cd "$root" && CXX=${CXX:-$(command -v clang++-19 || echo c++)} PATH="$tools/bin:$PATH" \
         "$tools/bin/python" -m pip --disable-pip-version-check wheel -v . --no-build-isolation --no-deps -w "$raw") \
         >"$log" 2>&1 || fail 3 "$log" "building the wheel failed"
     made=$(ls "$raw"/*.whl) || fail 3 "$log" "no wheel came of it"
-    PATH="$tools/bin:$PATH" "$tools/bin/python" -m auditwheel repair --strip -w "$raw/repaired" "$made" >>"$log" 2>&1 ||
+    PATH="$tools/bin:$PATH" "$tools/bin/python" "$root/tools/repair_wheel.py" "$made" "$raw/repaired" >>"$log" 2>&1 ||
         fail 3 "$log" "auditwheel could not repair ${made##*/}"
     made=$(ls "$raw"/repaired/*.whl)
-    mkdir -p "$dist"
+    [ "$(stat -c %s "$made")" -lt 40000000 ] || fail 1 "$log" "${made##*/} has 40 MB or more"
     wheel="$dist/${made##*/}"
-    mv "$made" "$wheel.partial" && mv "$wheel.partial" "$wheel" || fail 3 "$log" "cannot write $wheel"
+    mv "$made" "$wheel" || fail 3 "$log" "cannot write $wheel"
     say "built ${wheel##*/} in $((SECONDS - start)) s"
 }
 
-# try_wheel ENVIRONMENT WHEEL: installs it there, runs its tests and judges with it; nothing of the repository is on the
-# way.
+# try_wheel ENVIRONMENT WHEEL: installs it there, runs its tests and a check with it, without any file of the
+# repository.
 try_wheel() {
     local dir=$1 log="$log_dir/$(basename "$1").log"
     "$dir/bin/python" -m pip -q --disable-pip-version-check install --force-reinstall "$2" >"$log" 2>&1 ||

@@ -1,12 +1,12 @@
-# Shell functions behind ./run and ./test: packages, configuration, build. Sourced, with `root` set to the repository.
-# What each step prints goes to build/log/; the terminal sees one line a step, and the log's end where a step fails.
+# Shell functions of ./run and ./test: packages, configuration, build. Sourced, with `root` set to the repository. The
+# output of each step goes to build/log/; the terminal shows one line per step, and the end of the log if a step fails.
 
 log_dir="$root/build/log"
 mkdir -p "$log_dir" 2>/dev/null || { echo "cannot write to $root/build" >&2; exit 3; }
 
 say() { printf '%s\n' "$*" >&2; }
 
-# fail CODE LOG MESSAGE: what went wrong, the end of its log, where all of it is.
+# fail CODE LOG MESSAGE: prints the message, the end of the log, and its path.
 fail() {
     local code=$1 log=$2
     shift 2
@@ -23,7 +23,7 @@ packages_of() {
 
 # missing PACKAGE...: those that are not installed.
 missing() {
-    # An empty line first: without a line of dpkg's, awk would take the names for what dpkg knows.
+    # An empty line first: without a line of dpkg's, awk would take the names for dpkg's list.
     { echo; dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "$@" 2>/dev/null; } |
         awk 'NR == FNR { if ($1 == "ii") have[$2] = 1; next } !($1 in have)' - <(printf '%s\n' "$@")
 }
@@ -37,14 +37,14 @@ apt() {
     "${as[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# need_packages GROUP...: installs what is missing of these groups, and of `optional` once.
-# Touches neither apt nor the network where nothing is missing.
+# need_packages GROUP...: installs the missing packages of these groups, and those of `optional` once. Uses neither apt
+# nor the network if nothing is missing.
 need_packages() {
     command -v dpkg-query >/dev/null || { say "no dpkg here: taking the needed packages as installed"; return; }
     local log="$log_dir/packages.log" tried="$root/build/optional-packages-tried"
     local needed=() optional=()
     mapfile -t needed < <(missing $(packages_of "$@"))
-    # A package that could not be had is not asked for again until the list changes.
+    # A package that was not available is not tried again until the list changes.
     [ "$tried" -nt "$root/tools/packages.txt" ] || mapfile -t optional < <(missing $(packages_of optional))
     if [ ${#needed[@]} -gt 0 ] || [ ${#optional[@]} -gt 0 ]; then
         say "installing packages: ${needed[*]} ${optional[*]}"
@@ -81,7 +81,7 @@ follow() {
     return 0
 }
 
-# build_core MACHINE [TARGET...]: the numerical core alone for another machine, tests/portability/MACHINE.cmake.
+# build_core MACHINE [TARGET...]: builds only the numerical core for another machine, tests/portability/MACHINE.cmake.
 build_core() {
     local dir="$root/build-$1" log="$log_dir/$1.log" start=$SECONDS
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/tests/portability" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
@@ -93,7 +93,7 @@ build_core() {
     [ $((SECONDS - start)) -lt 2 ] || say "built $1 in $((SECONDS - start)) s"
 }
 
-# build_page: the module of the page, and its scripts checked.
+# build_page: builds the module of the page and checks its scripts.
 build_page() {
     local dir="$root/build-web" log="$log_dir/page.log" start
     build_core wasm32 core
@@ -108,7 +108,7 @@ build_page() {
     [ $((SECONDS - start)) -lt 2 ] || say "built the page in $((SECONDS - start)) s"
 }
 
-# other_compiler PRESET: the setting for another compiler where clang++-19, which the preset names, is not installed.
+# other_compiler PRESET: the setting for another compiler if clang++-19, which the preset names, is not installed.
 other_compiler() {
     [ "$1" = release ] && ! command -v clang++-19 >/dev/null || return 0
     local name
@@ -117,14 +117,14 @@ other_compiler() {
     done
 }
 
-# build PRESET [TARGET...]: configures where it has not been, then brings the targets (default: all) up to date.
+# build PRESET [TARGET...]: configures if necessary, then brings the targets (default: all) up to date.
 build() {
     local preset=$1 dir log start=$SECONDS
     shift
     dir=$(binary_dir "$preset")
     log="$log_dir/$preset.log"
     : >"$log"
-    # A repository that was moved is configured anew.
+    # A repository that was moved is configured again.
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$dir/CMakeCache.txt" 2>/dev/null ||
         rm -rf "$dir/CMakeCache.txt" "$dir/build.ninja"
     if [ ! -f "$dir/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$dir/build.ninja" ]; then

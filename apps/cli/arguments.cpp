@@ -1,4 +1,4 @@
-// The command line: its commands, what is said of a wrong call, and the manual that --help prints. The flags of the
+// The command line: its commands, the messages for a wrong call, and the manual that --help prints. The flags of the
 // larger commands are in grammar_*.cpp.
 #include "arguments.h"
 
@@ -16,7 +16,7 @@
 
 namespace crescent::cli {
 
-std::string told(const std::string& text) {
+std::string not_empty(const std::string& text) {
     return text.find_first_not_of(" \t") == std::string::npos ? "is empty" : "";
 }
 
@@ -93,7 +93,7 @@ void add_version(CLI::App& app, Work& work) {
     app.add_flag_callback("--version", [] { throw CLI::CallForVersion("", 0); }, "Version, commit and compiler.");
 }
 
-/// Commands where none was chosen, and the flags of what was chosen.
+/// Returns the commands if none was chosen, else the flags of the chosen one.
 std::vector<std::string> words(const CLI::App& command, bool flags = true) {
     std::vector<std::string> out;
     for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
@@ -104,7 +104,7 @@ std::vector<std::string> words(const CLI::App& command, bool flags = true) {
     return out;
 }
 
-/// What is wrong with a word that a command does not take.
+/// Returns the message for a word that a command does not accept.
 std::string unexpected(const CLI::App& command, const std::string& word) {
     const std::string shown = "'" + printable(word) + "'";
     const std::string close = did_you_mean(word.substr(0, word.find('=')), words(command));
@@ -117,7 +117,7 @@ std::string unexpected(const CLI::App& command, const std::string& word) {
     return fmt::format("takes flags alone, and {} is none{}", shown, close);
 }
 
-/// The parser's complaint in two lines, with the nearest valid word where a word is unknown.
+/// Returns the parser's error in two lines, with the nearest valid word for an unknown one.
 std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
     const auto used = app.get_subcommands();
     const CLI::App& command = used.empty() ? app : *used.front();

@@ -1,12 +1,12 @@
-// The command line as words -> the chosen command with its flags.
+// Parses the command line into the chosen command with its flags.
 #pragma once
 
 #include <functional>
 
 namespace crescent::cli {
 
-/// The work that the command line asks for. A wrong command line is answered on stderr, with the nearest valid word,
-/// and its work returns Exit::misused.
+/// Returns the work that the command line requests. For a wrong command line, prints the error to stderr with the
+/// nearest valid word; its work returns Exit::misused.
 std::function<int()> parse(int argc, char** argv);
 
 }  // namespace crescent::cli

@@ -1,4 +1,4 @@
-// `crescent check`: samplers judged by themselves.
+// `crescent check`: samplers checked alone.
 #include "check.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "crescent/crescent.h"
 #include "progress.h"
+#include "python_sampler.h"
 #include "signals.h"
 
 namespace crescent::cli {
@@ -47,7 +48,7 @@ Settings settings_of(const CheckFlags& flags) {
     return out;
 }
 
-/// x,y,z, or degrees from the normal and about it; on either side of the surface.
+/// Parses x,y,z, or degrees from the normal and about it; on either side of the surface.
 Vec3d direction_of(const std::string& text) {
     std::vector<double> v;
     std::string rest = text;
@@ -70,16 +71,16 @@ Vec3d direction_of(const std::string& text) {
     return normalize(w);
 }
 
-/// A w_o under the surface is for a sampler that answers for both sides alone.
+/// A w_o below the surface is valid only for a sampler that supports both sides.
 void check_sides(const CheckFlags& flags, const Traits& traits) {
     for (const std::string& text : flags.wo)
-        if (direction_of(text).z < 0 && traits.wo != Traits::Asked::both)
+        if (direction_of(text).z < 0 && traits.wo != Traits::WoDomain::both)
             throw InputError({"--wo " + text, 0, 0},
                 "is under the surface, and the sampler does not answer there: 0 to less than 90 degrees from the "
                 "normal, z > 0 (a program that does says wo=both)");
 }
 
-/// The w_o of --wo; empty: the list's own.
+/// Returns the w_o of --wo; empty: the default list.
 Grid grid_of(const CheckFlags& flags) {
     Grid out;
     for (const std::string& text : flags.wo) {
@@ -132,16 +133,21 @@ int exit_of(State state) {
 
 namespace {
 
-std::vector<CheckCase> trials_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
-    if (!flags.exec.empty()) {
-        const auto subject = start_pipe(flags.exec, limits_of(flags, monitor));
-        check_sides(flags, subject->traits());
-        return make_user_cases(subject, flags.full, grid_of(flags));
+std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    const bool python = names_python_sampler(flags.arm);
+    if (python && !flags.settings.empty())
+        throw InputError({"--set " + flags.settings.front(), 0, 0},
+            "is for built-in samplers, and " + flags.arm + " has its own parameters");
+    if (python || !flags.exec.empty()) {
+        const auto adapter = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
+                                    : start_pipe(flags.exec, limits_of(flags, monitor));
+        check_sides(flags, adapter->traits());
+        return make_user_cases(adapter, flags.full, grid_of(flags));
     }
     if (!flags.plugin.empty()) {
-        const auto subject = open_plugin(flags.plugin, limits_of(flags, monitor));
-        check_sides(flags, subject->traits());
-        return make_user_cases(subject, flags.full, grid_of(flags));
+        const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
+        check_sides(flags, adapter->traits());
+        return make_user_cases(adapter, flags.full, grid_of(flags));
     }
     check_sides(flags, {});
     if (flags.samples.empty()) return make_cases(flags.arm, settings_of(flags), flags.full, grid_of(flags));
@@ -154,11 +160,23 @@ std::vector<CheckCase> trials_for(const CheckFlags& flags, const ProgressMonitor
     return {t};
 }
 
+/// The sampler as the command line names it.
+std::string given_sampler(const CheckFlags& flags) {
+    return !flags.exec.empty() ? flags.exec : !flags.plugin.empty() ? flags.plugin : flags.arm;
+}
+
+/// --patience and --accept-few are for programs, a Python interpreter among them.
+void check_limits(const CheckFlags& flags) {
+    if (!flags.exec.empty() || names_python_sampler(flags.arm)) return;
+    for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
+        if (given) throw InputError({flag, 0, 0}, "needs --exec or a sampler in a Python file");
+}
+
 bool whole_list(const CheckFlags& flags) {
     return flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
 }
 
-/// Of hundreds of cases each ends at the first look that leaves nothing open.
+/// With hundreds of cases, each ends at the first stage that leaves nothing open.
 TestSettings settings_of_list(const CheckFlags& flags) {
     TestSettings r = test_settings_of(flags);
     r.budget = flags.full ? check::CheckBudget::thorough() : check::CheckBudget::quick();
@@ -166,7 +184,7 @@ TestSettings settings_of_list(const CheckFlags& flags) {
     return r;
 }
 
-/// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
+/// Returns the command that repeats the check. The output files are omitted, so that equal calls state equal commands.
 std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
@@ -186,7 +204,7 @@ std::string command_of(const CheckFlags& f) {
     return out;
 }
 
-/// Minutes of work are not lost to a folder that is not there: every file is opened before the first draw.
+/// Opens every file before the first draw, so that minutes of work are not lost to a missing folder.
 void try_files(const CheckFlags& flags) {
     for (const std::string& path : {flags.json, flags.timing, flags.junit, flags.html})
         if (!path.empty()) can_write(path);
@@ -195,7 +213,7 @@ void try_files(const CheckFlags& flags) {
 }  // namespace
 
 void write_files(const CheckFlags& flags, const CheckResult& j) {
-    const JudgementSource source{crescent::version(), crescent::commit(), command_of(flags)};
+    const ResultSource source{crescent::version(), crescent::commit(), command_of(flags)};
     if (!flags.json.empty()) write_whole(flags.json, verdict_json(j, source));
     if (!flags.timing.empty()) write_whole(flags.timing, verdict_timing(j, source));
     if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
@@ -204,33 +222,33 @@ void write_files(const CheckFlags& flags, const CheckResult& j) {
 
 namespace {
 
-/// How much a program will be asked, before it is asked for an hour.
-void tell_cost(std::span<const CheckCase> trials, const TestSettings& settings, ProgressMonitor& monitor) {
-    std::size_t judged = 0;
+/// Logs how many queries a program will receive, before a long run.
+void log_cost(std::span<const CheckCase> check_cases, const TestSettings& settings, ProgressMonitor& monitor) {
+    std::size_t checked = 0;
     bool program = false, light = false;
-    for (const CheckCase& t : trials) {
-        judged += !t.baseline, program = program || t.subject->limited();
-        light = light || t.subject->traits().wo == Traits::Asked::none;
+    for (const CheckCase& t : check_cases) {
+        checked += !t.baseline, program = program || t.adapter->limited();
+        light = light || t.adapter->traits().wo == Traits::WoDomain::none;
     }
     if (!program || !settings.full) return;
     const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
-    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
-        settings.questions, judged, more));
+    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", checked * settings.questions,
+        settings.questions, checked, more));
 }
 
-std::vector<std::string> names_of(std::span<const CheckCase> trials) {
+std::vector<std::string> names_of(std::span<const CheckCase> check_cases) {
     std::vector<std::string> out;
-    for (const CheckCase& t : trials)
+    for (const CheckCase& t : check_cases)
         if (!t.baseline && std::find(out.begin(), out.end(), t.arm) == out.end()) out.push_back(t.arm);
     return out;
 }
 
-/// What distribution the draws have; no verdict.
-int describe_draws(const CheckFlags& flags, std::span<const CheckCase> trials, Progress& monitor) {
+/// Describes the distribution of the draws; gives no verdict.
+int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cases, Progress& monitor) {
     check::DescribeSettings settings;
     settings.seed = flags.seed;
     if (flags.full) settings.draws *= 16, settings.draws_of_limited *= 16;
-    const std::vector<check::Description> all = check::describe(trials, settings, monitor);
+    const std::vector<check::Description> all = check::describe(check_cases, settings, monitor);
     monitor.clear();
     std::string text;
     for (const check::Description& d : all) text += check::description_text(d) + "\n";
@@ -251,7 +269,7 @@ namespace {
 /// "2.1 s, 3.9 s of CPU time, 45 MB of memory at most; 9,700,000 evaluations ..."
 std::string cost_of(const CheckResult& j, double seconds) {
     std::set<std::pair<std::string, std::string>> cases;
-    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.check_case});
     const Usage used = usage();
     const double each =
         static_cast<double>(j.evaluations) / static_cast<double>(std::max<std::size_t>(cases.size(), 1));
@@ -266,11 +284,12 @@ std::string cost_of(const CheckResult& j, double seconds) {
 
 int check(const CheckFlags& given) {
     CheckFlags flags = given;
-    for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may chdir
+    for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may call chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
     const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
+    check_limits(flags);
     try_files(flags);
     if (flags.right > 0) return check_right(flags, monitor);
     if (flags.planted) return check_planted(flags, monitor);
@@ -280,17 +299,17 @@ int check(const CheckFlags& given) {
     if (same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
     const std::vector<Waiver> waivers = read_waivers(expected);
     try {
-        const std::vector<CheckCase> trials = trials_for(flags, monitor);
-        check_waivers(waivers, names_of(trials));
-        if (flags.describe) return describe_draws(flags, trials, monitor);
-        if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
-        tell_cost(trials, test_settings_of(flags), monitor);
-        j = judge(trials, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
-    } catch (const SamplerError& fault) { j = complaint(fault, flags, flags.exec.empty() ? flags.plugin : flags.exec); }
+        const std::vector<CheckCase> check_cases = cases_for(flags, monitor);
+        check_waivers(waivers, names_of(check_cases));
+        if (flags.describe) return describe_draws(flags, check_cases, monitor);
+        if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
+        log_cost(check_cases, test_settings_of(flags), monitor);
+        j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+    } catch (const SamplerError& fault) { j = complaint(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
     const bool all = whole_list(flags);
-    if (all) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
+    if (all) j.state = j.as_expected ? State::right : State::wrong;  // the state is that of the whole list
     print(verdict_table(j));
     if (flags.verbose) print(cost_of(j, watch.seconds()));
     if (all)
@@ -300,7 +319,7 @@ int check(const CheckFlags& given) {
     return exit_of(j.state, flags);
 }
 
-// ---- `crescent check A --against B`, and what is said of a program that never came to be judged.
+// ---- `crescent check A --against B`, and the report for a program that could not be checked.
 
 CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const std::string& command) {
     CheckResult j;
@@ -309,11 +328,11 @@ CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const 
     for (std::string_view name : verdict_names) {
         Verdict v;
         v.arm = printable(command, 60);
-        v.trial = before_any_trial;
+        v.check_case = before_any_case;
         v.name = name;
         v.state = j.state;
-        v.say = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
-                                         : "It could not be asked: the sampler never came to be judged.";
+        v.message = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
+                                             : "It could not be asked: the sampler never came to be judged.";
         v.expected = false;
         j.verdicts.push_back(v);
     }
@@ -323,20 +342,22 @@ CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const 
 
 namespace {
 
-/// B on the trials of A: a built-in arm by its name, or a program.
+/// Returns B on the cases of A: a built-in sampler by its name, or a program.
 std::vector<CheckCase> others_of(
     const CheckFlags& flags, std::span<const CheckCase> a, const ProgressMonitor& monitor) {
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end())
         return sampler_named_against(flags.against, a);
     const std::string near = did_you_mean(flags.against, names);
-    if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
+    if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a name, not a command
         throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm" + near);
     for (const char* end : {".csv", ".npy"})
         if (flags.against.ends_with(end) && flags.against.find(' ') == std::string::npos)
             throw InputError({"--against " + flags.against, 0, 0},
                 "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
                 "or a program");
+    if (names_python_sampler(flags.against) && flags.against.find(' ') == std::string::npos)
+        return sampler_against(start_python_sampler(flags.against, limits_of(flags, monitor)), a);
     try {
         return sampler_against(start_pipe(flags.against, limits_of(flags, monitor)), a);
     } catch (const InputError&) {  // start_pipe calls it --exec
@@ -352,7 +373,7 @@ int check_against(
     std::vector<CheckCase> b;
     try {
         b = others_of(flags, a, monitor);
-    } catch (const SamplerError& fault) {  // B's own: A has answered
+    } catch (const SamplerError& fault) {  // B's own: A has responded
         const CheckResult j = complaint(fault, flags, flags.against);
         monitor.clear();
         print(verdict_table(j));

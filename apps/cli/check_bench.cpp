@@ -1,24 +1,24 @@
-// `crescent check --planted` and `--right`: the check itself, on samplers of which it is known what they are.
+// `crescent check --planted` and `--right`: the check itself, on samplers whose faults are known.
 #include <algorithm>
 #include <cstdio>
 
 #include "check.h"
-#include "tests/known_samplers/correct/law.h"
+#include "tests/known_samplers/correct/false_alarms.h"
 #include "tests/known_samplers/faulty/planted.h"
 
 namespace crescent::cli {
 
 namespace {
 
-/// What the faults came to, for the files: one verdict a fault, right where it is caught.
+/// Returns the result of a planted fault for the files: one verdict per fault, right if it is detected.
 Verdict caught_or_not(const PlantedFault& fault, const std::string& caught) {
     Verdict v;
     v.arm = fault.breaks;
-    v.trial = fault.name;
+    v.check_case = fault.name;
     v.name = "caught";
     v.state = caught.empty() ? State::wrong : State::right;
     v.expected = !caught.empty();
-    v.say = caught.empty() ? "No verdict is wrong where this fault is planted." : "Caught by " + caught + ".";
+    v.message = caught.empty() ? "No verdict is wrong where this fault is planted." : "Caught by " + caught + ".";
     return v;
 }
 
@@ -40,7 +40,7 @@ int check_planted(const CheckFlags& flags, Progress& monitor) {
     j.alpha = flags.alpha;
     std::string text;
     for (const PlantedFault& fault : planted_faults(flags.full)) {
-        const std::string caught = catchers(judge(fault.trials, test_settings_of(flags), monitor));
+        const std::string caught = catchers(run_checks(fault.check_cases, test_settings_of(flags), monitor));
         j.verdicts.push_back(caught_or_not(fault, caught));
         j.as_expected = j.as_expected && !caught.empty();
         char line[256];
@@ -57,16 +57,18 @@ int check_planted(const CheckFlags& flags, Progress& monitor) {
 
 namespace {
 
-bool keeps_promise(const FalseAlarmStudy& law) { return rate_interval(law.accused, law.judged).first <= law.alpha; }
+bool keeps_promise(const FalseAlarmStudy& study) {
+    return rate_interval(study.false_alarms, study.checked).first <= study.alpha;
+}
 
 }  // namespace
 
 int check_right(const CheckFlags& flags, ProgressMonitor& monitor) {
-    const FalseAlarmStudy law = measure_false_alarms(flags.first, flags.right, test_settings_of(flags), monitor);
+    const FalseAlarmStudy study = measure_false_alarms(flags.first, flags.right, test_settings_of(flags), monitor);
     std::string text;
-    for (const std::string& line : law.said) text += line;
-    print(text + right_law_text(law));
-    return keeps_promise(law) ? held : failed;
+    for (const std::string& line : study.message) text += line;
+    print(text + false_alarm_text(study));
+    return keeps_promise(study) ? held : failed;
 }
 
 }  // namespace crescent::cli

@@ -1,4 +1,4 @@
-// The commands of the program: what each takes, and the exit codes that all of them return.
+// The commands of the program: their flags, and the exit codes that all of them return.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace crescent::cli {
 
-/// What the program returns to its caller; the same for every command.
+/// Exit codes, the same for every command.
 enum Exit : int {
-    held = 0,     // done, and everything asserted holds (check: right)
+    held = 0,     // done, and all assertions hold (check: right)
     failed = 1,   // done, and an assertion fails (check: wrong)
     misused = 2,  // the command line or the experiment file is wrong; nothing was written
     unwritable =
-        3,  // an output could not be written, a needed part is missing, or (check) the sampler broke off: an error
+        3,  // an output could not be written, a needed part is missing, or (check) the sampler terminated: an error
     inconclusive = 4,  // check: neither right nor wrong
     bug = 70,          // an internal check failed (EX_SOFTWARE of sysexits.h)
     interrupted = 130  // SIGINT or SIGTERM
@@ -25,16 +25,18 @@ struct RunFlags {
     std::string file;
     std::vector<std::string> overrides;  // PATH=VALUE
     std::string out, isa;                // "": the default
-    std::string instrument = "cpu";
+    std::string backend = "cpu";
     std::string only, seed_range;  // "metrics,report", "1:8"; "": all
     std::string gl_context;        // "": EGL
     int gl_device = -1;            // -1: a GPU where there is one
     int seeds = 0, threads = 0;    // 0: the file's; as many as this process may use
     double keep_after = 10;        // s
-    double timeout = 0;            // s that an answer of a program or plugin may take; 0: the defaults
+    double timeout = 0;            // s per response of a program or plugin; 0: the defaults
     bool quiet = false, preview = false;
 };
 int run(const RunFlags& flags);
+/// The file that was given, or the installed experiment of that name: `crescent run gallery`.
+std::string experiment_file(const std::string& given);
 
 struct JoinFlags {
     std::vector<std::string> parts;
@@ -70,13 +72,13 @@ struct CheckFlags {
     std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails
     std::vector<std::string> wo;            // x,y,z or degrees
     std::string json, timing, junit, html;  // files to write
-    double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
-    double timeout = 0;                     // s that an answer of a program or plugin may take; 0: the defaults
+    double alpha = 1e-3, patience = 0;      // patience: s for a program; 0: two minutes, with --full an hour
+    double timeout = 0;                     // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
-    unsigned right = 0, first = 0;  // right: how many right samplers; 0: not asked for
+    unsigned right = 0, first = 0;  // right: number of correct samplers; 0: not requested
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
-    bool verbose = false;   // what it took
-    bool describe = false;  // what distribution the draws have, and no verdict
+    bool verbose = false;   // prints the cost
+    bool describe = false;  // describes the distribution of the draws, without a verdict
 };
 int check(const CheckFlags& flags);
 
@@ -86,17 +88,17 @@ struct CompareFlags {
     std::vector<std::string> layers, spp, seconds, assertions;  // [NAME=]LAYER, [NAME=]N, [NAME=]S, a check
     std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
     bool crop = false, pair = false, schema = false, json = false, quiet = false;
-    unsigned error_rates = 0, seed = 1;  // error_rates: how many calls; 0: not asked for
+    unsigned error_rates = 0, seed = 1;  // error_rates: number of calls; 0: not requested
 };
 int compare(const CompareFlags& flags);
 
 struct VersionFlags {};
 int version(const VersionFlags& flags);
 
-/// Writes to stdout and makes sure that it arrived. A reader who went away (closed pipe) is no error;
-/// anything else throws OutputError.
+/// Writes to stdout and checks that all was written. A closed pipe is not an error; any other failure throws
+/// OutputError.
 void print(const std::string& text);
-/// Writes to stderr. Of both, no control character in a name, a file or a word reaches the terminal.
+/// Writes to stderr. In both, no control character in a name, a file or a word reaches the terminal.
 void print_to_stderr(const std::string& text);
 
 }  // namespace crescent::cli

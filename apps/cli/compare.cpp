@@ -1,4 +1,4 @@
-// crescent compare: renders of other programs -> meters, bias tests, plates, report.
+// crescent compare: metrics, bias tests, plates and a report for renders of other programs.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -10,7 +10,7 @@ namespace crescent::cli {
 
 namespace {
 
-/// "NAME=VALUE" of a flag; `what` stands in the complaint.
+/// Splits "NAME=VALUE" of a flag; `what` is used in the error message.
 std::pair<std::string, std::string> cut(const std::string& flag, const std::string& text, const char* what) {
     const std::size_t equals = text.find('=');
     if (equals == 0 || equals == std::string::npos)
@@ -18,7 +18,7 @@ std::pair<std::string, std::string> cut(const std::string& flag, const std::stri
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-/// Arms of the flags and of the file.
+/// Returns the arms of the flags and of the file.
 std::vector<std::string> arms_of(const CompareFlags& flags) {
     std::vector<std::string> out;
     for (const std::string& arm : flags.arms) out.push_back(arm.substr(0, arm.find('=')));
@@ -27,7 +27,7 @@ std::vector<std::string> arms_of(const CompareFlags& flags) {
     return out;
 }
 
-/// A number for all arms, or for one by name, which stands over it.
+/// Reads a number for all arms, or for one by name, which overrides it.
 void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all,
     const std::string& flag, const char* key) {
     for (const std::string& text : all) {
@@ -46,7 +46,8 @@ void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std
     }
 }
 
-/// "LAYER" of all files, or "NAME=LAYER" of an arm or the reference, which overrides it. Layers may have a '=' too.
+/// Reads "LAYER" for all files, or "NAME=LAYER" for an arm or the reference, which overrides it. Layers may have a '='
+/// too.
 void layers_of(std::vector<CompareFlag>& out, const CompareFlags& flags) {
     const std::vector<std::string> arms = arms_of(flags);
     const auto named = [&](const std::string& text) {
@@ -122,7 +123,7 @@ std::string command_of(const CompareFlags& f) {
     return out;
 }
 
-/// A section of docs/error-rates.md.
+/// Prints a section of docs/error-rates.md.
 int error_rates(const CompareFlags& flags) {
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
@@ -151,7 +152,7 @@ int compare(const CompareFlags& flags) {
     const StopOnSignal stop(progress);
     std::string summary;
     const CompareResult result =
-        crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
+        crescent::compare_renders(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
     progress.clear();
     print(summary);
     return result.state == CompareResult::State::holds ? held

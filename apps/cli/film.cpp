@@ -1,4 +1,4 @@
-// crescent film: an experiment file -> an explainer of what its run measures.
+// crescent film: makes an explainer video of an experiment's measurements.
 #include "commands.h"
 #include "crescent/crescent.h"
 #include "progress.h"
@@ -20,7 +20,7 @@ std::string command_of(const FilmFlags& flags) {
 int film(const FilmFlags& flags) {
     std::vector<std::string> overrides = flags.overrides;
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
-    const Experiment experiment = load(flags.file, overrides);
+    const Experiment experiment = load(experiment_file(flags.file), overrides);
     if (!film_maker()) throw OutputError("this build has no film: it was configured without CRESCENT_EXPLAINER");
 
     ExplainerOptions options = flags.options;

@@ -1,4 +1,4 @@
-// What the files of the command line's grammar share: a command is added to the parser together with what performs it.
+// Shared by the files of the command line's grammar: a command is added to the parser together with its implementation.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,11 @@ template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* 
     return sub;
 }
 
-/// What is wrong with the text of a flag, "" where nothing: it is empty; it is no number of seconds from 0 to 1e9.
-std::string told(const std::string& text);
+/// Returns what is wrong with the text of a flag, "" if nothing: it is empty; it is not a number of seconds from 0 to
+/// 1e9.
+std::string not_empty(const std::string& text);
 std::string seconds(const std::string& text);
-/// What a flag takes: a whole number, a number, one of some words. Another is told with what was expected.
+/// Validators for a flag: an integer, a number, one of several words. The error states what was expected.
 CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 CLI::Validator number(double low, double high);
 CLI::Validator one_of(const std::vector<std::string>& words);
@@ -35,7 +36,7 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 /// --timeout.
 void timeout(CLI::App& command, double& to);
 
-// Each adds one command; `work` receives what performs it once the parser met it.
+// Each adds one command; `work` receives its implementation once the parser finds it.
 void add_run(CLI::App& app, Work& work);
 void add_join(CLI::App& app, Work& work);
 void add_film(CLI::App& app, Work& work);

@@ -33,11 +33,11 @@ std::string verdicts_in_order() {
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
         "hold the sampler against a built-in arm or a program: same distribution, same f, variance ratio");
-    against->type_name("ARM|'PROGRAM'")->check(told);
+    against->type_name("ARM|FILE.py:NAME|'PROGRAM'")->check(not_empty);
     return against;
 }
 
-/// --expect and --allow-inconclusive; gives the former.
+/// Adds --expect and --allow-inconclusive; returns the former.
 CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
     c.add_flag("--allow-inconclusive", f.allow_inconclusive, "exit 0 where it would be 4");
     return c
@@ -53,17 +53,17 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
         ->allow_extra_args(false);
 }
 
-/// The files that a call writes.
+/// The output files of a call.
 void outputs(CLI::App& c, CheckFlags& f) {
     for (CLI::Option* file :
         {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
             c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
             c.add_option("--junit", f.junit, "write for a build server"),
             c.add_option("--html", f.html, "write one page with maps, histograms and roses")})
-        file->type_name("FILE")->check(told);
+        file->type_name("FILE")->check(not_empty);
 }
 
-/// A sampler of the caller's own.
+/// A sampler given by the caller.
 struct Own {
     CLI::Option *exec, *plugin, *samples;
 };
@@ -71,21 +71,22 @@ struct Own {
 Own own_samplers(CLI::App& c, CheckFlags& f) {
     return {c.add_option("--exec", f.exec, "judge a program that answers over a pipe")
                 ->type_name("'PROGRAM ARGS'")
-                ->check(told),
+                ->check(not_empty),
         c.add_option("--plugin", f.plugin, "judge a shared library, see docs/plugins.md")
             ->type_name("FILE")
-            ->check(told),
-        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told)};
+            ->check(not_empty),
+        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")
+            ->type_name("FILE")
+            ->check(not_empty)};
 }
 
 /// How long a program may take.
-void limits(CLI::App& c, CheckFlags& f, CLI::Option* exec) {
-    c.add_option("--patience", f.patience, "s that --exec may take in all; default 120, with --full 3600")
+void limits(CLI::App& c, CheckFlags& f) {
+    c.add_option("--patience", f.patience, "s that a program may take in all; default 120, with --full 3600")
         ->type_name("SECONDS")
-        ->needs(exec)
         ->check(number(0.01, 1e6));
     timeout(c, f.timeout);
-    c.add_flag("--accept-few", f.accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
+    c.add_flag("--accept-few", f.accept_few, "judge a slow program by the w_o that there was time for");
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ void add_check(CLI::App& app, Work& work) {
     std::shared_ptr<CheckFlags> f;
     CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
     c->footer(verdicts_in_order() + check_footer);
-    auto* arm = c->add_option("ARM", f->arm, "a built-in arm; without it, all")->type_name("");
+    auto* arm = c->add_option("ARM", f->arm, "a built-in arm, or FILE.py:NAME; without it, all")->type_name("");
     auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
                     ->type_name("KEY=VALUE")
                     ->take_all()
@@ -110,7 +111,7 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(arm)
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
-    limits(*c, *f, exec);
+    limits(*c, *f);
     auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters")
                       ->type_name("N")
                       ->check(whole_number(1, 1000000));
@@ -122,7 +123,7 @@ void add_check(CLI::App& app, Work& work) {
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
         ->type_name("FILE")
         ->needs(samples)
-        ->check(told);
+        ->check(not_empty);
     auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
     auto* against = comparison(*c, *f);

@@ -22,7 +22,12 @@ void add_compare(CLI::App& app, Work& work) {
     CLI::App* c = command(app, work, "compare", "Compare renders of any program: noise, bias, where.", compare, f);
     c->footer(compare_footer);
     const auto many = [&](const char* flag, std::vector<std::string>& to, const char* means, const char* type) {
-        c->add_option(flag, to, means)->type_name(type)->take_all()->expected(1)->allow_extra_args(false)->check(told);
+        c->add_option(flag, to, means)
+            ->type_name(type)
+            ->take_all()
+            ->expected(1)
+            ->allow_extra_args(false)
+            ->check(not_empty);
     };
     c->add_option("FILE", f->file, "a TOML file; flags stand over it")->type_name("");
     many("--arm", f->arms, "renders of one arm; may be given again", "NAME=FILES");
@@ -46,7 +51,7 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_option("--brightest", f->brightest, "the most that Y of a pixel of one render can be, e.g. a clamp")
         ->type_name("Y");
     c->add_option("--theme", f->theme, "of plates: dark, light")->type_name("THEME");
-    c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(told);
+    c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(not_empty);
     auto* schema = c->add_flag("--schema", f->schema, "every key of FILE");
     c->add_flag("--json", f->json, "with --schema: as a JSON Schema")->needs(schema);
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");

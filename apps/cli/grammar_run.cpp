@@ -62,7 +62,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("FILE", f->file, "the experiment, a TOML file")->required()->type_name("");
     c->add_option("--out", f->out, "where the outputs go; default: out/ and FILE's name")
         ->type_name("DIR")
-        ->check(told);
+        ->check(not_empty);
     c->add_option("--set", f->overrides, "another value for a key; may be given again")
         ->type_name("PATH=VALUE")
         ->take_all()
@@ -78,13 +78,13 @@ void add_run(CLI::App& app, Work& work) {
         ->excludes(preview);
     c->add_option("--only", f->only, "of metrics, films, plates, report: these alone")
         ->type_name("PART,..")
-        ->check(told)
+        ->check(not_empty)
         ->excludes(preview);
     c->add_option("--threads", f->threads, "default: as many as this process may use")
         ->type_name("N")
         ->check(whole_number(1, 4096));
     c->add_option("--isa", f->isa, all_isas() + "; default: the best here")->type_name("NAME");
-    c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")
+    c->add_option("--instrument", f->backend, "what computes the films: cpu, gl")
         ->type_name("NAME")
         ->check(one_of({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")
@@ -107,8 +107,8 @@ void add_join(CLI::App& app, Work& work) {
     c->add_option("PART", f->parts, "the folder of a run, or its metrics.json")
         ->required()
         ->type_name("...")
-        ->check(told);
-    c->add_option("--out", f->out, "where the outputs go")->required()->type_name("DIR")->check(told);
+        ->check(not_empty);
+    c->add_option("--out", f->out, "where the outputs go")->required()->type_name("DIR")->check(not_empty);
 }
 
 void add_film(CLI::App& app, Work& work) {
@@ -117,7 +117,7 @@ void add_film(CLI::App& app, Work& work) {
     ExplainerOptions& o = f->options;
     c->footer(film_footer);
     c->add_option("FILE", f->file, "the experiment, a TOML file")->required()->type_name("");
-    c->add_option("--out", o.out, "where the outputs go; default: out/film")->type_name("DIR")->check(told);
+    c->add_option("--out", o.out, "where the outputs go; default: out/film")->type_name("DIR")->check(not_empty);
     c->add_option("--size", f->size, "1080p (default), 720p, 360p")
         ->type_name("P")
         ->check(one_of({"1080p", "720p", "360p"}));
@@ -128,7 +128,9 @@ void add_film(CLI::App& app, Work& work) {
     auto* from = c->add_option("--from", o.from, "from this time on")->type_name("MM:SS")->check(moment);
     auto* to = c->add_option("--to", o.to, "up to this time")->type_name("MM:SS")->check(moment);
     for (auto* part : {from, to}) part->excludes(still)->excludes(stills);
-    c->add_option("--voice", o.voice, "speaks the captions: text in, WAV out")->type_name("'COMMAND'")->check(told);
+    c->add_option("--voice", o.voice, "speaks the captions: text in, WAV out")
+        ->type_name("'COMMAND'")
+        ->check(not_empty);
     c->add_flag("--webm", o.webm, "crescent.webm too (VP9)");
     c->add_option("--set", f->overrides, "another value for a key; may be given again")
         ->type_name("PATH=VALUE")

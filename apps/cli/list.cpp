@@ -1,5 +1,5 @@
-// crescent list: the words that an experiment and the command line can name. Everything comes from the tables that
-// read, compute and draw; nothing is listed by hand here.
+// crescent list: the words that an experiment and the command line can name. All of them come from the tables used by
+// the rest of the program.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -13,7 +13,7 @@ struct Word {
     std::string word, means;
 };
 
-/// The kinds of a list, such as that of shapes.
+/// Returns the kinds of a list, such as that of shapes.
 template <class Kinds> std::vector<Word> kinds() {
     std::vector<Word> out;
     for (std::size_t k = 0; k < Kinds::count; ++k)
@@ -43,7 +43,7 @@ std::vector<Word> lobes() {
     return out;
 }
 
-std::vector<Word> meters() {
+std::vector<Word> metrics() {
     std::vector<Word> out;
     for (const QuantityWord& word : quantity_words()) out.push_back({form_of(word), std::string(word.means)});
     return out;
@@ -62,10 +62,10 @@ std::vector<Word> instruction_sets() {
     return out;
 }
 
-/// What --gl-device can name, by number.
+/// Returns the devices that --gl-device can name, by number.
 std::vector<Word> devices() {
     std::vector<Word> out;
-    for (const auto& kind : instrument_kinds())
+    for (const auto& kind : backend_kinds())
         for (const BackendDevice& device : kind->devices())
             out.push_back({fmt::format("{}  {}", device.number, device.means), ""});
     return out;
@@ -74,7 +74,7 @@ std::vector<Word> devices() {
 struct Topic {
     std::string name, means;
     std::vector<Word> (*words)();
-    bool by_name_alone = false;  // finding out takes a while
+    bool by_name_alone = false;  // finding them takes a while
 };
 const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
@@ -83,7 +83,7 @@ const std::vector<Topic>& topics() {
         {"lights", "kinds of light", kinds<LightKinds>},
         {"brdfs", "lobes beside the Lambert term", lobes},
         {"plates", "kinds of picture", plates},
-        {"meters", "quantities that a check can name", meters},
+        {"meters", "quantities that a check can name", metrics},
         {"verdicts", "what `check` says of a sampler, in this order", verdicts},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
         {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},
@@ -122,7 +122,7 @@ int list(const ListFlags& flags) {
     return held;
 }
 
-// ---- crescent schema and crescent version: what the program says of its input and of itself.
+// ---- crescent schema and crescent version: descriptions of the input and of the program.
 
 int schema(const SchemaFlags& flags) {
     print(flags.json ? schema_json() : schema_text());

@@ -1,4 +1,4 @@
-// The program `crescent`: runs what the command line asks for and turns what happened into an exit code.
+// The program `crescent`: runs the command and returns its exit code.
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -26,7 +26,7 @@ void print_to_stderr(const std::string& text) { std::fputs(printable_lines(text)
 
 namespace {
 
-/// A closed descriptor 0, 1 or 2 would be given to the first file that is opened.
+/// Opens descriptors 0, 1 and 2 if they are closed: the first opened file would otherwise get their number.
 void open_standard_streams() {
     for (int fd = 0; fd <= 2; ++fd)
         if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF) static_cast<void>(::open("/dev/null", O_RDWR));
@@ -56,7 +56,7 @@ int perform(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     crescent::cli::open_standard_streams();
-    for (const int failed_write : {SIGPIPE, SIGXFSZ}) std::signal(failed_write, SIG_IGN);  // write() says so too
+    for (const int failed_write : {SIGPIPE, SIGXFSZ}) std::signal(failed_write, SIG_IGN);  // write() reports these too
     crescent::cli::end_on_signals();
     crescent::Process::adopt_orphans();
     const int code = crescent::cli::perform(argc, argv);

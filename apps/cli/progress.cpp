@@ -1,5 +1,5 @@
 // Rate and time left follow from the units done over the seconds since the stage began. Any thread may count; one that
-// gets the lock without waiting draws the line again, at most ten times a second.
+// gets the lock without waiting redraws the line, at most ten times a second.
 #include "progress.h"
 
 #include <algorithm>

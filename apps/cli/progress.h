@@ -1,4 +1,4 @@
-// How far a run is, on stderr: one line that is redrawn on a terminal, a line a stage in a log.
+// The progress of a run on stderr: one line that is redrawn on a terminal, a line per stage in a log.
 #pragma once
 
 #include <atomic>
@@ -21,10 +21,10 @@ public:
     void advance(double units) override;
     void skip(double units) override;
     void log(std::string_view line) override;
-    /// Takes the bar off the terminal.
+    /// Removes the bar from the terminal.
     void clear();
 
-    /// A bar where stderr is a terminal that can redraw a line, else lines.
+    /// Returns a bar if stderr is a terminal that can redraw a line, else lines.
     static Style fitting();
 
 private:

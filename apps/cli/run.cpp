@@ -1,11 +1,11 @@
-// crescent run: an experiment file -> films, meters, plates, report.
+// crescent run: makes films, metrics, plates and a report from an experiment file.
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 
 #include "commands.h"
 #include "crescent/crescent.h"
-#include "instruments.h"
+#include "backends.h"
 #include "progress.h"
 #include "signals.h"
 
@@ -13,20 +13,20 @@ namespace crescent::cli {
 
 namespace {
 
-/// The command that makes the outputs again. Where they go, threads and instruction set do not change them and are
-/// left out, so that equal runs state equal commands.
+/// Returns the command that regenerates the outputs. Output folder, threads and instruction set do not change them and
+/// are omitted, so that equal runs state equal commands.
 std::string command_of(const RunFlags& flags) {
     std::string command = "crescent run " + shell_word(flags.file);
     for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
     if (!flags.seed_range.empty()) command += " --seed-range " + flags.seed_range;
-    if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
+    if (flags.backend != "cpu") command += " --instrument " + flags.backend;
     if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;
     if (flags.gl_device >= 0) command += " --gl-device " + std::to_string(flags.gl_device);
     return command;
 }
 
-/// The picture, and where it is.
+/// Writes the preview and prints its path.
 int show_preview(const Experiment& experiment, const RunOptions& options, Progress& progress) {
     const std::vector<unsigned char> png = preview(experiment, {options.threads, options.isa, nullptr}, progress);
     Staging staging(options.out, "preview");
@@ -40,6 +40,13 @@ int show_preview(const Experiment& experiment, const RunOptions& options, Progre
 
 }  // namespace
 
+std::string experiment_file(const std::string& given) {
+    std::error_code none;
+    const bool name = given.find_first_of("/.") == std::string::npos && !std::filesystem::exists(given, none);
+    const std::string installed = name ? shared_file("experiments/" + given + ".toml") : "";
+    return installed.empty() ? given : installed;
+}
+
 int run(const RunFlags& flags) {
     std::vector<std::string> overrides = flags.overrides;
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
@@ -47,7 +54,7 @@ int run(const RunFlags& flags) {
     if (!flags.only.empty()) options.parts = output_parts(flags.only);
     if (!flags.seed_range.empty())
         std::sscanf(flags.seed_range.c_str(), "%d:%d", &options.seeds.first, &options.seeds.last);
-    const Experiment experiment = load(flags.file, overrides);
+    const Experiment experiment = load(experiment_file(flags.file), overrides);
 
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
     options.threads = flags.threads;
@@ -55,7 +62,7 @@ int run(const RunFlags& flags) {
     options.keep_after_s = flags.keep_after;
     options.timeout_s = flags.timeout;
     options.command = command_of(flags);
-    options.instrument = instrument(flags);
+    options.backend = backend(flags);
 
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
@@ -66,9 +73,8 @@ int run(const RunFlags& flags) {
     return result.metrics.all_hold() ? held : failed;
 }
 
-// ---- Looks the word up among the kinds of instrument that registered themselves and opens the one it finds with the
-// two
-// --gl flags, which the CPU refuses.
+// ---- Looks the word up among the registered kinds of back end and opens the one it finds with the two --gl flags,
+// which the CPU rejects.
 
 namespace {
 
@@ -78,20 +84,20 @@ void only_with_gl(const char* flag, bool given) {
 
 }  // namespace
 
-std::shared_ptr<Instrument> instrument(const RunFlags& flags) {
-    if (flags.instrument == "cpu") {
+std::shared_ptr<Backend> backend(const RunFlags& flags) {
+    if (flags.backend == "cpu") {
         only_with_gl("--gl-context", !flags.gl_context.empty());
         only_with_gl("--gl-device", flags.gl_device >= 0);
         return nullptr;
     }
-    const std::shared_ptr<const BackendKind> kind = find_instrument(flags.instrument);
+    const std::shared_ptr<const BackendKind> kind = find_backend(flags.backend);
     if (!kind)
-        throw OutputError("this build has no instrument '" + flags.instrument +
+        throw OutputError("this build has no instrument '" + flags.backend +
             "': it was made without it, or without the headers of EGL");
     return kind->open({flags.gl_context, flags.gl_device});
 }
 
-// ---- crescent join: parts of one experiment -> the metrics of the run of all their seeds.
+// ---- crescent join: computes the metrics of the run of all seeds from parts of one experiment.
 
 int join(const JoinFlags& flags) {
     std::string command = "crescent join";

@@ -1,5 +1,6 @@
-// Handlers by sigaction(), waits by setitimer() and SIGALRM: while a run is watched, 0.5 s from the first signal to the
-// end, 5 s more where outputs have begun to move. The last words follow from the monitor's state; write() writes them.
+// Handlers are set by sigaction(), limits by setitimer() and SIGALRM. While a run is watched, the process has 0.5 s
+// from the first signal to its end, 5 s more if outputs are being moved. The last message follows from the monitor's
+// state and is written with write().
 #include "signals.h"
 
 #include <atomic>
@@ -19,10 +20,10 @@ namespace {
 std::atomic<ProgressMonitor*> watched{nullptr};
 std::atomic<bool> let_finish{false};
 std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
-constexpr itimerval patience{{}, {0, 500'000}};        // a large process takes a while to end
-constexpr itimerval moving_patience{{}, {5, 0}};       // outputs that are being moved are let finish, as a disk permits
+constexpr itimerval patience{{}, {0, 500'000}};        // a large process needs time to end
+constexpr itimerval moving_patience{{}, {5, 0}};       // outputs being moved are completed, if the disk is fast enough
 
-/// What stands under the final names when the process ends here.
+/// Returns the state of the outputs when the process ends here.
 const char* last_words() {
     const ProgressMonitor* monitor = watched.load();
     switch (monitor ? monitor->outputs.load() : left_behind.load()) {
@@ -32,7 +33,7 @@ const char* last_words() {
     }
 }
 
-// All handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3) and setitimer, which that list lacks and which is
+// All handlers use only async-signal-safe calls (POSIX.1-2017, 2.4.3) and setitimer, which that list lacks and which is
 // one system call on Linux, the BSDs and macOS; macOS has no timer_settime.
 extern "C" void end_now(int) {
     const char* words = last_words();
@@ -47,7 +48,7 @@ extern "C" void time_is_up(int signal) {
     else ::setitimer(ITIMER_REAL, &moving_patience, nullptr);
 }
 
-extern "C" void ask_to_stop(int signal) {
+extern "C" void request_stop(int signal) {
     ProgressMonitor* monitor = watched.load();
     if (!monitor || monitor->stop.exchange(true)) end_now(signal);
     else ::setitimer(ITIMER_REAL, &patience, nullptr);
@@ -69,8 +70,8 @@ void end_on_signals() {
     if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(SIGHUP, end_now);  // nohup
 }
 
-// Installed before the constructors of all libraries run, so that a signal in the first milliseconds ends with 130 too.
-// The sanitizers' own start-up comes later than this and replaces sigaction.
+// Installed before the constructors of all libraries run, so that a signal in the first milliseconds also ends with
+// 130. The sanitizers start later than this and replace sigaction.
 #if defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #if !defined(__has_feature)
 #define __has_feature(x) 0
@@ -85,7 +86,7 @@ StopOnSignal::StopOnSignal(ProgressMonitor& monitor) {
     handle(SIGALRM, time_is_up);
     struct sigaction before{};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, ask_to_stop);
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, request_stop);
 }
 
 StopOnSignal::~StopOnSignal() {

@@ -1,5 +1,5 @@
-// Captions are cut to the part and moved to its time; one of which 0.05 s or less is left is dropped. WebVTT is escaped
-// as markup, SubRip is numbered, chapters are in ffmpeg's FFMETADATA1 with frames for a time base.
+// Captions are cut to the part and moved to its time; a caption with 0.05 s or less left is dropped. WebVTT is escaped
+// as markup, SubRip is numbered, chapters are in ffmpeg's FFMETADATA1 with frames as time base.
 #include "captions.h"
 
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -19,7 +19,7 @@ std::string stamp(double seconds, char point) {
     return fmt::format("{:02}:{:02}:{:02}{}{:03}", ms / 3600000, ms / 60000 % 60, ms / 1000 % 60, point, ms % 1000);
 }
 
-/// The captions of a part, in its time.
+/// Returns the captions of a part, in its time.
 std::vector<Caption> within(const Timeline& timeline, const Part& part) {
     std::vector<Caption> out;
     for (Caption c : timeline.captions()) {
@@ -89,4 +89,4 @@ std::string chapters(const Timeline& timeline, const Part& part, const std::stri
     return text;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,12 +1,12 @@
-// Arms are found by their sampler; the surround is the region after the first with the most pixels. N is the
-// experiment's where both ladders have it, else the middle one of the rungs they share. MIS gets N/2 pairs and N.
+// Arms are found by their sampler; the surround is the region with the most pixels after the first. N is the
+// experiment's if both arms have it, else the middle one of their common sample counts. MIS gets N/2 pairs and N.
 #include "cast.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -15,7 +15,7 @@ const ArmPlan* by_sampler(const Experiment& e, const std::string& sampler) {
     return arm == e.arms.end() ? nullptr : &*arm;
 }
 
-/// The arm with this sampler; where there is none, a complaint with the nearest that the experiment has.
+/// Returns the arm with this sampler; if there is none, reports an error with the nearest that the experiment has.
 std::string needed(const Experiment& e, const std::string& sampler, std::vector<Diagnostic>& wrong) {
     if (const ArmPlan* arm = by_sampler(e, sampler)) return arm->name;
     std::vector<std::string> there;
@@ -27,18 +27,18 @@ std::string needed(const Experiment& e, const std::string& sampler, std::vector<
     return "";
 }
 
-/// The arm with this sampler, made where there is none, with these rungs added.
-std::string added(Experiment& e, const std::string& sampler, const std::vector<std::uint64_t>& rungs) {
+/// Returns the arm with this sampler, creating it if needed, with these sample counts added.
+std::string added(Experiment& e, const std::string& sampler, const std::vector<std::uint64_t>& sample_counts) {
     for (ArmPlan& arm : e.arms) {
         if (arm.sampler != sampler) continue;
         std::vector<std::uint64_t> all;
-        std::ranges::set_union(arm.n, rungs, std::back_inserter(all));
+        std::ranges::set_union(arm.n, sample_counts, std::back_inserter(all));
         arm.n = all;
         return arm.name;
     }
     std::string name = sampler;
     while (e.find_arm(name)) name += "-too";
-    e.arms.push_back({name, sampler, rungs, {}});
+    e.arms.push_back({name, sampler, sample_counts, {}});
     return name;
 }
 
@@ -57,8 +57,8 @@ Cast cast_of(Experiment& e) {
     c.phong = needed(e, "phong", wrong);
     if (const ArmPlan* arm = by_sampler(e, "uniform")) c.uniform = arm->name;
     if (!c.cosine.empty() && !c.phong.empty()) {
-        c.rungs = shared(*e.find_arm(c.cosine), *e.find_arm(c.phong));
-        if (c.rungs.size() < 2)
+        c.sample_counts = shared(*e.find_arm(c.cosine), *e.find_arm(c.phong));
+        if (c.sample_counts.size() < 2)
             wrong.push_back({e.place_of("arms." + c.phong),
                 fmt::format("the film follows '{}' and '{}' up one ladder; expected two n or more that both have",
                     c.cosine, c.phong)});
@@ -79,11 +79,13 @@ Cast cast_of(Experiment& e) {
     const auto area = [](const Region& r) { return r.box.width() * r.box.height(); };
     c.surround = std::ranges::max_element(e.regions.begin() + 1, e.regions.end(), {}, area)->name;
     c.s = e.s(), c.seed = e.seed;
-    c.n = std::ranges::find(c.rungs, e.n) != c.rungs.end() ? e.n : c.rungs[c.rungs.size() / 2];
+    c.n = std::ranges::find(c.sample_counts, e.n) != c.sample_counts.end()
+        ? e.n
+        : c.sample_counts[c.sample_counts.size() / 2];
     c.mixture = added(e, "mixture", {c.n});
     c.mis =
         added(e, "mis-balance", c.n > 1 ? std::vector<std::uint64_t>{c.n / 2, c.n} : std::vector<std::uint64_t>{c.n});
     return c;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,4 +1,4 @@
-// Which arms and regions of an experiment play which part in the film.
+// The roles of an experiment's arms and regions in the video.
 #pragma once
 
 #include <string>
@@ -6,22 +6,21 @@
 
 #include "crescent/crescent.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
-/// The names under which the experiment has what the film tells of.
+/// The names in the experiment of what the video shows.
 struct Cast {
     std::string uniform;              // "": the experiment has no such arm
-    std::string cosine, phong;        // the two arms of the story
-    std::string mixture, mis;         // what goes beyond it; the film adds them where the experiment has none
+    std::string cosine, phong;        // the two main arms
+    std::string mixture, mis;         // further arms; added if the experiment has none
     std::string highlight, surround;  // regions: the first, the largest of the others
     double s = 0;                     // the experiment's
-    std::uint64_t n = 0;              // samples a pixel where none is named
+    std::uint64_t n = 0;              // default samples per pixel
     std::uint32_t seed = 0;
-    std::vector<std::uint64_t> rungs;  // that cosine and phong share, ascending
+    std::vector<std::uint64_t> sample_counts;  // common to cosine and phong, ascending
 };
 
-/// Adds the arms that go beyond the story to `experiment` and says who is who. InputError with everything that is
-/// missing.
+/// Adds the further arms to `experiment` and returns the roles. InputError with everything that is missing.
 Cast cast_of(Experiment& experiment);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

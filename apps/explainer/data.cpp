@@ -1,5 +1,5 @@
 // Runs the experiment once in memory with the arms that cast_of() adds, then the cosine arm at N = 1, 2, 4, ... up to
-// the highest shared rung, then takes the measures. Look-ups hand each number out with its source.
+// the highest common sample count, then measures single pixels. Look-ups return each number with its source.
 #include "data.h"
 
 #include <fmt/format.h>
@@ -8,15 +8,15 @@
 
 #include "measures/measures.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-/// The cosine arm with 1, 2, 4, .. samples up to the ladder's highest: what the film opens with.
+/// Returns the films of the cosine arm with 1, 2, 4, .. samples up to its highest count, which begin the video.
 std::vector<Film> opening_of(
     const Experiment& experiment, const Cast& cast, const std::string& isa, ProgressMonitor& monitor) {
     std::vector<std::uint64_t> n;
-    for (std::uint64_t k = 1; k <= cast.rungs.back(); k *= 2) n.push_back(k);
+    for (std::uint64_t k = 1; k <= cast.sample_counts.back(); k *= 2) n.push_back(k);
     monitor.begin("the opening", double(n.back()) * experiment.image.width * experiment.image.height);
     Scene scene(experiment);
     return estimate_films(scene, "cosine", n, cast.seed, isa, monitor);
@@ -39,10 +39,10 @@ const ReferenceFilm& Data::reference(double s) const {
     return *found;
 }
 
-const RunMetrics* Data::meter(const RunKey& key) const { return metrics.find(key.arm, key.n, key.s, key.seed); }
+const RunMetrics* Data::metric(const RunKey& key) const { return metrics.find(key.arm, key.n, key.s, key.seed); }
 
 const RegionMetrics* Data::region(const RunKey& key, const std::string& region) const {
-    const RunMetrics* run = meter(key);
+    const RunMetrics* run = metric(key);
     return run ? run->region(region) : nullptr;
 }
 
@@ -86,7 +86,7 @@ Data collect(const Experiment& experiment, const RunOptions& options, ProgressMo
     data.experiment = experiment;
     data.experiment_hash = fmt::format("{:016x}", hash(experiment));
     data.cast = cast_of(data.experiment);
-    data.experiment.note_evidence = true;  // two shots tell of it where it can be measured
+    data.experiment.note_evidence = true;  // two shots show it if it can be measured
     Measured measured = measure_in_memory(data.experiment, options, monitor);
     data.metrics = std::move(measured.metrics);
     data.evidence = std::move(measured.evidence);
@@ -100,4 +100,4 @@ Data collect(const Experiment& experiment, const RunOptions& options, ProgressMo
     return data;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

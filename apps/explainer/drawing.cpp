@@ -1,12 +1,12 @@
-// Pictures are enlarged a whole number of times, 12 at most; image boxes count rows from the bottom, blocks from the
-// top. Residuals in W/(sr m^2); a plot's lines stand at 1, 2 and 5 times powers of ten.
+// Pictures are enlarged a whole number of times, at most 12; image boxes count rows from the bottom, blocks from the
+// top. Residuals in W/(sr m^2); a plot's lines are at 1, 2 and 5 times powers of ten.
 #include "drawing.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin) {
     const auto times_for = [&](double w, double h) {
@@ -125,8 +125,8 @@ Order order_of(const Data& data, const RunKey& a, const RunKey& b, const std::st
     return ra->rmse <= rb->rmse ? Order{a, b, ra->rmse, rb->rmse} : Order{b, a, rb->rmse, ra->rmse};
 }
 
-// ---- Round values are 1, 2 or 5 times a power of ten apart; powers of ten above 100 and below 0.01 are set as 10^k.
-// Lengths in units of the sheet.
+// ---- Round values are 1, 2 or 5 times a power of ten; powers of ten above 100 and below 0.01 are set as 10^k. Lengths
+// in units of the sheet.
 
 namespace {
 
@@ -184,4 +184,4 @@ void Axes::draw(Frame& f, const std::vector<Tick>& below, const std::vector<Tick
     f.text({box.x - 110, box.y - 58, box.w + 110, line}, up_name, small_text, alpha);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

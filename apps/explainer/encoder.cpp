@@ -1,5 +1,5 @@
-// One call of ffmpeg turns one pipe of yuv420p frames into an MP4 (H.264, poster, mov_text, AAC) and, where it is asked
-// for, a WebM (VP9, WebVTT, Opus), with its bitexact flags. What it can encode is read off `ffmpeg -encoders`.
+// One call of ffmpeg turns one pipe of yuv420p frames into an MP4 (H.264, poster, mov_text, AAC) and, if requested, a
+// WebM (VP9, WebVTT, Opus), with its bitexact flags. Its encoders are read from `ffmpeg -encoders`.
 #include "encoder.h"
 
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <filesystem>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -15,7 +15,7 @@ using Arguments = std::vector<std::string>;
 
 void append(Arguments& to, const Arguments& more) { to.insert(to.end(), more.begin(), more.end()); }
 
-// Colour as rasters.cpp makes it.
+// Colour as rasters.cpp computes it.
 const Arguments colour = {
     "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"};
 
@@ -33,7 +33,7 @@ Arguments arguments(const Ingredients& in) {
 
     append(a, {"-map", "0:v", "-map", "3:v", "-map", "1:s"});
     if (!in.voice.empty()) append(a, {"-map", "4:a", "-c:a", "aac", "-b:a", "128k"});
-    // The words stand in the picture too: the track is there for those who ask for it, and off for all others.
+    // The words are in the picture too: the track is off by default.
     append(a,
         {"-map_metadata", "2", "-map_chapters", "2", "-c:s", "mov_text", "-metadata:s:s:0", "language=eng",
             "-disposition:s:0", "0"});
@@ -94,9 +94,9 @@ Encoder::Encoder(const Ingredients& in)
 
 void Encoder::fail(const std::string& what) {
     process_.end(1000);
-    const std::string said = contents_of(in_.log);
+    const std::string texts = contents_of(in_.log);
     throw OutputError(
-        "ffmpeg could not encode the film: " + what + (said.empty() ? "" : "; it printed: " + said.substr(0, 600)));
+        "ffmpeg could not encode the film: " + what + (texts.empty() ? "" : "; it printed: " + texts.substr(0, 600)));
 }
 
 void Encoder::take(const Raster& raster, const ProgressMonitor& monitor) {
@@ -125,4 +125,4 @@ void Encoder::finish(const ProgressMonitor& monitor) {
     }
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -8,24 +8,24 @@
 #include "crescent/crescent.h"
 #include "rasters.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
-/// The files that go into the film, and those to be written; "" where there is none.
+/// The input and output files; "" if there is none.
 struct Ingredients {
     int width = 0, height = 0;
     std::string captions, chapters, poster, voice;  // .srt, ffmetadata, .png, .wav
     std::string mp4, webm;                          // to be written
-    std::string log;                                // what ffmpeg says
+    std::string log;                                // ffmpeg's messages
 };
 
-/// OutputError where ffmpeg or one of its parts is missing: told before the work.
+/// OutputError if ffmpeg or one of its parts is missing; called before the work.
 void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor);
 
 class Encoder {
 public:
     explicit Encoder(const Ingredients& in);
     void take(const Raster& raster, const ProgressMonitor& monitor);
-    /// Waits for ffmpeg to finish. OutputError if it failed, or wrote no film.
+    /// Waits for ffmpeg to finish. OutputError if it failed, or wrote no video.
     void finish(const ProgressMonitor& monitor);
 
 private:
@@ -35,4 +35,4 @@ private:
     Process process_;
 };
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

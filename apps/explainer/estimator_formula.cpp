@@ -1,5 +1,5 @@
-// Words are measured, then set from left to right: 1/N and the sum, f, L and cos over the bar, p under its middle. The
-// ink of a term runs from muted to bright as it is lit.
+// Words are measured, then set from left to right: 1/N and the sum, f, L and cos above the bar, p below its middle. The
+// colour of a term goes from muted to bright when it is highlighted.
 #include "estimator_formula.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include "drawing.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -22,7 +22,7 @@ struct Setter {
         draw_term(frame, {x, y - size.h / 2, size.w + 1, size.h}, words, how, term);
         return x + size.w;
     }
-    /// The same without the wash.
+    /// The same without the background.
     void bare(double x, double y, const Words& words, const Term& term) const {
         const Rect size = frame.measure(words, how);
         Text inked = how;
@@ -65,4 +65,4 @@ void draw_estimator(Frame& frame, Point at, double px, const EstimatorTerms& ter
     set.put((left + x - set.width(p)) / 2, at.y + up, p, terms.density);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

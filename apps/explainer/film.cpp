@@ -1,4 +1,4 @@
-// crescent film: an experiment -> its film. The door registers itself in the program that links it.
+// crescent film: makes the video of an experiment. It registers itself in the program that links it.
 #include <fmt/format.h>
 #include <oneapi/tbb/info.h>
 
@@ -11,11 +11,11 @@
 #include "shots.h"
 #include "voice.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-/// "1:30" or "90" -> frames.
+/// Converts "1:30" or "90" to frames.
 int frame_of(const std::string& text) {
     const std::size_t colon = text.find(':');
     const double seconds = colon == std::string::npos
@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, std::string>> attributes_of(const Data& data)
         {"command", data.provenance.command}};
 }
 
-/// A film in the making.
+/// A video in production.
 class Making {
 public:
     Making(const Data& data, const Timeline& timeline, const ExplainerOptions& options, Staging& staging,
@@ -68,13 +68,13 @@ public:
     }
 
     std::string stills(const Part& part) {
-        std::string said;
+        std::string texts;
         for (std::size_t k = 0; k < timeline_.shots().size(); ++k) {
             const int frame = timeline_.still(k);
             if (frame >= part.first && frame < part.last)
-                said += still(frame, fmt::format("stills/{:02}-{}.png", k + 1, timeline_.shots()[k].name));
+                texts += still(frame, fmt::format("stills/{:02}-{}.png", k + 1, timeline_.shots()[k].name));
         }
-        return said;
+        return texts;
     }
 
     std::string film(const Part& part, Voice* voice) {
@@ -141,7 +141,7 @@ private:
         return text + "\n  ]\n}\n";
     }
 
-    /// A file that lives as long as the stage.
+    /// Returns a file that exists as long as the stage.
     std::string scratch(const std::string& name, const std::string& bytes) {
         const std::string path = staging_.scratch() + "/" + name;
         std::ofstream(path, std::ios::binary) << bytes;
@@ -159,7 +159,7 @@ private:
 std::string make(const Experiment& experiment, const ExplainerOptions& options, ProgressMonitor& monitor) {
     const bool pictures = !options.still.empty() || options.stills;
     Experiment cast = experiment;
-    cast_of(cast);  // what is missing is told before the work
+    cast_of(cast);  // missing roles are reported before the work
     Staging staging(options.out, pictures ? "stills" : "film");
     const Canvas font(16, 16, plates::ground);
     if (!pictures) require_ffmpeg(options.webm, !options.voice.empty(), staging.scratch(), monitor);
@@ -176,11 +176,11 @@ std::string make(const Experiment& experiment, const ExplainerOptions& options, 
     data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
     Making making(data, timeline, options, staging, monitor);
-    const std::string said = !options.still.empty() ? making.one_still()
-        : options.stills                            ? making.stills(part)
-                                                    : making.film(part, options.voice.empty() ? nullptr : &voice);
+    const std::string texts = !options.still.empty() ? making.one_still()
+        : options.stills                             ? making.stills(part)
+                                                     : making.film(part, options.voice.empty() ? nullptr : &voice);
     staging.commit(monitor);
-    return said;
+    return texts;
 }
 
 const bool registered = [] {
@@ -194,4 +194,4 @@ const bool registered = [] {
 
 }  // namespace
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

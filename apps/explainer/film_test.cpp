@@ -1,5 +1,5 @@
-// Every shot of the film, on a small run: what is set can be read, nothing is cut off or runs into its neighbour, no
-// digit is typed, captions keep their rules, and frames are the same however they are drawn.
+// Every shot of the video, on a small run: text is readable, nothing is cut off or overlaps its neighbour, no digit is
+// hard-coded, captions follow their rules, and frames do not depend on the drawing order.
 #include <gtest/gtest.h>
 
 #include <oneapi/tbb/global_control.h>
@@ -15,7 +15,7 @@
 #include "shots.h"
 #include "tests/support/explainer_data.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 namespace {
 
 constexpr int small_height = 360;
@@ -25,7 +25,7 @@ const Timeline& timeline() {
     return made;
 }
 
-/// Frames to look at: the still of every shot, and one in each second and a half.
+/// Returns the tested frames: the still of every shot, and one every 1.5 seconds.
 std::vector<int> looked_at(std::size_t shot) {
     std::vector<int> frames{timeline().still(shot)};
     for (int f = timeline().begin(shot); f < timeline().begin(shot + 1); f += 45) frames.push_back(f);
@@ -37,7 +37,7 @@ std::string what(std::size_t shot, int frame, const plates::Setting& s) {
         std::to_string(s.extents.x) + ", " + std::to_string(s.extents.y);
 }
 
-TEST(Film, EveryTextIsWholeAndLargeEnoughToReadOnAPhone) {
+TEST(Film, EveryTextIsUncutAndLargeEnough) {
     Painter painter(timeline(), small_height);
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         for (const int frame : looked_at(k)) {
@@ -65,12 +65,12 @@ TEST(Film, OnNoStillDoTextsRunIntoEachOther) {
     }
 }
 
-/// WCAG 2.1 relative luminance of 8-bit sRGB or of an ink.
+/// Returns WCAG 2.1 relative luminance of 8-bit sRGB or of a colour.
 double luminance_of(double r, double g, double b) {
     return 0.2126 * srgb_decode(r) + 0.7152 * srgb_decode(g) + 0.0722 * srgb_decode(b);
 }
 
-TEST(Film, OnEveryStillTextStandsOutFromWhatIsBehindIt) {
+TEST(Film, StillsHaveEnoughTextContrast) {
     Painter painter(timeline(), small_height);
     painter.canvas().hide_text(true);
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
@@ -102,11 +102,10 @@ TEST(Film, NoDigitIsTyped) {
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         for (const int frame : looked_at(k)) {
             painter.draw(frame);
-            // What stands on the canvas went through Words, and every part of it that holds a digit says where it was
-            // read.
-            std::multiset<std::string> said;
-            for (const Words& words : painter.frame().said()) {
-                said.insert(words.markup());
+            // All text on the canvas went through Words, and every part of it with a digit states its source.
+            std::multiset<std::string> texts;
+            for (const Words& words : painter.frame().texts()) {
+                texts.insert(words.markup());
                 for (const Words::Part& part : words.parts()) {
                     const std::string plain = plain_of(part.markup);
                     if (std::ranges::any_of(plain, [](char c) { return c >= '0' && c <= '9'; }))
@@ -114,7 +113,7 @@ TEST(Film, NoDigitIsTyped) {
                 }
             }
             for (const plates::Setting& s : painter.canvas().settings())
-                EXPECT_TRUE(said.contains(s.text)) << what(k, frame, s) << " was set past Words";
+                EXPECT_TRUE(texts.contains(s.text)) << what(k, frame, s) << " was set past Words";
         }
     }
 }
@@ -175,7 +174,7 @@ std::vector<std::uint64_t> hashes(int first, int last, int threads) {
     return out;
 }
 
-TEST(Film, AFrameIsTheSameAloneInTheFilmAndOnAnyNumberOfThreads) {
+TEST(Film, FramesDoNotDependOnThreadsOrOrder) {
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         const int first = timeline().begin(k) + 60, last = std::min(first + 36, timeline().begin(k + 1));
         const std::vector<std::uint64_t> one = hashes(first, last, 1);
@@ -186,7 +185,7 @@ TEST(Film, AFrameIsTheSameAloneInTheFilmAndOnAnyNumberOfThreads) {
     }
 }
 
-TEST(Film, AFrameThatIsTakenForUnchangedWouldBeDrawnTheSame) {
+TEST(Film, UnchangedFramesWouldBeDrawnTheSame) {
     Painter running(timeline(), small_height);
     int taken = 0;
     for (int frame = 0; frame < timeline().frames(); frame += 11) {
@@ -218,11 +217,11 @@ TEST(Film, WhatAnExperimentLacksIsNamed) {
         cast_of(e);
         FAIL();
     } catch (const InputError& error) {
-        const std::string said = error.what();
-        EXPECT_NE(said.find("'phong'"), std::string::npos) << said;
-        EXPECT_NE(said.find("two regions"), std::string::npos) << said;
+        const std::string texts = error.what();
+        EXPECT_NE(texts.find("'phong'"), std::string::npos) << texts;
+        EXPECT_NE(texts.find("two regions"), std::string::npos) << texts;
     }
 }
 
 }  // namespace
-}  // namespace crescent::film
+}  // namespace crescent::explainer

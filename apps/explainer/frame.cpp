@@ -1,11 +1,11 @@
-// Each question that a shot asks about the time is kept with its answer; a frame at another time is the same where
-// every answer is. Shapes and words go to the canvas with the alpha of their ink scaled, and not at all at 0.
+// Each query of a shot for the time is stored with its result; a frame at another time is equal if every result is.
+// Shapes and words are drawn with the alpha of their colour scaled, and not at all at 0.
 #include "frame.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -37,7 +37,7 @@ bool Frame::same_at(double t) const {
 Rect Frame::text(const Rect& box, const Words& words, Text how, double alpha) {
     if (alpha <= 0) return {box.x, box.y, 0, 0};
     how.ink = faded(how.ink, alpha);
-    said_.push_back(words);
+    texts_.push_back(words);
     return canvas_.text(box, words.markup(), how);
 }
 
@@ -82,4 +82,4 @@ void Frame::arrow(Point from, Point to, Colour c, double line, double alpha) {
     if (alpha > 0) canvas_.arrow(from, to, faded(c, alpha), line);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,5 +1,5 @@
-// One frame being drawn, on a sheet of 1920 x 1080 units. A shot asks the frame for the time only through ramp, ease,
-// after and count, so that frames in which nothing moved are known to be equal without being drawn.
+// One frame being drawn, on a sheet of 1920 x 1080 units. A shot queries the time only through ramp, ease, after and
+// count, so that equal frames are recognised without being drawn.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 #include "crescent/crescent.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 using plates::Align;
 using plates::Block;
@@ -20,7 +20,7 @@ using plates::Weight;
 using Point = plates::Canvas::Point;
 
 inline constexpr double sheet_width = 1920, sheet_height = 1080;
-/// Pictures, charts and formulas stand on the stage; the caption's band below it is the engine's.
+/// Pictures, charts and formulas are on the stage; the engine draws the caption's band below it.
 inline constexpr Rect heading_band{60, 36, 1800, 56};
 inline constexpr Rect stage{60, 116, 1800, 774};
 inline constexpr Rect caption_band{160, 912, 1600, 140};
@@ -30,22 +30,22 @@ public:
     /// `t`: seconds from the shot's beginning.
     Frame(Canvas& canvas, double t) : canvas_(canvas), t_(t) {}
 
-    /// 0 until `from`, 1 from `to` on, linear between.
+    /// Returns 0 until `from`, 1 from `to` on, linear between.
     double ramp(double from, double to) { return ask({Kind::ramp, from, to}); }
     /// The same with a smooth start and end: 3x^2 - 2x^3.
     double ease(double from, double to) { return ask({Kind::ease, from, to}); }
     bool after(double at) { return ask({Kind::after, at, at}) > 0; }
-    /// In and out again: 1 between the two, eased over `over` seconds on either side.
+    /// Returns 1 between the two, eased over `over` seconds on either side.
     double during(double from, double to, double over = 0.4) {
         return ease(from - over, from) * (1 - ease(to, to + over));
     }
-    /// 0 .. n: how many of n equal steps from `from` to `to` are over.
+    /// Returns 0 .. n: how many of n equal steps from `from` to `to` are complete.
     int steps(double from, double to, int n) { return static_cast<int>(ask({Kind::steps, from, to, n})); }
 
-    /// Sets words in a box; `alpha` 0 draws nothing. Returns what they took.
+    /// Sets words in a box; For `alpha` 0 nothing is drawn. Returns their extents.
     Rect text(const Rect& box, const Words& words, Text how, double alpha = 1);
     Rect measure(const Words& words, const Text& how) { return canvas_.measure(words.markup(), how); }
-    /// A block of pixels enlarged `times` times, its corner at whole units, with a hairline around it.
+    /// Paints a block of pixels enlarged `times` times, its corner at whole units, with a hairline around it.
     Rect picture(const Block& block, double x, double y, int times, double alpha = 1);
     /// The same one to one without the hairline, for a block whose edge is the ground.
     void field(const Block& block, Point corner, double alpha = 1);
@@ -62,10 +62,10 @@ public:
     void clip(const Rect& r) { canvas_.clip(r); }
     void unclip() { canvas_.unclip(); }
 
-    /// Whether a frame of the same shot at `t` would be drawn alike.
+    /// Returns whether a frame of the same shot at `t` would be equal.
     bool same_at(double t) const;
-    /// What was set, in order: for tests.
-    const std::vector<Words>& said() const { return said_; }
+    /// Returns the words set, in order: for tests.
+    const std::vector<Words>& texts() const { return texts_; }
 
 private:
     enum class Kind { ramp, ease, after, steps };
@@ -81,7 +81,7 @@ private:
     Canvas& canvas_;
     double t_;
     std::vector<Question> asked_;
-    std::vector<Words> said_;
+    std::vector<Words> texts_;
 };
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,4 +1,4 @@
-// Directions are turned about n, then projected along (0, -cos e, sin e), e the elevation; field() inverts this at the
+// Directions are rotated about n, then projected along (0, -cos e, sin e), e the elevation; field() inverts this at the
 // middle of every pixel. Paths are drawn where they face the viewer, grid lines with a point every 1.5 or 3 degrees.
 #include "hemisphere.h"
 
@@ -6,7 +6,7 @@
 
 #include "drawing.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -100,4 +100,4 @@ void Hemisphere::arrow(Frame& f, Vec3d w, double reach, const Words& words, Colo
     f.text({tip.x - size.w / 2 - 2, tip.y - size.h - 4, size.w + 4, size.h}, words, how, alpha);
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,6 +1,7 @@
-// The upper hemisphere of a surface point as it is drawn: an orthographic view from `elevation` degrees above the
-// surface, turned so that a given direction leans to the right. Seen from straight above, area on the disc is share of
-// the light that a matt surface takes in (Nusselt). Directions local, n = +z; lengths in units of the sheet.
+// The drawing of the upper hemisphere of a surface point: an orthographic view from `elevation` degrees above the
+// surface, rotated so that a given direction points to the right. Seen from directly above, area on the disc is the
+// share of the light that a Lambert surface receives (Nusselt). Directions local, n = +z; lengths in units of the
+// sheet.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,7 @@
 
 #include "frame.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 class Hemisphere {
 public:
@@ -18,12 +19,12 @@ public:
     Point at(Vec3d w, double reach = 1) const;
     /// On the rim, counted in turns from the right, counter-clockwise.
     Point rim(double turns) const;
-    /// On the side of the sphere that is turned to the viewer.
+    /// Returns whether w is on the side of the sphere that faces the viewer.
     bool visible(Vec3d w) const;
     double radius() const { return radius_; }
     Point centre() const { return centre_; }
 
-    /// A picture of the hemisphere coloured by direction, its corner at corner(); the ground elsewhere.
+    /// Returns a picture of the hemisphere coloured by direction, its corner at corner(); the ground elsewhere.
     Block field(const std::function<Srgb8(Vec3d)>& colour) const;
     Point corner() const;
 
@@ -31,7 +32,7 @@ public:
     void grid(Frame& f, double alpha = 1) const;
     /// The visible parts of a path.
     void trace(Frame& f, const std::vector<Vec3d>& path, Colour ink, double line, double alpha = 1) const;
-    /// An arrow from the surface point through w, to `reach` radii, with words over its tip.
+    /// Draws an arrow from the surface point through w, to `reach` radii, with words above its tip.
     void arrow(Frame& f, Vec3d w, double reach, const Words& words, Colour ink, double alpha = 1) const;
 
 private:
@@ -42,7 +43,7 @@ private:
     double cos_ = 1, sin_ = 0;   // of the turn about n
 };
 
-/// Unit direction at angles from n, in degrees, and about it from the direction's own x axis.
+/// Returns the unit direction at angles in degrees from n and about it from the local x axis.
 Vec3d direction(double theta_deg, double phi_deg);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,4 +1,4 @@
-// Up to four crops, spread evenly over the ladder, appear from 5 s on, one every 2 s, the chart's points in the same
+// Up to four crops, evenly chosen from the ladder, appear from 5 s on, one every 2 s, the chart's points at the same
 // time, then the line. The axes hold the ladders of both arms, so that both shots have the same scale.
 #include "ladder_shot.h"
 
@@ -9,11 +9,11 @@
 #include "drawing.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-constexpr double first = 5, each = 2;  // s: when the first rung shows, how long each has
+constexpr double first = 5, each = 2;  // s: when the first sample count appears, and the duration of each
 
 std::vector<Point> points_of(const Ladder& ladder, const LogPlot& plot) {
     std::vector<Point> out;
@@ -35,7 +35,7 @@ LogPlot plot_of(const Data& data) {
     return plot;
 }
 
-/// The four rungs that are shown: of more, evenly chosen.
+/// Returns the four sample counts that are shown, evenly chosen.
 std::vector<std::size_t> shown_of(const Ladder& ladder) {
     std::vector<std::size_t> out;
     const std::size_t count = std::min<std::size_t>(ladder.n.size(), 4);
@@ -43,7 +43,7 @@ std::vector<std::size_t> shown_of(const Ladder& ladder) {
     return out;
 }
 
-/// An arm's rungs in the chart.
+/// An arm's sample counts in the chart.
 struct Line {
     std::vector<Point> points;
     Words name;
@@ -54,7 +54,7 @@ Line line_of(const Data& data, const std::string& arm, const LogPlot& plot) {
     return {points_of(ladder_of(data, arm), plot), Words(data.arm(arm)), data.ink(arm)};
 }
 
-/// One that stood there before.
+/// Draws the line of an earlier shot.
 void draw_dim(Frame& f, const Line& old) {
     const double in = f.ease(0.6, 1.2);
     f.polyline(old.points, old.ink, 4, 0.55 * in);
@@ -130,4 +130,4 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

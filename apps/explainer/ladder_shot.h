@@ -1,23 +1,24 @@
-// One arm up its ladder: four crops of the highlight and a chart that grows point by point. Two shots are made of it.
+// One arm at rising sample counts: four crops of the highlight and a chart that grows point by point. Used by two
+// shots.
 #pragma once
 
 #include "data.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 struct LadderStory {
-    std::string arm, before;   // `before`: the arm whose line stands there already, dim; "": none
-    Words opening;             // said first
-    std::vector<Words> after;  // said when the line stands
+    std::string arm, before;   // `before`: the arm whose line is already shown, dimmed; "": none
+    Words opening;             // spoken first
+    std::vector<Words> after;  // spoken when the line is complete
 };
 
-/// Pictures, chart and times; name, title and what is seen are the caller's.
+/// Returns pictures, chart and times; the caller sets name, title and description.
 Shot ladder_shot(const Data& data, const LadderStory& story);
 
-/// The ladder of an arm in the highlight.
+/// Returns the ladder of an arm in the highlight.
 const Ladder& ladder_of(const Data& data, const std::string& arm);
-/// "slope -0.50 (-0.53 to -0.47)"; where the interval means nothing, why.
+/// Returns "slope -0.50 (-0.53 to -0.47)"; if the interval is not meaningful, the reason.
 Words slope_words(const Ladder& ladder);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

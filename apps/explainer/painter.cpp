@@ -1,11 +1,11 @@
 // Draws the shot and its heading, then the ground over both, so that they fade in and out in 0.3 s, then the caption
-// over that. A frame that shows the same as the one before it, because all that the shot asked of the time has the same
-// answer, is not drawn again.
+// over that. A frame that equals the one before it, because all time queries of the shot have equal results, is not
+// drawn again.
 #include "painter.h"
 
 #include "drawing.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -14,14 +14,13 @@ constexpr double fade = 0.3;  // s at either end of a shot
 void heading(Frame& f, const Shot& shot) {
     const double in = f.ease(0, fade);
     const Rect& bar = heading_band;
-    f.fill(
-        {bar.x, bar.y + 6, 7, bar.h - 12}, shot.kind == Kind::photograph ? photograph_accent : instrument_accent, in);
+    f.fill({bar.x, bar.y + 6, 7, bar.h - 12}, shot.kind == Kind::photograph ? photograph_accent : backend_accent, in);
     f.text({bar.x + 26, bar.y, 1200, bar.h}, shot.title, title_text, in);
     if (shot.kind == Kind::words) return;
     const bool photograph = shot.kind == Kind::photograph;
     const Words label(photograph ? "PHOTOGRAPH" : "INSTRUMENT",
         photograph ? ", no number is read off it" : ", read off the float films");
-    Text how = with(with(small_text, photograph ? photograph_accent : instrument_accent), Align::right);
+    Text how = with(with(small_text, photograph ? photograph_accent : backend_accent), Align::right);
     f.text({bar.right() - 560, bar.y, 560, bar.h}, label, how, in);
 }
 
@@ -57,4 +56,4 @@ bool Painter::draw(int frame) {
     return true;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,5 +1,5 @@
 // Y'CbCr by ITU-R BT.709-6, tables 3 and 4, in 16 fractional bits; chroma is filtered 1 2 1 across and averaged over
-// two rows. A oneTBB pipeline deals chunks of ten frames to threads, each with a painter of its own.
+// two rows. A oneTBB pipeline distributes chunks of ten frames to threads, each with a painter of its own.
 #include "rasters.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -11,11 +11,11 @@
 
 #include <thread>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-constexpr int chunk = 10;  // frames that one thread draws in a row
+constexpr int chunk = 10;  // consecutive frames drawn by one thread
 
 // BT.709-6, table 3: E'Y = 0.2126 R + 0.7152 G + 0.0722 B; 8-bit limited range of table 4, in 16 fractional bits.
 constexpr int fixed(double v) { return static_cast<int>(v * 65536 + (v < 0 ? -0.5 : 0.5)); }
@@ -45,7 +45,7 @@ void chroma_row(const unsigned char* row0, const unsigned char* row1, unsigned c
     }
 }
 
-/// What a thread draws with, and what it drew last.
+/// The painter of a thread, and the last frame that it drew.
 struct Desk {
     Painter painter;
     std::shared_ptr<const Raster> last;
@@ -107,4 +107,4 @@ void for_each_frame(const Timeline& timeline, int height, int first, int last, P
     monitor.check();
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,5 +1,5 @@
-// Frames as an encoder takes them: planar Y'CbCr 4:2:0 of ITU-R BT.709, limited range, chroma sited left, in integers,
-// so that the same drawing gives the same bytes everywhere.
+// Frames in the encoder's format: planar Y'CbCr 4:2:0 of ITU-R BT.709, limited range, chroma sited left, in integers,
+// so that the same drawing gives the same bytes on every machine.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 #include "painter.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 struct Raster {
     std::vector<unsigned char> bytes;  // Y, Cb, Cr
     std::uint64_t hash = 0;            // XXH3-64 of the bytes
 };
 
-/// The picture on a canvas, whose width and height must be even.
+/// Returns the picture on a canvas, whose width and height must be even.
 std::shared_ptr<const Raster> raster_of(const Canvas& canvas);
 
-/// Draws frames first .. last - 1 on all cores and hands them over one by one in their order. A frame that is like the
-/// one before it is handed over again without being drawn.
+/// Draws frames first .. last - 1 on all cores and passes them on one by one in order. A frame that equals the one
+/// before it is passed on again without being drawn.
 void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& monitor,
     const std::function<void(const Raster&)>& take);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

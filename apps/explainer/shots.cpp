@@ -1,7 +1,7 @@
-// The order of the film is a table of functions; each is called once with the film's data.
+// The order of the video is a table of functions; each is called once with the data.
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 std::vector<Shot> shots_of(const Data& data) {
     using Make = Shot (*)(const Data&);
@@ -29,4 +29,4 @@ std::vector<Shot> shots_of(const Data& data) {
     return shots;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

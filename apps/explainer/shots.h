@@ -1,4 +1,4 @@
-// The shots of the film in their order; one file each under shots/.
+// The shots of the video in their order; one file each under shots/.
 #pragma once
 
 #include <functional>
@@ -8,29 +8,28 @@
 #include "data.h"
 #include "frame.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
-// ---- A shot as a value: what it is called, how long it lasts, what is said when, and how it looks at a time.
+// ---- A shot as a value: its name, its duration, its captions, and its drawing at a time.
 
-/// A caption, from `at` (s from the shot's beginning) to the next one's beginning. After a question nothing is said for
-/// 4 s.
+/// A caption, from `at` (s from the shot's beginning) to the next one's beginning. A question is followed by 4 s
+/// without words.
 struct Cue {
     double at = 0;
     Words words;  // at most two lines of 42 characters
     bool question = false;
 };
 
-/// What a shot shows, said at its top: photographs have gone through the display chain, instruments read the float
-/// films.
-enum class Kind { words, photograph, instrument };
+/// The label of a shot: photographs are tone mapped, `backend` shots show the float films.
+enum class Kind { words, photograph, backend };
 
 struct Shot {
     std::string name;  // "columns": of its still, and of its chapter in messages
-    Words title;       // of the chapter; stands at the top of the frame
+    Words title;       // of the chapter; shown at the top of the frame
     Kind kind = Kind::words;
     Words seen;  // what is seen, for the transcript
     double seconds = 0;
-    double still = 0;  // the time of its still: everything there, nothing moving
+    double still = 0;  // the time of its still: everything visible, nothing moving
     std::vector<Cue> cues;
     std::function<void(Frame&)> draw;
 };
@@ -52,7 +51,7 @@ Shot beyond(const Data& data);
 Shot claims(const Data& data);
 Shot closing(const Data& data);
 
-/// All of them, with what they show made ready; one that has nothing to show in this run lasts 0 s and is left out.
+/// Returns all shots, ready to be drawn; a shot with nothing to show in this run lasts 0 s and is omitted.
 std::vector<Shot> shots_of(const Data& data);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,22 +1,22 @@
-// A caption needs its characters over the reading speed, or 0.3 s more than it takes to say, and a question its
-// silence. What its slot lacks becomes a hold, in whole frames, half a frame before the slot's end. A line is broken at
-// the space that leaves the longer part shortest.
+// A caption needs its characters over the reading speed, or 0.3 s more than its speech, and a question also its
+// silence. If its slot is too short, the shot is held, in whole frames, half a frame before the slot's end. A line is
+// broken at the space that leaves the longer part shortest.
 #include "timeline.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
 double whole_frames(double seconds) { return std::ceil(seconds * frames_a_second - 1e-6) / frames_a_second; }
 
-/// How long a caption must stand.
+/// Returns the minimum duration of a caption.
 double needed(const Cue& cue, const std::function<double(const Words&)>& spoken) {
     const double read = double(length(cue.words.plain())) / reading_speed;
-    const double said = spoken ? spoken(cue.words) + 0.3 : 0;
-    return std::max(read, said) + (cue.question ? question_silence : 0);
+    const double texts = spoken ? spoken(cue.words) + 0.3 : 0;
+    return std::max(read, texts) + (cue.question ? question_silence : 0);
 }
 
 std::vector<std::size_t> spaces_of(const std::string& plain) {
@@ -43,7 +43,7 @@ Words broken(const Words& words) {
     const auto longer = [all](std::size_t at) { return std::max(at, all - at - 1); };
     const auto best = std::ranges::min_element(spaces, {}, longer);
     if (best == spaces.end()) return words;
-    // The same count over the markup: tags take no room.
+    // The same count over the markup: tags have no length.
     Words out;
     std::size_t character = 0;
     for (const Words::Part& part : words.parts()) {
@@ -104,4 +104,4 @@ int Timeline::still(std::size_t shot) const {
     return begins_[shot + 1] - 1;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,5 +1,5 @@
-// The shots one after another: which shot stands at a time of the film, and when each caption is there. Where a caption
-// asks for more time than its slot has, to be read, spoken or thought about, the shot holds still at the slot's end.
+// The sequence of shots: the shot at a time of the video, and the times of each caption. If a caption needs more time
+// than its slot has, to be read, spoken or thought about, the shot is held at the slot's end.
 #pragma once
 
 #include <functional>
@@ -7,14 +7,14 @@
 
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 inline constexpr int frames_a_second = 30;
-inline constexpr double reading_speed = 15;     // characters a second, at most
+inline constexpr double reading_speed = 15;     // characters per second, at most
 inline constexpr double question_silence = 4;   // s after every question
 inline constexpr std::size_t line_length = 42;  // characters, two lines at most
 
-/// A caption in the film's time.
+/// A caption in the video's time.
 struct Caption {
     double from = 0, to = 0;  // s
     std::size_t shot = 0, cue = 0;
@@ -24,21 +24,21 @@ struct Caption {
 
 class Timeline {
 public:
-    /// `spoken`: seconds a caption takes to be said; nullptr: silent.
+    /// `spoken`: seconds of a caption's speech; nullptr: silent.
     explicit Timeline(std::vector<Shot> shots, const std::function<double(const Words&)>& spoken = nullptr);
 
     const std::vector<Shot>& shots() const { return shots_; }
     const std::vector<Caption>& captions() const { return captions_; }
     int frames() const { return begins_.back(); }
-    /// The first frame of a shot; of the one after the last, how many frames there are.
+    /// Returns the first frame of a shot; for the index after the last, the number of frames.
     int begin(std::size_t shot) const { return begins_[shot]; }
 
     struct Place {
         std::size_t shot = 0;
-        double t = 0;  // s from the shot's beginning, its holds left out
+        double t = 0;  // s from the shot's beginning, without its holds
     };
     Place at(int frame) const;
-    /// The frame of a shot's still.
+    /// Returns the frame of a shot's still.
     int still(std::size_t shot) const;
 
 private:
@@ -53,9 +53,9 @@ private:
     std::vector<Caption> captions_;
 };
 
-/// The words with one line break where it leaves the lines most alike; as they are where one line holds them.
+/// Returns the words with one line break where the lines are most even; unchanged if one line holds them.
 Words broken(const Words& words);
-/// Characters that are read: code points of the plain text.
+/// Returns the characters to read: code points of the plain text.
 std::size_t length(const std::string& plain);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -10,11 +10,11 @@
 
 #include "crescent/crescent.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-constexpr int track_rate = 48000;  // samples a second
+constexpr int track_rate = 48000;  // samples per second
 constexpr double lead = 0.15;      // s between a caption and its first word
 
 std::uint32_t little(const std::string& bytes, std::size_t at, int size) {
@@ -68,9 +68,9 @@ std::vector<float> samples_of_wav(const std::string& bytes, int& rate) {
 Voice::Voice(std::string command, std::string folder, ProgressMonitor& monitor)
     : command_(std::move(command)), folder_(std::move(folder)), monitor_(monitor) {}
 
-const std::vector<float>& Voice::said(const std::string& text) {
-    const auto known = said_.find(text);
-    if (known != said_.end()) return known->second;
+const std::vector<float>& Voice::texts(const std::string& text) {
+    const auto known = texts_.find(text);
+    if (known != texts_.end()) return known->second;
     const std::string in = folder_ + "/voice.txt", out = folder_ + "/voice.wav", err = folder_ + "/voice.log";
     std::ofstream(in) << text << '\n';
     const ProcessEnd end =
@@ -85,16 +85,16 @@ const std::vector<float>& Voice::said(const std::string& text) {
             command_, end.well() ? "gave no WAV" : "ended with " + end.text(),
             log.empty() ? "" : "; it said: " + log.substr(0, 300)));
     }
-    return said_[text] = resampled(samples, rate);
+    return texts_[text] = resampled(samples, rate);
 }
 
-double Voice::seconds(const Words& words) { return lead + double(said(words.plain()).size()) / track_rate; }
+double Voice::seconds(const Words& words) { return lead + double(texts(words.plain()).size()) / track_rate; }
 
 std::string Voice::track(const Timeline& timeline, int first, int last) {
     const double start = double(first) / frames_a_second;
     std::vector<float> mix(std::size_t(last - first) * (track_rate / frames_a_second));
     for (const Caption& caption : timeline.captions()) {
-        const std::vector<float>& speech = said(timeline.shots()[caption.shot].cues[caption.cue].words.plain());
+        const std::vector<float>& speech = texts(timeline.shots()[caption.shot].cues[caption.cue].words.plain());
         const long at = std::lround((caption.from - start + lead) * track_rate);
         for (std::size_t i = 0; i < speech.size(); ++i) {
             const long to = at + long(i);
@@ -114,4 +114,4 @@ std::string Voice::track(const Timeline& timeline, int first, int last) {
     return wav;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

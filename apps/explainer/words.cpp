@@ -1,12 +1,12 @@
-// Numbers are formatted by plates/words.h and carry their source. Markup is read character by character: typed
-// words are searched for digits outside tags, and plain text is what stands outside them, entities resolved last.
+// Numbers are formatted by report/plates/sheet.h and carry their source. Markup is read character by character: literal
+// words are searched for digits outside tags, and plain text is the text outside them, with entities resolved last.
 #include "words.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Number figure(double value, int digits, const std::string& source) { return {plates::figure(value, digits), source}; }
 Number number(double value, int digits, const std::string& source) { return {plates::number(value, digits), source}; }
@@ -69,4 +69,4 @@ Words tinted(const Words& words, const plates::Colour& ink) {
 
 Words strong(const Words& words) { return Words("<span weight='600'>", words, "</span>"); }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

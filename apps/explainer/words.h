@@ -1,5 +1,5 @@
-// What stands on the screen and in the captions: words that are typed in hold no digit; every number comes in as a
-// value that says where it was read. Everything is Pango markup.
+// The text of screen and captions: literal words have no digit; every number is a value that states its source.
+// Everything is Pango markup.
 #pragma once
 
 #include <string>
@@ -8,34 +8,34 @@
 
 #include "crescent/crescent.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
-/// A number as it is shown, and what it is: "rmse.H of cosine n=64 s=32", "seed of the experiment".
+/// A number as it is shown, and its source: "rmse.H of cosine n=64 s=32", "seed of the experiment".
 struct Number {
     std::string markup, source;
 };
-/// `digits` significant digits, trailing zeros kept.
+/// Formats `digits` significant digits, trailing zeros kept.
 Number figure(double value, int digits, const std::string& source);
-/// At most `digits` significant digits: what an experiment gives.
+/// Formats at most `digits` significant digits, for values given by an experiment.
 Number number(double value, int digits, const std::string& source);
-/// A whole number, with thin spaces from five digits on.
+/// Formats an integer, with thin spaces from five digits on.
 Number count(std::uint64_t value, const std::string& source);
-/// 0.0669 -> "6.7 %".
+/// Formats 0.0669 as "6.7 %".
 Number percent(double part, int digits, const std::string& source);
-/// What the experiment calls something, escaped; may hold digits.
+/// Returns a name of the experiment, escaped; may have digits.
 Number name(const std::string& plain);
 
-/// A formula of formulas.h or one that an arm brings: its digits are mathematics, not results.
+/// A formula of the explainer or of a sampler: its digits are mathematics, not results.
 struct Formula {
     std::string_view markup;
 };
 
-/// Words and numbers in a row. A literal with a digit outside its markup tags is a Bug.
+/// Words and numbers in sequence. A literal with a digit outside its markup tags is a Bug.
 class Words {
 public:
     struct Part {
         std::string markup;
-        std::string source;  // "": typed words
+        std::string source;  // "": literal words
     };
 
     Words() = default;
@@ -45,7 +45,7 @@ public:
     const std::vector<Part>& parts() const { return parts_; }
     bool empty() const { return parts_.empty(); }
     std::string markup() const;
-    /// Without tags; a raised part after "^", a lowered one after "_".
+    /// Returns the text without tags; superscripts after "^", subscripts after "_".
     std::string plain() const;
 
 private:
@@ -58,18 +58,18 @@ private:
     std::vector<Part> parts_;
 };
 
-/// The same in another ink, for the term of a formula that is meant.
+/// Returns the words in another colour, for a highlighted term of a formula.
 Words tinted(const Words& words, const plates::Colour& ink);
 Words strong(const Words& words);
 
-/// Markup without its tags, entities resolved.
+/// Returns markup without its tags, entities resolved.
 std::string plain_of(const std::string& markup);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer
 
-// ---- The formulas of the film. Their digits are mathematics; no result stands here.
+// ---- The formulas of the video. Their digits are mathematics; no result is here.
 
-namespace crescent::film::formulas {
+namespace crescent::explainer::formulas {
 
 inline constexpr Formula sum{"(1/N) Σ"};
 inline constexpr Formula f{"f(ω)"};
@@ -91,4 +91,4 @@ inline constexpr Formula first_random{"u<sub>1</sub>"};
 inline constexpr Formula second_random{"u<sub>2</sub>"};
 inline constexpr Formula root_n{"1/√N"};
 
-}  // namespace crescent::film::formulas
+}  // namespace crescent::explainer::formulas

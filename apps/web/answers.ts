@@ -1,19 +1,19 @@
-// The answer of a lesson: what the core measures now, in several workers, and what the core says that it comes to.
-// Nothing is looked up, and nothing is computed here.
+// The answer of a lesson: the core measures it now, in several workers, and words the conclusion. Nothing is looked up,
+// and nothing is computed here.
 import { Opening } from "./jobs";
 import { Answer, Lesson, Measured } from "./lessons";
-import { Box } from "./door";
+import { Box } from "./api";
 import { Model, Region } from "./model";
 import { quoted, Source } from "./state";
 
-/** `kind` names what was found: the lesson has a sentence for it. */
+/** `kind` names the result: the lesson has a sentence for it. */
 export interface Found { answer: string; kind: string; lines: string[]; pixel?: [number, number] }
 
-/** Of a sampler at one w_o; the program makes five times as many. A reader waits for up to seven surfaces at once. */
+/** For a sampler at one w_o; the program makes five times as many. A user waits for up to seven surfaces at once. */
 export const evaluations = 300_000;
 const builtIn = ["uniform", "cosine", "phong"]; // arms that the experiment of the lessons has
 
-/** Asks the core on the experiment of the lessons, whatever the bench shows. */
+/** Queries the core on the experiment of the lessons, for any state of the bench. */
 export class Asker {
   private readonly found = new Map<string, Promise<Found>>();
   readonly regions: Region[];
@@ -24,7 +24,7 @@ export class Asker {
     this.size = source.size;
   }
 
-  /** The reference's picture, box by box as it comes. */
+  /** The reference's picture, box by box as it is computed. */
   photograph(put: (box: Box, bytes: ArrayBuffer) => void): void { void this.model.photograph(this.opening, this.size, put); }
 
   private opened(set: readonly string[], arms: readonly string[]): Opening {
@@ -41,7 +41,7 @@ export class Asker {
   private all(of: readonly Measured[]): Promise<unknown[]> { return Promise.all(of.map((m) => this.measured(m))); }
 
   /** The verdicts of a sampler at one w_o. */
-  judged<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("judged", { sampler, theta, evaluations }, this.opened([], [])); }
+  checked<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("checked", { sampler, theta, evaluations }, this.opened([], [])); }
 
   /** The furnaces at an exponent and a number of samples. */
   furnaces(lesson: Lesson, s: number, n: number): Promise<Found> { return this.model.ask<Found>("furnaces_of", { ...lesson.answer, n }, this.opened([`sphere.s=${s}`], [])); }
@@ -52,8 +52,8 @@ export class Asker {
     return this.model.ask<Found>("concluded", { by: answer.by, options, surface, of, beside }, this.opened([], []));
   }
 
-  /** Measured once a page: the sheet shows what the lessons found. `guess` matters where a box is the answer; without
-      one, the experiment's own regions are measured. */
+  /** Measured once per page: the sheet shows the results of the lessons. `guess` is used if the answer is a box;
+   *  without one, the experiment's own regions are measured. */
   find(lesson: Lesson, guess = ""): Promise<Found> {
     const drawn = lesson.ask.kind === "region", key = drawn ? `${lesson.id} ${guess}` : lesson.id;
     const known = this.found.get(key) ?? (drawn ? this.measureBoxes(lesson, guess) : this.measure(lesson));
@@ -62,7 +62,7 @@ export class Asker {
     return known;
   }
 
-  /** Over the box that was drawn; without one, over the region of the lesson, and the others beside it. */
+  /** Over the drawn box; without one, over the region of the lesson. Also measures the other series. */
   private async measureBoxes(lesson: Lesson, guess: string): Promise<Found> {
     const { of } = lesson.answer as { of: readonly Measured[] }, own = this.region(of[0]!.region);
     const box = guess.split(",").map(Number) as Region["box"];
@@ -71,7 +71,7 @@ export class Asker {
     return { ...found[0]!, lines: found.flatMap(({ lines }) => lines) };
   }
 
-  /** Commands of the program that make the numbers of the answer. */
+  /** Commands of the program that give the numbers of the answer. */
   commands({ answer, ask }: Lesson, guess: string): string[] {
     const { file } = this.opening;
     switch (answer.by) {
@@ -99,7 +99,7 @@ export class Asker {
       case "chi-square":
       case "t-test":
       case "which":
-        return this.concluded(answer, lesson, await Promise.all(answer.samplers.map((name) => this.judged(name, answer.theta))));
+        return this.concluded(answer, lesson, await Promise.all(answer.samplers.map((name) => this.checked(name, answer.theta))));
       default:
         return this.concluded(answer, lesson, await this.all(answer.of), answer.beside && (await this.all(answer.beside)));
     }

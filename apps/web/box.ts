@@ -1,9 +1,9 @@
-// A question that is answered by a box: drawn on the reference's picture, or its corners typed.
+// A question that is answered by a box: drawn on the reference's picture, or entered as corners.
 import { Asker } from "./answers";
 import { el } from "./dom";
 import { Drawn, Frame } from "./frame";
 
-/** What stands in the question, and what it reads: "x0,y0,x1,y1", or "" where it is no box of the picture. */
+/** The field in the question, and its value: "x0,y0,x1,y1", or "" if it is not a box of the picture. */
 export function boxQuestion(asker: Asker, given: string | undefined): { inside: HTMLElement[]; read(): string } {
   const [width, height] = asker.size, ends = ["left", "bottom", "right", "top"], most = [width, height, width, height];
   const fields = ends.map((end, k) => el("input", {

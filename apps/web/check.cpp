@@ -1,6 +1,6 @@
-// `check` in the page: an arm of the list at one w_o, or a planted fault at the nearest of its own, judged by the same
-// calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence, of as many
-// evaluations.
+// `check` in the page: a built-in sampler at one w_o, or a planted fault at the nearest of its own, checked by the same
+// calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence, for the same
+// number of evaluations.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace crescent::web {
 
 namespace {
 
-/// Those of a fault at the w_o nearest to theta, in degrees.
+/// Returns those of a fault at the w_o nearest to theta, in degrees.
 std::vector<CheckCase> nearest_of(const std::vector<CheckCase>& all, double theta) {
     const auto far = [&](const CheckCase& t) { return std::fabs(t.theta_deg - theta); };
     const double least = far(*std::ranges::min_element(all, {}, far));
@@ -21,79 +21,79 @@ std::vector<CheckCase> nearest_of(const std::vector<CheckCase>& all, double thet
     return out;
 }
 
-std::vector<CheckCase> trials_named(const std::string& name, double theta) {
+std::vector<CheckCase> cases_named(const std::string& name, double theta) {
     if (find_arm_info(name)) return make_cases(name, {}, false, {{theta, 0}});
     for (const PlantedFault& fault : arm_faults(false))
-        if (fault.name == name) return nearest_of(fault.trials, theta);
+        if (fault.name == name) return nearest_of(fault.check_cases, theta);
     throw InputError({"check", 0, 0}, "no sampler '" + name + "'");
 }
 
-ordered_json told_verdict(const Verdict& v) {
-    ordered_json out = {{"name", v.name}, {"state", word(v.state)}, {"say", v.say}, {"evidence", v.evidence}};
+ordered_json verdict_fields(const Verdict& v) {
+    ordered_json out = {{"name", v.name}, {"state", word(v.state)}, {"say", v.respond}, {"evidence", v.evidence}};
     if (v.state == State::wrong && v.expected) out["why"] = v.why_expected;
     return out;
 }
 
 }  // namespace
 
-/// {sampler, theta, evaluations} -> {name, state, cases: [{surface, trial, verdicts: [{name, state, say, evidence}]}]};
-/// so many evaluations at each w_o, those of the program where it is not asked; what depends on a clock, efficiency, is
-/// left out.
-CRESCENT_EXPORT(judged)()->void {
-    const ordered_json asked = request();
-    const std::string name = asked.at("sampler").get<std::string>();
-    std::vector<CheckCase> trials = trials_named(name, asked.at("theta").get<double>());
-    for (CheckCase& t : trials) t.subject = paused(t.subject);
+/// {sampler, theta, evaluations} -> {name, state, cases: [{surface, case, verdicts: [{name, state, say, evidence}]}]};
+/// `evaluations` at each w_o, by default those of the program; efficiency, which depends on a clock, is omitted.
+CRESCENT_EXPORT(checked)()->void {
+    const ordered_json query = request();
+    const std::string name = query.at("sampler").get<std::string>();
+    std::vector<CheckCase> check_cases = cases_named(name, query.at("theta").get<double>());
+    for (CheckCase& t : check_cases) t.adapter = paused(t.adapter);
     ProgressMonitor monitor;
     TestSettings settings = TestSettings::quick();
-    if (asked.contains("evaluations"))
-        settings.budget = check::CheckBudget::limited(asked.at("evaluations").get<double>());
-    const CheckResult judgement = judge(trials, settings, monitor);
+    if (query.contains("evaluations"))
+        settings.budget = check::CheckBudget::limited(query.at("evaluations").get<double>());
+    const CheckResult result = run_checks(check_cases, settings, monitor);
     ordered_json out = {{"name", name}, {"state", word(State::right)}, {"cases", ordered_json::array()}};
     bool wrong = false, doubt = false;
-    for (const CheckCase& t : trials) {
-        ordered_json one = {{"surface", t.brdf}, {"trial", t.text()}, {"verdicts", ordered_json::array()}};
-        for (const Verdict& v : judgement.verdicts) {
-            if (t.baseline || v.trial != t.text() || v.name == "efficiency") continue;
-            one["verdicts"].push_back(told_verdict(v));
+    for (const CheckCase& t : check_cases) {
+        ordered_json one = {{"surface", t.brdf}, {"case", t.text()}, {"verdicts", ordered_json::array()}};
+        for (const Verdict& v : result.verdicts) {
+            if (t.baseline || v.check_case != t.text() || v.name == "efficiency") continue;
+            one["verdicts"].push_back(verdict_fields(v));
             wrong = wrong || v.state == State::wrong;
             doubt = doubt || v.state == State::inconclusive;
         }
         if (!one["verdicts"].empty()) out["cases"].push_back(std::move(one));
     }
     out["state"] = word(wrong ? State::wrong : doubt ? State::inconclusive : State::right);
-    say(out);
+    respond(out);
 }
 
-/// {sampler, theta, n} -> {trial, draws: [[x, y]]}: its first n draws on the disk; density_disk() paints what it says
-/// of their density.
+/// {sampler, theta, n} -> {case, draws: [[x, y]]}: its first n draws on the disk; density_disk() paints its stated
+/// density.
 CRESCENT_EXPORT(drawn)()->void {
-    const ordered_json asked = request();
-    const CheckCase trial =
-        trials_named(asked.at("sampler").get<std::string>(), asked.at("theta").get<double>()).front();
+    const ordered_json query = request();
+    const CheckCase check_case =
+        cases_named(query.at("sampler").get<std::string>(), query.at("theta").get<double>()).front();
     const std::uint32_t seed = seed_of(TestSettings::quick().seed, 0);
-    std::vector<PrimarySample> u(asked.at("n").get<std::size_t>());
+    std::vector<PrimarySample> u(query.at("n").get<std::size_t>());
     for (std::size_t k = 0; k < u.size(); ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most);
     std::vector<Draw> draws(u.size());
-    trial.subject->sample(0, trial.wo, u, draws);
-    const Disk disk({-trial.wo.x, -trial.wo.y, trial.wo.z});
-    ordered_json out = {{"trial", trial.text()}, {"draws", ordered_json::array()}};
+    check_case.adapter->sample(0, check_case.wo, u, draws);
+    const Disk disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z});
+    ordered_json out = {{"case", check_case.text()}, {"draws", ordered_json::array()}};
     for (const Draw& d : draws)
         if (d.pdf > 0 && d.wi.z > 0) out["draws"].push_back(disk.place(d.wi));
-    say(out);
+    respond(out);
 }
 
-/// {sampler, theta, size} -> the density that it claims there, as a picture for disk(), `size` pixels across.
+/// {sampler, theta, size} -> the density that it states there, as a picture for disk(), `size` pixels across.
 CRESCENT_EXPORT(density_disk)()->void {
-    const ordered_json asked = request();
-    const CheckCase trial =
-        trials_named(asked.at("sampler").get<std::string>(), asked.at("theta").get<double>()).front();
-    begin(painted(Disk({-trial.wo.x, -trial.wo.y, trial.wo.z}), asked.at("size").get<int>(), [=](Vec3d wi) {
-        const Pair at{trial.wo, wi};
-        double p = 0;
-        trial.subject->exact_pdf(0, {&at, 1}, {&p, 1});
-        return p;
-    }));
+    const ordered_json query = request();
+    const CheckCase check_case =
+        cases_named(query.at("sampler").get<std::string>(), query.at("theta").get<double>()).front();
+    begin(painted(
+        Disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z}), query.at("size").get<int>(), [=](Vec3d wi) {
+            const Pair at{check_case.wo, wi};
+            double p = 0;
+            check_case.adapter->exact_pdf(0, {&at, 1}, {&p, 1});
+            return p;
+        }));
 }
 
 }  // namespace crescent::web

@@ -1,5 +1,5 @@
-// `check` on the page: a sampler at one w_o, its verdicts in a table; and samplers shown by their draws over the density
-// that they claim.
+// `check` on the page: a sampler at one w_o, its verdicts in a table; and samplers shown by their draws over their
+// stated density.
 import { Asker, evaluations } from "./answers";
 import { choice } from "./controls";
 import { el, minus } from "./dom";
@@ -7,49 +7,49 @@ import { Lesson } from "./lessons";
 import { Model } from "./model";
 
 interface Verdict { name: string; state: string; say: string; why?: string }
-interface Judged { name: string; state: string; cases: { trial: string; verdicts: Verdict[] }[] }
+interface Checked { name: string; state: string; cases: { case: string; verdicts: Verdict[] }[] }
 interface Option { value: string; words: string }
 
 const size = 176, draws = 512;
 
-function table(one: Judged["cases"][number]): HTMLElement {
+function table(one: Checked["cases"][number]): HTMLElement {
   const rows = one.verdicts.map((v) => el("tr", {}, el("th", { scope: "row" }, v.name),
     el("td", { class: v.state === "wrong" ? "bad" : "" }, v.state), el("td", {}, minus(v.say))));
-  return el("table", { class: "verdicts" }, el("caption", {}, one.trial), el("tbody", {}, ...rows));
+  return el("table", { class: "verdicts" }, el("caption", {}, one.case), el("tbody", {}, ...rows));
 }
 
-/** A sampler and a w_o to choose, and what `check` says of them. */
+/** A sampler and a w_o to choose, and the verdicts of `check` on them. */
 export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
   const { samplers, theta } = lesson.check!, answer = lesson.answer as { samplers: readonly string[]; theta: number };
   let sampler = answer.samplers[0]!, at = answer.theta, asked = 0;
-  const out = el("div", { id: "judged", "aria-live": "polite" });
-  const judge = async (): Promise<void> => {
+  const out = el("div", { id: "check-result", "aria-live": "polite" });
+  const check = async (): Promise<void> => {
     const mine = ++asked;
-    out.replaceChildren(el("p", {}, "Being judged …"));
+    out.replaceChildren(el("p", {}, "Checking …"));
     try {
-      const judged = await asker.judged<Judged>(sampler, at);
+      const checked = await asker.checked<Checked>(sampler, at);
       if (mine !== asked) return;
-      // A planted fault has a name of several words; the program judges it at three w_o in one call.
+      // A planted fault has a name of several words; the program checks it at three w_o in one call.
       const how = sampler.includes(" ") ? ["; the program judges such faults by ", "crescent check --planted"] : [`, from ${evaluations} evaluations a surface; the program makes five times as many: `, `crescent check ${sampler} --wo ${at}`];
-      out.replaceChildren(el("p", {}, el("b", {}, judged.state), how[0], el("code", {}, how[1])), ...judged.cases.map(table));
+      out.replaceChildren(el("p", {}, el("b", {}, checked.state), how[0], el("code", {}, how[1])), ...checked.cases.map(table));
     } catch (error) {
-      out.replaceChildren(el("p", { class: "bad" }, `It could not be judged: ${error instanceof Error ? error.message : error}.`));
+      out.replaceChildren(el("p", { class: "bad" }, `It could not be checked: ${error instanceof Error ? error.message : error}.`));
     }
   };
   return el("section", { "aria-label": "Check a sampler" }, el("p", {}, "Now play: choose a sampler and the angle of w_o to the normal, and check it."),
     el("div", { class: "choices" },
       choice("check-sampler", "sampler", samplers.map(({ value, words }) => [value, words]), sampler, (value) => { sampler = value; }),
       choice("check-theta", "w_o, degrees from the normal", theta.map((t) => [String(t), String(t)]), String(at), (value) => { at = Number(value); }),
-      el("button", { type: "button", id: "check", onclick: () => void judge() }, "Check")), out);
+      el("button", { type: "button", id: "check", onclick: () => void check() }, "Check")), out);
 }
 
-/** Paints a sampler's density and its draws when there is room for it; what is no longer on the page is left out. */
+/** Paints a sampler's density and its draws when there is room for it; skipped if it is no longer on the page. */
 async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
   const wanted = (): boolean => canvas.isConnected;
   const density = await model.disk(wanted, "density_disk", { sampler: value, theta }, size);
-  const drawn = await model.parts<{ draws: [number, number][]; trial: string }>(wanted, "drawn", { sampler: value, theta, n: draws });
+  const drawn = await model.parts<{ draws: [number, number][]; case: string }>(wanted, "drawn", { sampler: value, theta, n: draws });
   if (!density || !drawn) return;
-  canvas.setAttribute("aria-label", `${words}: ${drawn.draws.length} draws over the density that it claims, ${drawn.trial}`);
+  canvas.setAttribute("aria-label", `${words}: ${drawn.draws.length} draws over the density that it claims, ${drawn.case}`);
   const pen = canvas.getContext("2d")!;
   pen.putImageData(density, 0, 0);
   pen.fillStyle = "#ffffff";
@@ -64,7 +64,7 @@ async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: 
 
 function picture(model: Model, option: Option, theta: number): HTMLElement {
   const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": `${option.words}: its draws` });
-  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question stands without it
+  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question works without it
   return el("figure", {}, canvas, el("figcaption", {}, el("b", {}, option.words)));
 }
 

@@ -1,4 +1,4 @@
-// What the bench is to show: experiment, arms, N, which pictures. A lesson leaves only those that it plays with.
+// The choices of the page: experiment, arms, N, which pictures. A lesson shows only those that it uses.
 import { choice } from "./controls";
 import { byId } from "./dom";
 import { ladder } from "./model";
@@ -9,8 +9,8 @@ export interface Choosing {
   sources: Record<string, Source>;
   samplers: readonly { name: string; label: string }[];
   only: readonly string[] | undefined; // of a lesson
-  open(): void; // with what was chosen
-  show(): void; // the same films in another way
+  open(): void; // with the choices
+  show(): void; // the same films in another view
 }
 
 function armChoice(k: number, { state, sources, samplers, open }: Choosing): HTMLElement {
@@ -25,7 +25,7 @@ function armChoice(k: number, { state, sources, samplers, open }: Choosing): HTM
   });
 }
 
-/** Makes the choices anew; the one that has the focus keeps it. */
+/** Creates the choices again; the focused one keeps the focus. */
 export function showChoices(root: HTMLElement, given: Choosing): void {
   const { state, sources, only } = given, held = document.activeElement?.id;
   const all: [string, () => HTMLElement][] = [

@@ -1,11 +1,11 @@
-// What the measurements of a lesson come to, in words: which is largest, by what factor, what a sampler's verdicts say.
-// Every number was measured for this answer, and `kind` names what was found, so that what is said can follow it.
+// The conclusions from the measurements of a lesson, in words: which is largest, by what factor, a sampler's verdicts.
+// Every number was measured for this answer, and `kind` names the result, so that the text can depend on it.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "door.h"
+#include "api.h"
 
 namespace crescent::web {
 
@@ -16,7 +16,7 @@ struct Found {
     std::vector<std::string> lines{};
 };
 
-/// A measurement of measure.cpp with its words.
+/// A measurement of measure.cpp with its text.
 struct Series {
     std::string name;  // "cosine, N = 64: RMSE of H"
     double n = 0, median = 0, low = 0, high = 0;
@@ -39,13 +39,13 @@ Series series_of(const ordered_json& v) {
     return out;
 }
 
-/// The largest or the smallest of these, where its band lies apart from every other; else "overlap".
-Found extreme_of(const ordered_json& asked, const ordered_json& of) {
-    const double sign = asked.at("by").get<std::string>() == "largest" ? 1 : -1;
+/// Returns the largest or the smallest of these if its band is disjoint from every other; else "overlap".
+Found extreme_of(const ordered_json& query, const ordered_json& of) {
+    const double sign = query.at("by").get<std::string>() == "largest" ? 1 : -1;
     std::vector<Series> all;
     for (const auto& v : of) all.push_back(series_of(v));
     const auto best = std::ranges::max_element(all, {}, [&](const Series& s) { return sign * s.median; });
-    Found out{asked.at("options").at(static_cast<std::size_t>(best - all.begin())).get<std::string>(), ""};
+    Found out{query.at("options").at(static_cast<std::size_t>(best - all.begin())).get<std::string>(), ""};
     bool apart = true;
     for (const Series& s : all) {
         out.lines.push_back(s.line());
@@ -56,18 +56,18 @@ Found extreme_of(const ordered_json& asked, const ordered_json& of) {
     return out;
 }
 
-/// The same of what was asked, with what was measured beside it.
-Found extreme(const ordered_json& asked) {
-    Found out = extreme_of(asked, asked.at("of"));
-    if (!asked.contains("beside")) return out;
-    Found beside = extreme_of(asked, asked.at("beside"));
+/// The same for the request, with the additional measurements.
+Found extreme(const ordered_json& query) {
+    Found out = extreme_of(query, query.at("of"));
+    if (!query.contains("beside")) return out;
+    Found beside = extreme_of(query, query.at("beside"));
     std::ranges::move(beside.lines, std::back_inserter(out.lines));
     return out;
 }
 
-/// The factor from the first to the second, seed by seed.
-Found factor(const ordered_json& asked) {
-    const Series a = series_of(asked.at("of").at(0)), b = series_of(asked.at("of").at(1));
+/// Returns the factor from the first to the second, seed by seed.
+Found factor(const ordered_json& query) {
+    const Series a = series_of(query.at("of").at(0)), b = series_of(query.at("of").at(1));
     std::vector<double> each;
     for (std::size_t k = 0; k < a.rmse.size(); ++k) each.push_back(a.rmse[k] / b.rmse[k]);
     const double median = quantile(each, 0.5), low = quantile(each, 0.05), high = quantile(each, 0.95);
@@ -81,8 +81,8 @@ Found factor(const ordered_json& asked) {
     return out;
 }
 
-Found spread_over_seeds(const ordered_json& asked) {
-    const Series s = series_of(asked.at("of").at(0));
+Found spread_over_seeds(const ordered_json& query) {
+    const Series s = series_of(query.at("of").at(0));
     const double times = s.high / s.low;
     return {figures(times, 3), times > 2 ? "wide" : "narrow",
         {s.line(), fmt::format("the 95 % quantile is {} times the 5 % quantile", figures(times, 3))}};
@@ -93,7 +93,7 @@ const ordered_json& verdict_of(const ordered_json& one, const std::string& name)
         if (v.at("name").get<std::string>() == name) return v;
     throw InputError({"lesson", 0, 0}, "no verdict '" + name + "' in " + one.dump());
 }
-/// The smallest p-value of a verdict, each for all members of its family; "" where it has none.
+/// Returns the smallest p-value of a verdict, each for all members of its family; "" if it has none.
 std::string least_p(const ordered_json& v) {
     const ordered_json all = v.at("evidence").value("p", ordered_json::object());
     double least = 1;
@@ -101,43 +101,44 @@ std::string least_p(const ordered_json& v) {
     if (all.empty()) return "";
     return fmt::format("; the smallest p-value of its tests, {} in all, is {}", all.size(), figures(least, 2));
 }
-std::string told_of(const ordered_json& v) {
+std::string message_of(const ordered_json& v) {
     const auto name = v.at("name").get<std::string>(), state = v.at("state").get<std::string>(),
-               say = v.at("say").get<std::string>();
-    if (say.empty()) return fmt::format("{}: {}{}", name, state, least_p(v));
-    return say.starts_with(state) ? fmt::format("{}: {}", name, say) : fmt::format("{}: {}. {}", name, state, say);
+               respond = v.at("say").get<std::string>();
+    if (respond.empty()) return fmt::format("{}: {}{}", name, state, least_p(v));
+    return respond.starts_with(state) ? fmt::format("{}: {}", name, respond)
+                                      : fmt::format("{}: {}. {}", name, state, respond);
 }
 std::string state_of(const ordered_json& v) { return v.at("state").get<std::string>(); }
 
-/// The case on a surface, of the only one where none is asked for.
-const ordered_json& case_on(const ordered_json& judged, const std::string& surface) {
-    for (const auto& one : judged.at("cases"))
+/// Returns the case on a surface; without a surface, the only one.
+const ordered_json& case_on(const ordered_json& checked, const std::string& surface) {
+    for (const auto& one : checked.at("cases"))
         if (surface.empty() || one.at("surface").get<std::string>() == surface) return one;
-    throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was judged on");
+    throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was checked on");
 }
 
-/// Whether light is out of reach.
+/// Returns whether light is out of reach.
 Found unbiased(const ordered_json& one) {
     const ordered_json& support = verdict_of(one, "support");
-    Found out{state_of(support), state_of(support), {"on " + one.at("trial").get<std::string>(), told_of(support)}};
-    out.lines.push_back(told_of(verdict_of(one, "mean")));
+    Found out{state_of(support), state_of(support), {"on " + one.at("case").get<std::string>(), message_of(support)}};
+    out.lines.push_back(message_of(verdict_of(one, "mean")));
     return out;
 }
 
-/// What chi-square says, and what the other verdicts say.
+/// Compares chi-square with the other verdicts.
 Found beside_chi_square(const ordered_json& one) {
     const ordered_json& density = verdict_of(one, "density");
-    Found out{"right", "", {told_of(density)}};
+    Found out{"right", "", {message_of(density)}};
     for (const auto& v : one.at("verdicts")) {
         if (v.at("name").get<std::string>() == "density" || state_of(v) != "wrong") continue;
         out.answer = "wrong";
-        out.lines.push_back(told_of(v));
+        out.lines.push_back(message_of(v));
     }
     out.kind = state_of(density) + "-" + out.answer;
     return out;
 }
 
-/// A t-test as it is commonly made, on the weights that `mean` looked at, beside what `mean` says.
+/// Compares a common t-test, on the weights used by `mean`, with the verdict `mean`.
 Found beside_t_test(const ordered_json& one) {
     const ordered_json& mean = verdict_of(one, "mean");
     const ordered_json& e = mean.at("evidence");
@@ -150,21 +151,22 @@ Found beside_t_test(const ordered_json& one) {
         figures(e.at("mean").get<double>()), figures(e.at("standard_error").get<double>(), 2),
         figures(e.at("quadrature").get<double>()), figures(t, 3), p < 1e-6 ? "<" : "=",
         p < 1e-6 ? "0.000001" : figures(p, 2), rejects ? "rejects" : "does not reject"));
-    for (const char* name : {"support", "density", "tail", "mean"}) out.lines.push_back(told_of(verdict_of(one, name)));
+    for (const char* name : {"support", "density", "tail", "mean"})
+        out.lines.push_back(message_of(verdict_of(one, name)));
     return out;
 }
 
-/// Which of several samplers nothing is wrong with.
-Found which_is_right(const ordered_json& asked) {
+/// Returns which of several samplers has no fault.
+Found which_is_right(const ordered_json& query) {
     Found out{"", "none"};
     std::size_t right = 0;
-    for (std::size_t k = 0; k < asked.at("of").size(); ++k) {
-        const ordered_json& judged = asked.at("of").at(k);
-        const std::string option = asked.at("options").at(k).get<std::string>(),
-                          name = judged.at("name").get<std::string>();
+    for (std::size_t k = 0; k < query.at("of").size(); ++k) {
+        const ordered_json& checked = query.at("of").at(k);
+        const std::string option = query.at("options").at(k).get<std::string>(),
+                          name = checked.at("name").get<std::string>();
         std::string first;
-        for (const auto& v : judged.at("cases").at(0).at("verdicts"))
-            if (first.empty() && state_of(v) == "wrong") first = told_of(v);
+        for (const auto& v : checked.at("cases").at(0).at("verdicts"))
+            if (first.empty() && state_of(v) == "wrong") first = message_of(v);
         if (first.empty()) out.answer = option, ++right;
         out.lines.push_back(
             fmt::format("sampler {}, {}: {}", option, name, first.empty() ? "no verdict is wrong" : first));
@@ -174,13 +176,13 @@ Found which_is_right(const ordered_json& asked) {
     return out;
 }
 
-Found concluded(const ordered_json& asked) {
-    const auto by = asked.at("by").get<std::string>();
-    if (by == "largest" || by == "smallest") return extreme(asked);
-    if (by == "factor") return factor(asked);
-    if (by == "spread") return spread_over_seeds(asked);
-    if (by == "which") return which_is_right(asked);
-    const ordered_json& one = case_on(asked.at("of").at(0), asked.value("surface", ""));
+Found concluded(const ordered_json& query) {
+    const auto by = query.at("by").get<std::string>();
+    if (by == "largest" || by == "smallest") return extreme(query);
+    if (by == "factor") return factor(query);
+    if (by == "spread") return spread_over_seeds(query);
+    if (by == "which") return which_is_right(query);
+    const ordered_json& one = case_on(query.at("of").at(0), query.value("surface", ""));
     if (by == "support") return unbiased(one);
     if (by == "chi-square") return beside_chi_square(one);
     if (by == "t-test") return beside_t_test(one);
@@ -189,11 +191,11 @@ Found concluded(const ordered_json& asked) {
 
 }  // namespace
 
-/// {by, options, surface, of: [what measure or judged said], beside: [what else measure said]} -> {answer, kind,
-/// lines}.
+/// `{by, options, surface, of: [results of measure or checked], beside: [other results of measure]}` ->
+/// {answer, kind, lines}.
 CRESCENT_EXPORT(concluded)()->void {
     const Found found = concluded(request());
-    say(ordered_json{{"answer", found.answer}, {"kind", found.kind}, {"lines", found.lines}});
+    respond(ordered_json{{"answer", found.answer}, {"kind", found.kind}, {"lines", found.lines}});
 }
 
 }  // namespace crescent::web

@@ -1,15 +1,15 @@
-// Sliders and fields for what may be changed, made from the knobs that the core names. A value goes into the state as
-// text that --set takes; a value that is the experiment's own leaves it.
+// Sliders and fields for changeable values, made from the knobs that the core names. A value is stored in the state as
+// text for --set; a value equal to the experiment's own is removed.
 import { el } from "./dom";
 import { Described, Knob, Region } from "./model";
 
 type Change = (path: string, value: string | undefined) => void;
 
 const steps = 1000;
-const short = (x: number): string => String(Number(x.toPrecision(4))); // what a slider gives
+const short = (x: number): string => String(Number(x.toPrecision(4))); // a slider's value
 const typed = (x: number): string => String(Number(x.toPrecision(12)));
 
-/** Where a value lies on a slider, and back. */
+/** Converts a value to its place on a slider, and back. */
 function share(knob: Knob, x: number): number {
   if (!knob.log) return (x - knob.low) / (knob.high - knob.low);
   return Math.log(Math.max(x, knob.low) / knob.low) / Math.log(knob.high / knob.low);
@@ -18,7 +18,7 @@ function valueAt(knob: Knob, t: number): number {
   return knob.log ? knob.low * (knob.high / knob.low) ** t : knob.low + t * (knob.high - knob.low);
 }
 
-/** taken: returns what becomes of x, where that may be another value. */
+/** taken: returns the value that replaces x, if it differs. */
 function field(label: string, value: number, taken: (x: number) => number | undefined): HTMLInputElement {
   return el("input", {
     type: "text", inputmode: "decimal", "aria-label": label, value: typed(value), class: "number",
@@ -44,7 +44,7 @@ function slider(label: string, knob: Knob, value: number, moved: (x: number) => 
   });
 }
 
-/** A slider and a field for one number, each showing what the other was given. */
+/** A slider and a field for one number, each showing the value of the other. */
 function pair(label: string, knob: Knob, value: number, taken: (x: number) => void): HTMLInputElement[] {
   const text = field(label, value, (x) => { bar.value = String(Math.round(steps * share(knob, x))); taken(x); return undefined; });
   const bar = slider(`${label} (slider)`, knob, value, (x) => { text.value = short(x); taken(x); });
@@ -53,7 +53,7 @@ function pair(label: string, knob: Knob, value: number, taken: (x: number) => vo
 
 /** Three fields, and a slider that scales all of them. */
 function colourRow(knob: Knob, own: number[], change: Change): HTMLElement[] {
-  const hue = [...own]; // stands where the slider makes it black
+  const hue = [...own]; // used when the slider makes it black
   const tell = (all: number[]): undefined => void change(knob.path, `[${all.map(typed).join(", ")}]`);
   const fields = own.map((c, k) => field(`${knob.label} ${["red", "green", "blue"][k]}`, c, (x) => { hue[k] = x; return tell(hue); }));
   if (!(Math.max(...own) > 0)) return fields;
@@ -84,7 +84,7 @@ function knobRow(knob: Knob, change: Change): HTMLElement {
   return row([text]);
 }
 
-/** Its four ends; none passes the one beyond, or the picture's edge. */
+/** Its four ends; none passes the opposite one, or the picture's edge. */
 function regionRow(region: Region, { width, height }: Described, change: Change): HTMLElement {
   const names = ["left", "bottom", "right", "top"], box = [...region.box];
   const fields = box.map((x, k) => field(`region ${region.name} ${names[k]}`, x, (to) => {
@@ -97,7 +97,7 @@ function regionRow(region: Region, { width, height }: Described, change: Change)
     el("legend", {}, `region ${region.name}, pixels`), el("div", { class: "row" }, ...fields));
 }
 
-/** All rows; `only`: the paths that a lesson lets one play with. */
+/** All rows; `only`: the paths that a lesson allows to change. */
 export function controlRows(d: Described, change: Change, only: readonly string[] | undefined): HTMLElement[] {
   const wanted = (path: string): boolean => !only || only.includes(path);
   const knobs = d.knobs.filter((knob) => wanted(knob.path)).map((knob) => knobRow(knob, change));

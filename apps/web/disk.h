@@ -1,5 +1,5 @@
 // A hemisphere as a disk: Lambert's azimuthal equal-area projection from n, (x, y) / sqrt(1 + z), the horizon at 1;
-// turned about n so that R lies towards +x, hence the plane of incidence is the picture's middle row.
+// rotated about n so that R lies towards +x, so the plane of incidence is the picture's middle row.
 #pragma once
 
 #include <cmath>
@@ -15,12 +15,12 @@ public:
         const double length = std::sqrt(mirror.x * mirror.x + mirror.y * mirror.y);
         if (length > 1e-9) c_ = mirror.x / length, s_ = mirror.y / length;
     }
-    /// Where a direction of the upper half lies in the unit disk.
+    /// Returns the point of a direction of the upper half in the unit disk.
     ordered_json place(Vec3d w) const {
         const double by = 1 / std::sqrt(1 + std::max(w.z, 0.0));
         return {(c_ * w.x + s_ * w.y) * by, (c_ * w.y - s_ * w.x) * by};
     }
-    /// What lies there; nothing outside the disk.
+    /// Returns the direction of a point; nothing outside the disk.
     std::optional<Vec3d> direction(double x, double y) const {
         const double r2 = x * x + y * y;
         if (r2 >= 1) return std::nullopt;
@@ -32,8 +32,8 @@ private:
     double c_ = 1, s_ = 0;
 };
 
-/// A picture of a disk `size` pixels across, for disk(): values through turbo on a logarithmic scale of four decades
-/// below the largest. The parts of a question, parts.h; the last one says {}.
+/// Returns a picture of a disk `size` pixels across, for disk(): values in turbo colours on a logarithmic scale of four
+/// decades below the largest. The parts of a request, parts.h; the last one returns {}.
 Parts painted(const Disk& disk, int size, const std::function<double(Vec3d)>& value);
 
 }  // namespace crescent::web

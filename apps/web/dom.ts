@@ -1,4 +1,4 @@
-// Elements in short.
+// Short functions that make elements.
 type Child = Node | string | undefined;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void) | undefined>;
 
@@ -14,21 +14,22 @@ export function el<K extends keyof HTMLElementTagNameMap>(tag: K, given: Attribu
   return made;
 }
 
-/** Markup that the core made: charts, formulas. Nothing of the address is ever in it unescaped. */
+/** Markup made by the core: charts, formulas. No part of the address is in it unescaped. */
 export function made(markup: string): DocumentFragment {
   const holder = document.createElement("template");
   holder.innerHTML = markup;
   return holder.content;
 }
 
-/** PrimarySample in words with their minus sign; commands, which are typed, keep the hyphen. */
+/** Numbers in words with their minus sign; commands, which are typed, keep the hyphen. */
 export const minus = (words: string): string => words.replace(/(^|[\s(=,[±])-(?=\.?\d)/g, "$1−");
 
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
 
-/** Copies an element's text; a browser that keeps its clipboard to itself has it selected. What was done, in words. */
+/** Copies an element's text, or selects it if the browser denies access to the clipboard. Returns what was done, in
+ *  words. */
 export async function copied(from: HTMLElement): Promise<string> {
   try {
     await navigator.clipboard.writeText(from.textContent ?? "");
@@ -39,16 +40,16 @@ export async function copied(from: HTMLElement): Promise<string> {
   }
 }
 
-/** Says a line to those who listen, at most once a second, the last one always. */
+/** Announces a line to screen readers, at most once a second, the last one always. */
 export class Speaker {
-  private said = 0;
+  private reported = 0;
   private timer = 0;
   constructor(private readonly at: HTMLElement) {}
   say(line: string): void {
     window.clearTimeout(this.timer);
-    const wait = Math.max(0, this.said + 1000 - performance.now());
+    const wait = Math.max(0, this.reported + 1000 - performance.now());
     this.timer = window.setTimeout(() => {
-      this.said = performance.now();
+      this.reported = performance.now();
       if (this.at.textContent !== line) this.at.textContent = line;
     }, wait);
   }

@@ -1,4 +1,4 @@
-// Films and the reference, tile by tile: computed in any instance, put together in one, measured there.
+// Films and the reference, tile by tile: computed in any instance, assembled in one, measured there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 TileBox box_of(int x0, int y0, int x1, int y1) { return {x0, y0, x1, y1}; }
 
-/// Rows of a box, from a plane of the image's width or to it; 4 bytes a pixel.
+/// Rows of a box, from or to a plane of the image's width; 4 bytes per pixel.
 template <class Move> void each_row(const TileBox& box, std::size_t width, Move&& move) {
     const std::size_t across = static_cast<std::size_t>(box.x1 - box.x0) * 4;
     for (int j = box.y0; j < box.y1; ++j)
@@ -28,7 +28,7 @@ template <class F> void put_planes(F& film, const TileBox& box, const std::byte*
         from += pixels_of(box) * 4;
     }
 }
-/// The memory of the reference, plane by plane.
+/// Allocates the reference, plane by plane.
 void reference_room() {
     using Plane = std::vector<float> ReferenceFilm::*;
     Parts parts;
@@ -42,7 +42,7 @@ void reference_room() {
         ReferenceFilm& film = bench().reference;
         film.width = bench().experiment.image.width, film.height = bench().experiment.image.height;
         film.s = bench().scene.s();
-        say(ordered_json::object());
+        respond(ordered_json::object());
     });
     begin(std::move(parts));
 }
@@ -56,8 +56,8 @@ template <class F> std::vector<std::byte>& all_planes(F& film) {
 
 }  // namespace
 
-/// The arm at n samples over a box: the nine planes of a film, which shape each pixel sees, and how many samples were
-/// not a number (as one count).
+/// The arm at n samples over a box: the nine planes of a film, which shape each pixel sees, and the number of NaN
+/// samples (as one count).
 CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const void* {
     Bench& b = bench();
     const TileBox box = box_of(x0, y0, x1, y1);
@@ -90,15 +90,15 @@ CRESCENT_EXPORT(reference_tile)(int x0, int y0, int x1, int y1)->const void* {
     return out.data();
 }
 
-/// Room for `size` bytes of a tile, to be put.
-CRESCENT_EXPORT(tile_room)(std::size_t size)->void* {
+/// Allocates `size` bytes for a tile, for put().
+CRESCENT_EXPORT(tile_buffer)(std::size_t size)->void* {
     scratch<std::byte>().resize(size);
     return scratch<std::byte>().data();
 }
 
-/// Room for film `index`, plane by plane: what begin() would take at once; for the reference where it is -1. {} when it
-/// is there.
-CRESCENT_EXPORT(film_room)(int index)->void {
+/// Allocates film `index`, plane by plane, instead of all at once in begin(); -1 is the reference. Returns {} when it
+/// is done.
+CRESCENT_EXPORT(film_buffer)(int index)->void {
     if (index < 0) return reference_room();
     Bench& b = bench();
     const auto at = static_cast<std::size_t>(index);
@@ -117,12 +117,12 @@ CRESCENT_EXPORT(film_room)(int index)->void {
     parts.emplace_back([=] {
         slot(index).film.width = bench().experiment.image.width,
         slot(index).film.height = bench().experiment.image.height;
-        say(ordered_json::object());
+        respond(ordered_json::object());
     });
     begin(std::move(parts));
 }
 
-/// Film `index` is now of this arm at n; what it held stays until tiles are put over it.
+/// Assigns film `index` to this arm at n; its old contents stay until tiles overwrite them.
 CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     Bench& b = bench();
     const auto at = static_cast<std::size_t>(index);
@@ -136,7 +136,7 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }
 
-/// The tile in tile_room() -> its place in film `index`.
+/// Copies the tile in tile_buffer() to its place in film `index`.
 CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     Bench& b = bench();
     Film& film = slot(index).film;
@@ -158,13 +158,13 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
 }
 
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
-    ensure(bench().reference.size() == bench().pixels(), "film_room(-1) came before");
+    ensure(bench().reference.size() == bench().pixels(), "film_buffer(-1) came before");
     const TileBox box = box_of(x0, y0, x1, y1);
     count_work(pixels_of(box) * put_cost);
     put_planes(bench().reference, box, scratch<std::byte>().data());
 }
 
-/// The hash of film `index`, of the reference for -1.
-CRESCENT_EXPORT(hash_of)(int index)->void { say(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
+/// Returns the hash of film `index`, of the reference for -1.
+CRESCENT_EXPORT(hash_of)(int index)->void { respond(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
 
 }  // namespace crescent::web

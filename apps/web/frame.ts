@@ -1,16 +1,16 @@
-// A picture that can be pointed at: a canvas of a size in pixels, boxes drawn over it, a pixel to choose by pointer, a
-// region to draw by dragging. Boxes are [x0, y0, x1, y1], both ends inside, from the bottom-left.
+// A picture with pointer input: a canvas of a size in pixels, boxes drawn over it, a pixel to choose by pointer, a
+// region to draw by dragging. Boxes are [x0, y0, x1, y1], both ends inclusive, from the bottom-left.
 import { el } from "./dom";
 
 export type Drawn = [number, number, number, number];
-/** A box with its name. move: its corners can be moved, what they come to is told; reached: also by the tabulator. */
+/** A box with its name. move: its corners can be moved, the new box is passed on; reached: also by the tab key. */
 export interface Outlined { name: string; box: readonly number[]; move?: ((box: Drawn) => void) | undefined; reached?: boolean | undefined }
 export interface Picking {
   pixel?(i: number, j: number): void;
   region(box: Drawn): void;
 }
 
-/** What an arrow key moves by, in pixels: one, ten with shift. Other keys are left alone. */
+/** The step of an arrow key, in pixels: one, ten with shift. Other keys are ignored. */
 export function byKey(event: KeyboardEvent): [number, number] | undefined {
   const step = event.shiftKey ? 10 : 1;
   const by: Record<string, [number, number]> = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
@@ -70,7 +70,8 @@ export class Frame {
     return made;
   }
 
-  /** One corner of a box as a button outside it; x is box[kx], y is box[ky]. It stops one pixel before the corner beyond. */
+  /** One corner of a box as a button outside it; x is box[kx], y is box[ky]. It stops one pixel before the opposite
+   *  corner. */
   private corner(of: Outlined, kx: 0 | 2, ky: 1 | 3): HTMLElement {
     const box = of.box as Drawn, { width, height } = this.size;
     const to = (x: number, y: number): Drawn => {
@@ -109,14 +110,14 @@ export class Frame {
       if (grip) take(pulled(e));
     };
     const x = `${(100 * (kx === 0 ? box[0] : box[2] + 1)) / width}%`, y = `${(100 * (height - (ky === 1 ? box[1] : box[3] + 1))) / height}%`;
-    const within = (before: boolean, at: string): string => // of the picture, and beside the corner beyond however near that is
+    const within = (before: boolean, at: string): string => // inside the picture, and next to the corner at any zoom
       before ? `clamp(0px, calc(${at} - 24px), calc(100% - 48px))` : `clamp(24px, ${at}, calc(100% - 24px))`;
     made.style.left = within(kx === 0, x);
     made.style.top = within(ky === 3, y);
     return made;
   }
 
-  /** Boxes with their names, and a pixel where one is chosen. A corner that has the focus keeps it. */
+  /** Boxes with their names, and a pixel if one is selected. A focused corner keeps the focus. */
   outlines(boxes: readonly Outlined[], pixel?: [number, number]): void {
     const held = this.over.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset["corner"] : undefined;
     this.last = boxes;

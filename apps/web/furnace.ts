@@ -1,10 +1,10 @@
-// Furnaces to play with: other exponents, other numbers of samples, read anew.
+// Furnaces with changeable exponents and numbers of samples, recomputed.
 import { Asker } from "./answers";
 import { choice } from "./controls";
 import { el, minus } from "./dom";
 import { Lesson } from "./lessons";
 
-/** An s and an N to choose, and what each furnace reads with them. */
+/** An s and an N to choose, and the result of each furnace for them. */
 export function furnacePanel(asker: Asker, lesson: Lesson): HTMLElement {
   const { s: sharpness, n: numbers } = lesson.furnace!, answer = lesson.answer as { n: number };
   let s = lesson.furnace!.own, n = answer.n, asked = 0;

@@ -1,4 +1,4 @@
-// One pixel opened: its hemisphere as a picture, its draws as points, its running mean, its largest sample in parts.
+// One pixel: its hemisphere as a picture, its draws as points, its running mean, the factors of its largest sample.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,10 +42,10 @@ std::string mean_chart(const std::vector<double>& mean, std::optional<double> re
     return chart.str();
 }
 
-constexpr std::uint64_t draw_cost = 400;  // of a draw that is told one by one, in samples of a pixel
+constexpr std::uint64_t draw_cost = 400;  // cost of reporting one draw, in samples of a pixel
 
-/// What is told of an open pixel, part by part.
-struct Told {
+/// The response for a pixel, part by part.
+struct OpenPixelReply {
     std::shared_ptr<const OpenPixel> open;
     Disk view;
     std::string css;
@@ -63,7 +63,7 @@ struct Told {
         out = {{"shape", bench().experiment.shapes.at(shape).name}, {"mirror", view.place(open->mirror())},
             {"draws", ordered_json::array()}};
     }
-    void tell_draws(std::size_t from, std::size_t to) {
+    void describe_draws(std::size_t from, std::size_t to) {
         count_work((to - from) * draw_cost);
         for (const PixelSample& s : std::span(all).subspan(from, to - from)) {
             if (s.wi.z <= 0) ++under;
@@ -74,13 +74,13 @@ struct Told {
             out["draws"].push_back(std::move(at));
         }
     }
-    void tell_mean(const std::optional<double>& reference) {
+    void describe_mean(const std::optional<double>& reference) {
         const std::vector<double> mean = running_mean(all);
         out["mean"] = mean.empty() ? "0" : figures(mean.back());
         if (reference) out["reference"] = figures(*reference);
         out["chart"] = mean_chart(mean, reference, css);
     }
-    void tell() {
+    void send() {
         out["under"] = under;
         out["lights"] = ordered_json::array();
         for (const PixelLight& light : open->lights()) {
@@ -90,44 +90,45 @@ struct Told {
             out["lights"].push_back({{"name", light.name}, {"rim", rim}, {"angle", light.angular_radius}});
         }
         if (largest) out["largest"] = largest_in_parts(*largest, *open);
-        say(out);
+        respond(out);
     }
 };
 
 }  // namespace
 
 /// {i, j, arm, n, css, reference: whether it is computed} -> draws, lights, the running mean and the largest sample; {}
-/// where the pixel sees nothing.
+/// if the pixel sees nothing.
 CRESCENT_EXPORT(pixel)()->void {
-    const ordered_json asked = request();
-    const int i = asked.at("i").get<int>(), j = asked.at("j").get<int>();
+    const ordered_json query = request();
+    const int i = query.at("i").get<int>(), j = query.at("j").get<int>();
     const std::shared_ptr<const OpenPixel> open = open_pixel(i, j);
-    if (!open) return say(ordered_json::object());
-    const auto of = std::make_shared<Told>(Told{open, Disk(open->mirror()), asked.at("css").get<std::string>(), {}});
-    const auto n = asked.at("n").get<std::uint64_t>();
-    const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
-    const bool known = asked.at("reference").get<bool>();
+    if (!open) return respond(ordered_json::object());
+    const auto of = std::make_shared<OpenPixelReply>(
+        OpenPixelReply{open, Disk(open->mirror()), query.at("css").get<std::string>(), {}});
+    const auto n = query.at("n").get<std::uint64_t>();
+    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    const bool known = query.at("reference").get<bool>();
     Parts parts{[=] { of->draw(sampler, n); }};
     const std::size_t draws = n * directions_per_sample(sampler), block = most_of_part / draw_cost;
     for (std::size_t from = 0; from < draws; from += block)
-        parts.emplace_back([=] { of->tell_draws(from, std::min(draws, from + block)); });
+        parts.emplace_back([=] { of->describe_draws(from, std::min(draws, from + block)); });
     parts.emplace_back([=] {
         const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
-        of->tell_mean(known ? std::optional<double>(bench().reference.y.at(at)) : std::nullopt);
+        of->describe_mean(known ? std::optional<double>(bench().reference.y.at(at)) : std::nullopt);
     });
-    parts.emplace_back([=] { of->tell(); });
+    parts.emplace_back([=] { of->send(); });
     begin(std::move(parts));
 }
 
-/// {i, j, arm, what, size} -> the picture of a hemisphere for disk(), `size` pixels across: f L cos, or where `what` is
-/// "pdf" the arm's density (of an arm of two techniques, of the first).
+/// {i, j, arm, what, size} -> the picture of a hemisphere for disk(), `size` pixels across: f L cos, or if `what` is
+/// "pdf" the sampler's density (for two techniques, that of the first).
 CRESCENT_EXPORT(hemisphere)()->void {
-    const ordered_json asked = request();
-    const std::shared_ptr<const OpenPixel> open = open_pixel(asked.at("i").get<int>(), asked.at("j").get<int>());
-    const int size = asked.at("size").get<int>();
+    const ordered_json query = request();
+    const std::shared_ptr<const OpenPixel> open = open_pixel(query.at("i").get<int>(), query.at("j").get<int>());
+    const int size = query.at("size").get<int>();
     if (!open) return begin(painted(Disk({0, 0, 1}), size, [](Vec3d) { return 0; }));
-    const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
-    const bool pdf = asked.at("what").get<std::string>() == "pdf";
+    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    const bool pdf = query.at("what").get<std::string>() == "pdf";
     begin(painted(Disk(open->mirror()), size, [=](Vec3d wi) {
         return pdf ? open->pdf(sampler, wi) : open->f(wi, open->disk_met(wi)) * open->light(wi) * wi.z;
     }));

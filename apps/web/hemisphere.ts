@@ -1,7 +1,7 @@
 // The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
-// running mean, the largest sample taken apart.
+// running mean, the factors of the largest sample.
 import { choice } from "./controls";
-import { DoorError } from "./door";
+import { DoorError } from "./api";
 import { el, made } from "./dom";
 import { Model } from "./model";
 import { State } from "./state";
@@ -41,7 +41,7 @@ function marks(pen: CanvasRenderingContext2D, pixel: Opened): void {
   }
 }
 
-/** The draws: area by weight, those that met a light square, so that it is told without colour. */
+/** The draws: area by weight, those that met a light square, so that it is visible without colour. */
 function points(pen: CanvasRenderingContext2D, pixel: Opened): void {
   for (const [x, y, side, met] of pixel.draws) {
     if (met === -2) continue;
@@ -65,7 +65,8 @@ function largestTable(parts: Record<string, string>): HTMLElement {
     el("tr", {}, el("th", { scope: "row" }, name), el("td", { class: "n" }, value)))));
 }
 
-/** Fills `root` with pixel (i, j) under an arm, where that is still wanted; show(): once its words are there. Throws DoorError. */
+/** Fills `root` with pixel (i, j) under an arm, if it is still wanted; show(): called once its text is there. Throws
+ *  DoorError. */
 async function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number, wanted: () => boolean, show: () => void): Promise<void> {
   const pixel = await model.parts<Opened>(wanted, "pixel", { i, j, arm: name, n, css: `c${arm % 6}`, reference: model.referenceDone });
   if (!pixel) return;
@@ -100,8 +101,8 @@ function pixelFailed(root: HTMLElement, error: unknown): void {
   root.replaceChildren(el("p", { class: "bad" }, `This pixel cannot be opened: ${words}.`));
 }
 
-/** The pixel of the state in `root`, with the choice whose draws are shown; latest(): no other was opened since; again():
-    another arm was chosen. */
+/** The pixel of the state in `root`, with the choice of the arm whose draws are shown; latest(): no other was opened
+ *  since; again(): another arm was chosen. */
 export async function openPixel(root: HTMLElement, model: Model, state: State, latest: () => boolean, again: () => void): Promise<void> {
   const { pixel } = state, { described: d } = model;
   if (!pixel) return;
@@ -109,7 +110,7 @@ export async function openPixel(root: HTMLElement, model: Model, state: State, l
   const inside = el("div"), arms = state.arms.map((arm, k): [string, string] => [String(k), arm]);
   const whose = choice("whose", "draws of", arms, String(state.arm), (value) => { state.arm = Number(value); again(); });
   const s = model.shown[state.arm] ?? model.shown[0]!;
-  const show = (): void => { // what stood there stands until this one has its words
+  const show = (): void => { // the old contents stay until this one has its text
     if (inside.isConnected) return;
     const held = document.activeElement?.id === "whose";
     root.replaceChildren(whose, inside);

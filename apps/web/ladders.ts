@@ -1,8 +1,8 @@
-// RMSE against N, one chart a region, as the core draws it.
+// RMSE against N, one chart per region, drawn by the core.
 import { el, made } from "./dom";
 import { Model } from "./model";
 
-/** The charts of what the model has measured, unless it opens something else meanwhile. */
+/** The charts of the model's measurements, unless it opens something else meanwhile. */
 export async function showLadders(root: HTMLElement, model: Model): Promise<void> {
   const { described, shown } = model;
   await model.turns.pass();
@@ -10,8 +10,8 @@ export async function showLadders(root: HTMLElement, model: Model): Promise<void
   root.replaceChildren(...described.regions.map(({ name }) => {
     const series = shown.map((s) => ({
       arm: s.name,
-      points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)),
+      points: s.sampleCounts.map((r) => [r.n, Number(r.metrics.metrics[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)),
     }));
-    return el("figure", { class: "narrow" }, made(model.door.say("ladder_chart", { region: name, series })));
+    return el("figure", { class: "narrow" }, made(model.api.say("ladder_chart", { region: name, series })));
   }));
 }

@@ -1,5 +1,5 @@
-// A lesson on the page: it asks, measures, shows the guess beside what was measured, and lets play. The sheet for
-// teachers is made of the same data and of numbers that are measured when it is opened.
+// A lesson on the page: it asks, measures, shows the guess next to the measurement, and lets the user experiment. The
+// sheet for teachers is made of the same data and of numbers that are measured when it is opened.
 import { Asker, Found } from "./answers";
 import { boxQuestion } from "./box";
 import { checkPanel, samplerPictures } from "./check";
@@ -13,7 +13,7 @@ export interface Lessons {
   model: Model;
   asker(): Asker;
   answered(lesson: Lesson, answer: string): void;
-  open(pixel: [number, number]): void; // its hemisphere, where none is open
+  open(pixel: [number, number]): void; // its hemisphere, if none is open
   go(lesson: string): void;
   say(line: string): void;
 }
@@ -58,10 +58,10 @@ function question(lesson: Lesson, asker: Asker, given: string | undefined, take:
 
 const unsaid = "The lines above say what was found; it is not what this lesson has words for.";
 
-/** Words with formulas, as the core sets them. */
-const set = (model: Model, words: string): DocumentFragment => made(model.door.say("html", words));
+/** Words with formulas, formatted by the core. */
+const set = (model: Model, words: string): DocumentFragment => made(model.api.say("html", words));
 
-/** An answer as the question words it. */
+/** An answer in the words of the question. */
 function worded({ ask }: Lesson, value: string): string {
   if (ask.kind === "slider") return `${value} ${ask.unit}`;
   if (ask.kind === "choice") return ask.options.find((o) => o.value === value)?.words ?? (value === "overlap" ? "none: the intervals of the seeds overlap" : value);

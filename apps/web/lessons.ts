@@ -1,30 +1,30 @@
-// Lessons: what is asked, what answers it, what one may play with. No number is typed in here: the core measures, and
-// names what it found; of `says` that sentence is shown which belongs to it. Formulas stand between dollar signs.
+// Lessons: the question, the measurement that answers it, and the values that may be changed. No number is hard-coded:
+// the core measures and names the result, which selects a sentence of `says`. Formulas are between dollar signs.
 
-/** An arm over a region at one N on several seeds; `as`: its name where that is not the arm's. */
+/** An arm over a region at one N on several seeds; `as`: its name if that is not the arm's. */
 export interface Measured { arm: string; n: number; region: "H" | "S"; seeds: number; set?: readonly string[]; as?: string }
 
 export type Ask =
   | { kind: "choice"; options: readonly { value: string; words: string }[] }
-  | { kind: "region" } // a box, drawn or typed
+  | { kind: "region" } // a box, drawn or entered
   | { kind: "slider"; low: number; high: number; step: number; unit: string };
 
 /** How the core answers: from measurements, from one sample, from a furnace, or from the verdicts of samplers. */
 export type Answer =
-  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // beside: told, not asked
+  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[]; beside?: readonly Measured[] } // `beside`: reported only
   | { by: "firefly"; arm: string; n: number; region: "H" | "S" }
   | { by: "furnace"; name: string; n: number }
   | { by: "support" | "chi-square" | "t-test" | "which"; samplers: readonly string[]; theta: number; surface?: string };
 
 export interface Lesson {
   id: string; title: string; minutes: number; aim: string; question: string; ask: Ask; answer: Answer;
-  says: Readonly<Record<string, string>>; // by what was found
+  says: Readonly<Record<string, string>>; // by the name of the result
   arms: readonly string[]; n: number; view?: "heat"; play: readonly string[]; // paths of settings, or "n"
-  check?: { samplers: readonly { value: string; words: string }[]; theta: readonly number[] }; // plays with these instead
-  furnace?: { s: readonly number[]; n: readonly number[]; own: number }; // or with these; own: the experiment's s
+  check?: { samplers: readonly { value: string; words: string }[]; theta: readonly number[] }; // uses these instead
+  furnace?: { s: readonly number[]; n: readonly number[]; own: number }; // or these; own: the experiment's s
 }
 
-/** Whether it plays with the bench below it. */
+/** Whether it uses the bench below it. */
 export const onBench = (lesson: Lesson): boolean => !lesson.check && !lesson.furnace;
 
 const names = (words: readonly string[]): readonly { value: string; words: string }[] =>
@@ -139,7 +139,7 @@ export const lessons: readonly Lesson[] = [
     id: "t-test", title: "A t-test rejects. Is the sampler wrong?", minutes: 8, arms: ["phong"], n: 64, play: [],
     aim: "A t-test needs a variance. Where the tail has none, its rejection says nothing.",
     question: "Phong at the normal, on a surface that is partly diffuse: its mean is compared with the integral, and a t-test rejects. Is the sampler proved wrong?",
-    ask: { kind: "choice", options: [{ value: "wrong", words: "yes, rejected is rejected" }, { value: "inconclusive", words: "no, it cannot be told that way" }, { value: "right", words: "no, it is right" }] },
+    ask: { kind: "choice", options: [{ value: "wrong", words: "yes, rejected is rejected" }, { value: "inconclusive", words: "no, it cannot be decided that way" }, { value: "right", words: "no, it is right" }] },
     answer: { by: "t-test", samplers: ["phong"], theta: 0, surface: "Lambert + Phong" },
     check: { samplers: names(["phong", "cosine", "mixture", "uniform"]), theta: [0, 15, 30, 45, 60, 75, 85] },
     says: {
@@ -176,7 +176,7 @@ export const lessons: readonly Lesson[] = [
   },
   {
     id: "fault", title: "Find the fault", minutes: 10, arms: ["cosine", "phong"], n: 64, play: [],
-    aim: "A sampler is judged by its draws, its density and its weight, each against the others.",
+    aim: "A sampler is checked by its draws, its density and its weight, each against the others.",
     question: "Six samplers, one of them right, five with one fault each. Which one is right? The pictures show 512 draws of each over the density that it claims.",
     ask: { kind: "choice", options: [..."abcdef"].map((letter) => ({ value: letter, words: `sampler ${letter}` })) },
     answer: { by: "which", samplers: six, theta: 45 },

@@ -1,10 +1,10 @@
-// Unpacks the module and starts the page; a browser that cannot run it is told so.
+// Unpacks the module and starts the page; a browser that cannot run it shows a message.
 import { byId, el } from "./dom";
 import { Data, Page } from "./page";
 
 declare const DecompressionStream: new (format: "gzip") => ReadableWritablePair<Uint8Array, Uint8Array>;
 
-/** What base64 stands for. */
+/** Decodes base64. */
 function bytesOf(base64: string): Uint8Array {
   const { fromBase64 } = Uint8Array as unknown as { fromBase64?: (words: string) => Uint8Array }; // of 2025, ten times as fast
   if (fromBase64) return fromBase64.call(Uint8Array, base64);

@@ -1,5 +1,5 @@
-// What lessons ask: an arm over a region at one N on several seeds, the largest sample, furnaces. Every number with its
-// seeds; conclude.cpp says what they come to.
+// Measurements for lessons: an arm over a region at one N on several seeds, the largest sample, furnaces. Every number
+// comes with its seeds; conclude.cpp draws the conclusions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,16 +18,16 @@ double rms_of(const std::vector<double>& a, const std::vector<double>& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// RMSE of an arm over a box on several seeds, put together part by part.
+/// RMSE of an arm over a box on several seeds, accumulated part by part.
 struct Measuring {
-    explicit Measuring(const ordered_json& asked)
-        : box(tile_of(asked_box(asked))),
-          sampler(arm_of(asked.at("arm").get<std::string>()).sampler),
-          n(asked.at("n").get<std::uint64_t>()),
-          name(fmt::format("{}, N = {}: RMSE of {}", asked.value("as", asked.at("arm").get<std::string>()), n,
-              asked.at("region").get<std::string>())),
+    explicit Measuring(const ordered_json& query)
+        : box(tile_of(requested_box(query))),
+          sampler(arm_of(query.at("arm").get<std::string>()).sampler),
+          n(query.at("n").get<std::uint64_t>()),
+          name(fmt::format("{}, N = {}: RMSE of {}", query.value("as", query.at("arm").get<std::string>()), n,
+              query.at("region").get<std::string>())),
           film(bench().experiment.image.width, bench().experiment.image.height, bench().scene.s()),
-          y(asked.at("seeds").get<std::size_t>(), std::vector<double>(pixels_of(box))) {}
+          y(query.at("seeds").get<std::size_t>(), std::vector<double>(pixels_of(box))) {}
 
     void add_reference(const TileBox& part) { reference_over(part, film); }
     void add_film(const TileBox& part, std::size_t seed) {
@@ -41,7 +41,7 @@ struct Measuring {
                 hits += found.light_hits[from];
             }
     }
-    void tell() const {
+    void send() const {
         std::vector<double> reference(pixels_of(box)), rmse;
         for (int j = box.y0; j < box.y1; ++j)
             for (int i = box.x0; i < box.x1; ++i)
@@ -49,12 +49,12 @@ struct Measuring {
         for (const std::vector<double>& one : y) rmse.push_back(rms_of(one, reference));
         const auto pixels = static_cast<double>(pixels_of(box));
         const double directions = pixels * double(n) * double(directions_per_sample(sampler)) * double(y.size());
-        ordered_json out = {{"name", name}, {"n", n}, {"median", told(quantile(rmse, 0.5))},
-            {"q05", told(quantile(rmse, 0.05))}, {"q95", told(quantile(rmse, 0.95))},
-            {"mean", told(std::accumulate(reference.begin(), reference.end(), 0.0) / pixels)},
-            {"met", told(double(hits) / directions)}, {"rmse", ordered_json::array()}};
-        for (const double x : rmse) out["rmse"].push_back(told(x));
-        say(out);
+        ordered_json out = {{"name", name}, {"n", n}, {"median", json_number(quantile(rmse, 0.5))},
+            {"q05", json_number(quantile(rmse, 0.05))}, {"q95", json_number(quantile(rmse, 0.95))},
+            {"mean", json_number(std::accumulate(reference.begin(), reference.end(), 0.0) / pixels)},
+            {"met", json_number(double(hits) / directions)}, {"rmse", ordered_json::array()}};
+        for (const double x : rmse) out["rmse"].push_back(json_number(x));
+        respond(out);
     }
 
     TileBox box;
@@ -74,7 +74,7 @@ public:
     std::vector<std::vector<double>> y;  // by seed
 };
 
-/// The largest sample of a box, part by part; of equal ones, the first from the bottom-left.
+/// The largest sample of a box, part by part; among equal ones, the first from the bottom-left.
 struct Largest {
     float x = 0;
     int i = 0, j = 0;
@@ -86,9 +86,9 @@ struct Largest {
         const float here = film.largest[static_cast<std::size_t>(at)];
         if (here > x || (here == x && std::pair(here_j, here_i) < std::pair(j, i))) x = here, i = here_i, j = here_j;
     }
-    void tell(const std::string& sampler, std::uint64_t n) const {
+    void send(const std::string& sampler, std::uint64_t n) const {
         if (!(x > 0))
-            return say(ordered_json{{"answer", "none"}, {"kind", "none"}, {"lines", {"no sample met any light"}}});
+            return respond(ordered_json{{"answer", "none"}, {"kind", "none"}, {"lines", {"no sample met any light"}}});
         const std::vector<PixelSample> all =
             OpenPixel(bench().scene, i, j).samples(sampler, n, bench().experiment.seed);
         const PixelSample& s = *std::ranges::max_element(all, {}, &PixelSample::x);
@@ -97,11 +97,11 @@ struct Largest {
         const auto& most = *std::ranges::max_element(factors, {}, &std::pair<std::string, double>::second);
         const std::string line = fmt::format("pixel ({}, {}): X = {} of f = {}/sr, L = {}, cos = {}, 1/p = {} sr", i, j,
             figures(s.x), figures(s.f), figures(s.light), figures(s.cos), figures(1 / double(s.pdf)));
-        say(ordered_json{{"answer", most.first}, {"kind", most.first}, {"lines", {line}}, {"pixel", {i, j}}});
+        respond(ordered_json{{"answer", most.first}, {"kind", most.first}, {"lines", {line}}, {"pixel", {i, j}}});
     }
 };
 
-/// What the furnaces read, one after another, and why the one that is asked about is off.
+/// The results of the furnaces, one after another, and why the requested one deviates.
 struct Furnaces {
     explicit Furnaces(std::string of) : name(std::move(of)) {}
 
@@ -115,7 +115,7 @@ struct Furnaces {
         count_work(draws.samples.size() * furnace_cost);
         add(read_furnace(std::move(draws)));
     }
-    void tell() const { say(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}}); }
+    void send() const { respond(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}}); }
 
 private:
     void add(const FurnaceResult& f) {
@@ -131,51 +131,53 @@ private:
         else if (off > 4 * f.se) why = "bug";
     }
     std::string name, why = "none";
-    FurnaceDraws draws;  // of the furnace that is to be read
+    FurnaceDraws draws;  // of the furnace that is next
     ordered_json lines = ordered_json::array();
 };
 
 }  // namespace
 
-/// {arm, n, region, box, seeds, as} -> {name, n, rmse: [one a seed], median, q05, q95, mean, met}; `as`: its name where
+/// {arm, n, region, box, seeds, as} -> {name, n, rmse: [one per seed], median, q05, q95, mean, met}; `as`: its name if
 /// that is not the arm's; mean: of the reference's Y; met: the share of directions that met a light.
 CRESCENT_EXPORT(measure)()->void {
-    const ordered_json asked = request();
-    const auto m = std::make_shared<Measuring>(asked);
+    const ordered_json query = request();
+    const auto m = std::make_shared<Measuring>(query);
     Parts parts{prepare_reference};
     for (const TileBox& part : parts_of(m->box, reference_cost)) parts.emplace_back([=] { m->add_reference(part); });
     for (const TileBox& part : parts_of(m->box, cost_of(m->sampler, m->n)))
         for (std::size_t k = 0; k < m->y.size(); ++k) parts.emplace_back([=] { m->add_film(part, k); });
-    parts.emplace_back([=] { m->tell(); });
+    parts.emplace_back([=] { m->send(); });
     begin(std::move(parts));
 }
 
-/// {arm, n, box} -> the largest sample of a box: X = f L cos / p taken apart, which factor is the largest, its pixel.
+/// {arm, n, box} -> the largest sample of a box: the factors of X = f L cos / p, which factor is the largest, its
+/// pixel.
 CRESCENT_EXPORT(firefly)()->void {
-    const ordered_json asked = request();
-    const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
-    const auto n = asked.at("n").get<std::uint64_t>();
+    const ordered_json query = request();
+    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    const auto n = query.at("n").get<std::uint64_t>();
     const auto most = std::make_shared<Largest>();
     Parts parts;
-    for (const TileBox& part : parts_of(tile_of(asked_box(asked)), cost_of(sampler, n)))
+    for (const TileBox& part : parts_of(tile_of(requested_box(query)), cost_of(sampler, n)))
         parts.emplace_back([=] { most->look(part, sampler, n); });
-    parts.emplace_back([=] { most->tell(sampler, n); });
+    parts.emplace_back([=] { most->send(sampler, n); });
     begin(std::move(parts));
 }
 
-/// {n, name} -> what that furnace of the experiment reads at n samples and why; a line for each furnace.
-/// tail: it is off and k-hat says that the variance is infinite; bug: it is off by more than four standard errors
-/// though it is not; precision: float sums of n terms may be that far off, n 2^-24; none: it is not off.
+/// {n, name} -> the value of that furnace of the experiment at n samples and why; a line for each furnace. tail: it
+/// deviates and k-hat indicates infinite variance; bug: it deviates by more than four standard errors and the variance
+/// is finite; precision: the deviation is within the error of float sums of n terms, n 2^-24; none: it does not
+/// deviate.
 CRESCENT_EXPORT(furnaces_of)()->void {
-    const ordered_json asked = request();
-    const auto n = asked.at("n").get<std::uint64_t>();
-    const auto found = std::make_shared<Furnaces>(asked.at("name").get<std::string>());
+    const ordered_json query = request();
+    const auto n = query.at("n").get<std::uint64_t>();
+    const auto found = std::make_shared<Furnaces>(query.at("name").get<std::string>());
     Parts parts;
     for (const FurnacePlan& plan : bench().experiment.furnaces) {
         parts.emplace_back([=] { found->draw(plan, n); });
         parts.emplace_back([=] { found->read(); });
     }
-    parts.emplace_back([=] { found->tell(); });
+    parts.emplace_back([=] { found->send(); });
     begin(std::move(parts));
 }
 

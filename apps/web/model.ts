@@ -1,6 +1,6 @@
-// The bench behind the pictures: an experiment as it is set, its films growing rung by rung, its reference, its meters.
-// One instance of the module on the page's own thread puts the tiles together; workers compute them.
-import { Box, Door, DoorError, pixelsOf } from "./door";
+// The state behind the pictures: the experiment with its settings, its films at growing sample counts, its reference,
+// its metrics. One instance of the module on the page's own thread assembles the tiles; workers compute them.
+import { Box, Api, DoorError, pixelsOf } from "./api";
 import { Opening } from "./jobs";
 import { Pool } from "./pool";
 import { Turns } from "./turns";
@@ -16,18 +16,18 @@ export interface Described {
   title: string; width: number; height: number; seed: number; s: number; n: number; firefly_k: number; hash: string;
   arms: Arm[]; regions: Region[]; knobs: Knob[]; source: string;
 }
-export interface Meter { value: number | string; text: string; published?: string }
-export interface Meters {
-  key: string; largest: number; bad: number; hash: string; meters: Record<string, Meter>; unsure?: string[];
+export interface Metric { value: number | string; text: string; published?: string }
+export interface Metrics {
+  key: string; largest: number; bad: number; hash: string; metrics: Record<string, Metric>; unsure?: string[];
 }
 export interface Tail { k?: number; se?: number; heavy?: boolean; text?: string; words: string }
 
-/** One picture: an arm of the experiment and what is known of it so far. */
+/** One picture: an arm of the experiment and its results so far. */
 export interface Shown {
-  arm: number; name: string; n: number; rungs: { n: number; meters: Meters }[]; tails: Record<string, Tail>;
+  arm: number; name: string; n: number; sampleCounts: { n: number; metrics: Metrics }[]; tails: Record<string, Tail>;
 }
 
-/** Whom the model tells. */
+/** The listener of the model. */
 export interface Viewer {
   opened(described: Described, shown: Shown[]): void;
   painted(index: number, box: Box): void; // index -1: the reference
@@ -37,31 +37,31 @@ export interface Viewer {
 }
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
-const referenceAfter = 64; // rungs up to here come before it
+const referenceAfter = 64; // sample counts up to this one are computed before it
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
-  door: Door;
+  api: Api;
   described!: Described;
   shown: Shown[] = [];
   referenceDone = false;
   finished = false;
   startedAt = 0;
-  took = 0; // ms to the last meter, and to the last film
+  took = 0; // ms to the last metric, and to the last film
   filmsTook = 0;
-  private readonly most: number; // samples of one part, and what a pixel counts: of the reference; of a film, its samples apart
+  private readonly most: number; // samples of one part, and the cost of a pixel: of the reference; of a film, without its samples
   private readonly referenceCost: number;
   private readonly filmCost: number;
   private era = 0;
-  private asking: Promise<unknown> = Promise.resolve(); // what is asked in parts, one after another
+  private asking: Promise<unknown> = Promise.resolve(); // requests in parts, one after another
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
-  /** `door`: an instance of the module for the page's own thread. */
-  constructor(private readonly module: WebAssembly.Module, door: Door, readonly pool: Pool, readonly turns: Turns, private readonly viewer: Viewer) {
-    this.door = door;
-    this.most = this.door.number("most_of_part");
-    this.referenceCost = this.door.number("reference_cost");
-    this.filmCost = this.door.number("film_cost");
+  /** `api`: an instance of the module for the page's own thread. */
+  constructor(private readonly module: WebAssembly.Module, api: Api, readonly pool: Pool, readonly turns: Turns, private readonly viewer: Viewer) {
+    this.api = api;
+    this.most = this.api.number("most_of_part");
+    this.referenceCost = this.api.number("reference_cost");
+    this.filmCost = this.api.number("film_cost");
   }
 
   private boxes(cost: number, [width, height]: readonly [number, number] = [this.described.width, this.described.height]): Box[] {
@@ -71,68 +71,68 @@ export class Model {
     return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques + this.filmCost, 0);
   }
 
-  /** A call in parts, each in a turn that has room: one question after another. `take`: what is done with the answer before
-      the next. Undefined where it is no longer wanted. */
+  /** A call in parts, each in a turn that has room: one request after another. `take` is applied to the result before
+   *  the next. Undefined if it is no longer wanted. */
   parts<T, R = T>(wanted: () => boolean, call: string, request?: unknown, given: number[] = [], take = (answer: T): R => answer as unknown as R): Promise<R | undefined> {
     const done = this.asking.then(async () => {
       for (let next = call; ; next = "go_on") {
         await this.turns.pass();
         if (!wanted()) return undefined;
-        const said = next === call ? this.door.ask<T | { more: number }>(call, request, ...given) : this.door.ask<T | { more: number }>(next);
-        this.turns.count(this.door.number("worked"));
-        if (!(said as object).hasOwnProperty("more")) return take(said as T);
+        const response = next === call ? this.api.ask<T | { more: number }>(call, request, ...given) : this.api.ask<T | { more: number }>(next);
+        this.turns.count(this.api.number("worked"));
+        if (!(response as object).hasOwnProperty("more")) return take(response as T);
       }
     });
-    this.asking = done.catch(() => {}); // whoever asked is told
+    this.asking = done.catch(() => {}); // the caller has the error
     return done;
   }
 
-  /** Opens, and begins to compute up to n samples a pixel of these arms; throws DoorError for settings that are wrong. */
+  /** Opens, and begins to compute up to n samples per pixel of these arms; throws DoorError for invalid settings. */
   async run(opening: Opening, arms: string[], n: number): Promise<void> {
-    const era = ++this.era, rungs = [...ladder.filter((rung) => rung > 1 && rung < n), n];
+    const era = ++this.era, sampleCounts = [...ladder.filter((sampleCount) => sampleCount > 1 && sampleCount < n), n];
     this.startedAt = performance.now();
     this.finished = this.referenceDone = false;
     this.pool.open({ ...opening, published: "" });
     try {
-      this.described = this.door.ask<Described>("open", opening);
+      this.described = this.api.ask<Described>("open", opening);
       this.shown = arms.map((name) => {
         const arm = this.described.arms.findIndex((a) => a.name === name);
-        return { arm, name, n: 0, rungs: [], tails: {} };
+        return { arm, name, n: 0, sampleCounts: [], tails: {} };
       });
       for (const [index, s] of this.shown.entries()) {
         if (!(await this.room(era, index))) return;
-        this.door.number("begin", index, s.arm, rungs[0]!);
+        this.api.number("begin", index, s.arm, sampleCounts[0]!);
       }
     } catch (error) {
-      this.door = new Door(this.module); // a call that failed leaves its instance as it was in the midst of it
+      this.api = new Api(this.module); // a failed call leaves its instance in an intermediate state
       throw error;
     }
     this.viewer.opened(this.described, this.shown);
     await this.pool.ready;
     if (era !== this.era) return;
     try {
-      await this.compute(era, opening, rungs);
+      await this.compute(era, opening, sampleCounts);
     } catch (error) {
       if (era === this.era) this.viewer.failed(error instanceof DoorError ? error : new DoorError("bug", String(error)));
     }
   }
 
-  /** What is under way is dropped. */
+  /** Drops the work in progress. */
   stop(): void {
     ++this.era;
     this.pool.cancel();
   }
 
-  /** Films first: the reference costs more than a film at the rungs before it, and no picture waits for it. Rungs that
-      were over before it was there are made once more, for their meters. */
-  private async compute(era: number, opening: Opening, rungs: number[]): Promise<void> {
-    const known = this.keep(opening), early = rungs.filter((n) => !known && n <= referenceAfter), late = rungs.filter((n) => !early.includes(n));
+  /** Films first: the reference costs more than a film at the sample count before it, and no picture waits for it.
+   *  Sample counts completed before the reference are computed again, for their metrics. */
+  private async compute(era: number, opening: Opening, sampleCounts: number[]): Promise<void> {
+    const known = this.keep(opening), early = sampleCounts.filter((n) => !known && n <= referenceAfter), late = sampleCounts.filter((n) => !early.includes(n));
     const watched = early.filter((_, k) => k === 0 || k !== early.length - 2); // the last but one would cost a fifth of the time
-    for (const n of watched) await this.rung(era, n);
+    for (const n of watched) await this.sampleCount(era, n);
     this.filmsTook = performance.now() - this.startedAt;
     await this.reference(era);
     for (const n of early.slice(0, -1)) await this.again(era, n);
-    for (const n of late) await this.rung(era, n);
+    for (const n of late) await this.sampleCount(era, n);
     if (era !== this.era) return;
     if (late.length > 0) this.filmsTook = performance.now() - this.startedAt;
     this.finished = true;
@@ -141,9 +141,9 @@ export class Model {
     await this.tails(era);
   }
 
-  private async rung(era: number, n: number): Promise<void> {
+  private async sampleCount(era: number, n: number): Promise<void> {
     if (era !== this.era) return;
-    this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, n));
+    this.shown.forEach((s, index) => this.api.number("begin", index, s.arm, n));
     const boxes = this.boxes(this.cost(this.shown, n));
     let left = boxes.length;
     await Promise.all(boxes.map(async (box) => {
@@ -155,46 +155,46 @@ export class Model {
     }));
   }
 
-  /** The memory of a film, of the reference for -1; undefined where something else was opened meanwhile. */
-  private room(era: number, film: number): Promise<object | undefined> { return this.parts<object>(() => era === this.era, "film_room", undefined, [film]); }
+  /** The memory of a film, of the reference for -1; undefined if something else was opened meanwhile. */
+  private room(era: number, film: number): Promise<object | undefined> { return this.parts<object>(() => era === this.era, "film_buffer", undefined, [film]); }
 
-  /** A rung for its meters alone, in a film that no picture shows. */
+  /** A sample count computed only for its metrics, in a film that no picture shows. */
   private async again(era: number, n: number): Promise<void> {
     const spare = this.shown.length;
     for (const s of this.shown) {
       if (!(await this.room(era, spare))) return;
-      this.door.number("begin", spare, s.arm, n);
+      this.api.number("begin", spare, s.arm, n);
       await Promise.all(this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
-      const meters = await this.metersOf(era, spare);
-      if (!meters) return;
-      s.rungs.push({ n, meters });
-      s.rungs.sort((a, b) => a.n - b.n);
+      const metrics = await this.metersOf(era, spare);
+      if (!metrics) return;
+      s.sampleCounts.push({ n, metrics });
+      s.sampleCounts.sort((a, b) => a.n - b.n);
     }
   }
 
-  /** One tile of each arm put into its film, [film, arm]; false where something else was opened meanwhile. */
+  /** Puts one tile of each arm into its film, [film, arm]; false if something else was opened meanwhile. */
   private async tile(era: number, films: [number, number][], n: number, box: Box): Promise<boolean> {
     const { bytes } = await this.pool.ask({ kind: "tile", arms: films.map(([, arm]) => arm), n, box });
     if (era !== this.era || !bytes) return false;
     films.forEach(([film], k) => {
-      this.door.give(bytes[k]!);
-      this.door.number("put", film, box.x0, box.y0, box.x1, box.y1);
+      this.api.give(bytes[k]!);
+      this.api.number("put", film, box.x0, box.y0, box.x1, box.y1);
     });
-    this.turns.count(this.door.number("worked"));
+    this.turns.count(this.api.number("worked"));
     return true;
   }
 
-  private metersOf(era: number, film: number): Promise<Meters | undefined> { return this.parts<Meters>(() => era === this.era, "meters", undefined, [film]); }
+  private metersOf(era: number, film: number): Promise<Metrics | undefined> { return this.parts<Metrics>(() => era === this.era, "metrics", undefined, [film]); }
 
-  /** The meters of every arm at the rung that is complete. */
+  /** The metrics of every arm at the sample count that is complete. */
   private async measure(era: number): Promise<void> {
     const all = await Promise.all(this.shown.map((_, index) => this.metersOf(era, index)));
     if (era !== this.era) return;
-    this.shown.forEach((s, index) => s.rungs.push({ n: s.n, meters: all[index]! }));
+    this.shown.forEach((s, index) => s.sampleCounts.push({ n: s.n, metrics: all[index]! }));
     this.viewer.measured();
   }
 
-  /** Where the scale of maps ends. */
+  /** The end of the scale of maps. */
   async top(): Promise<number> {
     const { era } = this;
     return (await this.parts<{ top: number }>(() => era === this.era, "scale", undefined, [this.shown.length]))?.top ?? 1;
@@ -202,10 +202,10 @@ export class Model {
 
   /** A disk that `call` paints, RGBA, `size` pixels across. */
   disk(wanted: () => boolean, call: string, request: Record<string, unknown>, size: number): Promise<ImageData | undefined> {
-    return this.parts(wanted, call, { ...request, size }, [], () => new ImageData(new Uint8ClampedArray(this.door.bytes("disk", 4 * size * size)), size, size));
+    return this.parts(wanted, call, { ...request, size }, [], () => new ImageData(new Uint8ClampedArray(this.api.bytes("disk", 4 * size * size)), size, size));
   }
 
-  /** The reference is kept where only seeds, arms, regions or k have changed; whether all of it is there. */
+  /** The reference is kept if only seeds, arms, regions or k have changed; returns whether it is complete. */
   private keep(opening: Opening): boolean {
     const key = JSON.stringify([opening.text, opening.set.filter((set) => !untouchedByReference.test(set))]);
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
@@ -213,14 +213,14 @@ export class Model {
   }
   private referenceBoxes(): Box[] { return this.boxes(this.referenceCost); }
 
-  /** By quadrature; what is kept is put first. */
+  /** By quadrature; the memory is copied first. */
   private async reference(era: number): Promise<void> {
     const { parts } = this.tiles;
     if (!(await this.room(era, -1))) return;
     const put = (box: Box, bytes: ArrayBuffer): void => {
-      this.door.give(bytes);
-      this.door.number("put_reference", box.x0, box.y0, box.x1, box.y1);
-      this.turns.count(this.door.number("worked"));
+      this.api.give(bytes);
+      this.api.number("put_reference", box.x0, box.y0, box.x1, box.y1);
+      this.turns.count(this.api.number("worked"));
       this.viewer.painted(-1, box);
     };
     for (const { box, bytes } of parts) {
@@ -241,7 +241,8 @@ export class Model {
     if (this.shown[0]!.n > 0) await this.measure(era);
   }
 
-  /** Once the hand rests, and one after another: each takes a worker for a while, and a new setting is to find one free. */
+  /** After the last change, one after another: each occupies a worker for a while, and a new setting must find one
+   *  free. */
   private async tails(era: number): Promise<void> {
     await new Promise((done) => setTimeout(done, 300));
     for (const s of this.shown)
@@ -254,24 +255,24 @@ export class Model {
       }
   }
 
-  /** A question to any worker, of another experiment where one is given: that one is answered whatever is opened meanwhile. */
+  /** A request to any worker, of another experiment if one is given: such a request survives other openings. */
   async ask<T>(call: string, request: unknown, opening?: Opening): Promise<T> {
-    if (!opening) return (await this.pool.ask({ kind: "ask", call, request })).said as T;
-    return (await this.pool.ask({ kind: "ask", call, request, opening }, true)).said as T;
+    if (!opening) return (await this.pool.ask({ kind: "ask", call, request })).response as T;
+    return (await this.pool.ask({ kind: "ask", call, request, opening }, true)).response as T;
   }
 
-  /** The reference of an experiment as a picture, RGBA of a box after another. What is asked last is answered first. */
+  /** The reference of an experiment as a picture, RGBA of one box after another. The last request is computed first. */
   async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
     await this.pool.ready;
     for (const box of this.boxes(this.referenceCost + this.filmCost, size).reverse()) // and its colours
-      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question stands without it
+      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
   }
 
   /** RGBA of a box, rows from the top. */
   pixels(picture: number, index: number, other: number, top: number, box: Box): ImageData {
     const size = 4 * pixelsOf(box), { x0, y0, x1, y1 } = box;
-    const bytes = this.door.bytes("paint", size, picture, index, other, top, x0, y0, x1, y1);
-    this.turns.count(this.door.number("worked"));
+    const bytes = this.api.bytes("paint", size, picture, index, other, top, x0, y0, x1, y1);
+    this.turns.count(this.api.number("worked"));
     return new ImageData(new Uint8ClampedArray(bytes), x1 - x0, y1 - y0);
   }
 }

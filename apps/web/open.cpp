@@ -1,10 +1,10 @@
-// An experiment's text and its settings -> a bench, and what the page has to know of it: arms, regions, knobs.
+// Opens an experiment's text with its settings, and returns what the page needs of it: arms, regions, knobs.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <variant>
 
-#include "door.h"
+#include "api.h"
 
 namespace crescent::web {
 
@@ -33,7 +33,7 @@ void add_material_knobs(const Shape& shape, ordered_json& to) {
         add(knob(shape.name + ".rho_s", "rho_s of " + shape.name, "", 0, 1, false), m.rho_s);
 }
 
-/// A light's lengths and its centre or edges; which way it faces is left to the page's address.
+/// A light's lengths and its centre or edges; its direction can be changed only in the page's address.
 void add_light_knobs(const Light& light, ordered_json& to) {
     ordered_json places = ordered_json::array();  // after the lengths
     std::visit(
@@ -115,30 +115,30 @@ const ArmPlan& arm_of(const std::string& name) {
 
 /// {file, text, set: ["path=value"], published: text or ""} -> what the page shows of it.
 CRESCENT_EXPORT(open)()->void {
-    const ordered_json asked = request();
-    Experiment e = parse(asked.at("text").get<std::string>(), asked.at("file").get<std::string>(),
-        asked.at("set").get<std::vector<std::string>>());
+    const ordered_json query = request();
+    Experiment e = parse(query.at("text").get<std::string>(), query.at("file").get<std::string>(),
+        query.at("set").get<std::vector<std::string>>());
     for (const ArmPlan& arm : e.arms)
         if (!find_arm_info(arm.sampler))
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
-    const std::string published = asked.at("published").get<std::string>();
+    const std::string published = query.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);
-    std::vector<Slot> films;  // room that was taken serves again; two images of the largest size would not fit
+    std::vector<Slot> films;  // allocated memory is reused; two images of the largest size would not fit
     if (opened && e.image.width == opened->experiment.image.width && e.image.height == opened->experiment.image.height)
         films = std::move(opened->slots);
     opened.reset();
     opened = std::make_unique<Bench>(std::move(e));
     opened->slots = std::move(films);
-    say(described(opened->experiment));
+    respond(described(opened->experiment));
 }
 
-/// The samplers that an arm may have, with a line on each.
+/// The samplers that an arm may have, with one line about each.
 CRESCENT_EXPORT(samplers)()->void {
     ordered_json all = ordered_json::array();
     for (const SamplerInfo& info : sampler_infos())
         all.push_back({{"name", info.name}, {"label", info.label}, {"summary", formula::html(info.summary)},
             {"needs_s", info.needs_s}});
-    say(all);
+    respond(all);
 }
 
 }  // namespace crescent::web

@@ -16,15 +16,15 @@ function bundle(entry) {
   return execFileSync("esbuild", [join(web, entry), ...flags], { encoding: "utf8" }).trim();
 }
 
-/** The door itself, to ask what only the core knows: the style of the report, and what each experiment holds. */
+/** The api itself, to ask what only the core knows: the style of the report, and what each experiment holds. */
 async function opened(module) {
-  const made = execFileSync("esbuild", [join(web, "door.ts"), "--format=esm", "--target=es2022"], { encoding: "utf8" });
-  writeFileSync(join(build, "door.mjs"), made);
-  const { Door } = await import(join(build, "door.mjs"));
-  return new Door(module);
+  const made = execFileSync("esbuild", [join(web, "api.ts"), "--format=esm", "--target=es2022"], { encoding: "utf8" });
+  writeFileSync(join(build, "api.mjs"), made);
+  const { Api } = await import(join(build, "api.mjs"));
+  return new Api(module);
 }
 
-function sources(door) {
+function sources(api) {
   const native = JSON.parse(text(join(web, "native.json")));
   const names = readdirSync(experiments).filter((name) => name.endsWith(".toml")).sort();
   names.sort((a, b) => (b === "gallery.toml") - (a === "gallery.toml"));
@@ -33,7 +33,7 @@ function sources(door) {
     const file = `experiments/${name}`, body = text(join(experiments, name));
     const figures = /^published = "(.*?)"/m.exec(body);
     const published = figures ? text(join(experiments, figures[1])) : "";
-    const d = door.ask("open", { file, text: body, published, set: [] });
+    const d = api.ask("open", { file, text: body, published, set: [] });
     const arms = Object.fromEntries(d.arms.map((arm) => [arm.name, arm.n]));
     const short = name.replace(/\.toml$/, "");
     all[short] = {
@@ -45,16 +45,16 @@ function sources(door) {
 }
 
 const bytes = readFileSync(join(build, "crescent.wasm"));
-const door = await opened(await WebAssembly.compile(bytes));
-const version = door.say("version_of");
-const style = door.say("style").trim() + text(join(web, "page.css")).trim();
+const api = await opened(await WebAssembly.compile(bytes));
+const version = api.say("version_of");
+const style = api.say("style").trim() + text(join(web, "page.css")).trim();
 const script = bundle("main.ts"), worker = bundle("worker.ts");
 // Inside a script element only these end it.
 const inert = (words) => words.replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
 const hash = (words) => `'sha256-${createHash("sha256").update(words).digest("base64")}'`;
 const parts = {
   version, style, script: inert(script), worker: inert(worker),
-  data: JSON.stringify({ version, sources: sources(door) }).replaceAll("<", "\\u003c"),
+  data: JSON.stringify({ version, sources: sources(api) }).replaceAll("<", "\\u003c"),
   module: gzipSync(bytes, { level: 9 }).toString("base64"),
   "script-hash": hash(inert(script)), "style-hash": hash(style),
 };

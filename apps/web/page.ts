@@ -2,7 +2,7 @@
 import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, Door, DoorError } from "./door";
+import { Box, Api, DoorError } from "./api";
 import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
@@ -26,16 +26,16 @@ export class Page implements Viewer {
   private top = 1;
   private timer = 0;
   private openedAt = 0;
-  private seen: Described | undefined; // what the pictures are of; the model may have opened another
-  private painting = 0; // counts pictures that are painted anew, and pixels that are opened: the last one goes on
+  private seen: Described | undefined; // shown in the pictures; the model may have opened another
+  private painting = 0; // counts repaints of the pictures, and opened pixels: only the last one continues
   private opening = 0;
-  private movedAt = 0; // when a hand changed what is not yet open
-  private awaited = 0; // and what is not yet painted
-  private good: Opened | undefined; // what was opened last
-  private refused = false; // what was set since cannot be
-  private said: string[] = []; // of the address, until something is opened
-  private idle = true; // nothing is computed for a bench that is not seen
-  private asRead = false; // an answered lesson that the address shows with settings of its own
+  private movedAt = 0; // time of the last change that is not open yet
+  private awaited = 0; // and not painted yet
+  private good: Opened | undefined; // the last one that opened
+  private refused = false; // the settings since then are invalid
+  private response: string[] = []; // from the address, until something is opened
+  private idle = true; // nothing is computed while the bench is hidden
+  private asRead = false; // an answered lesson that the address shows with its own settings
   private known: Asker | undefined;
   private readonly speaker = new Speaker(byId("status"));
 
@@ -43,11 +43,11 @@ export class Page implements Viewer {
 
   start(module: WebAssembly.Module, worker: string): void {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
-    const door = new Door(module), turns = new Turns(door.number("most_of_part"));
+    const api = new Api(module), turns = new Turns(api.number("most_of_part"));
     const pool = new Pool(module, worker, count, turns);
     void pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); });
-    this.model = new Model(module, door, pool, turns, this);
-    this.samplers = this.model.door.ask<Sampler[]>("samplers");
+    this.model = new Model(module, api, pool, turns, this);
+    this.samplers = this.model.api.ask<Sampler[]>("samplers");
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
@@ -67,31 +67,31 @@ export class Page implements Viewer {
   private get source(): Source { return this.data.sources[this.state.experiment]!; }
   private get lesson(): Lesson | undefined { return lessons.find((l) => l.id === this.state.lesson); }
 
-  /** A step that the browser's Back takes back: another part, lesson or choice. What is dragged or typed is none. */
+  /** A step that the browser's Back reverts: another part, lesson or choice. Dragging and typing are not steps. */
   private turn(): void {
     if (write(this.state) !== location.hash) history.pushState(null, "", write(this.state));
   }
 
   private fromAddress(): void {
     if (this.state && write(this.state) === location.hash) return;
-    this.said = [];
-    this.state = read(location.hash, this.data.sources, this.samplers.map((s) => s.name), this.said);
+    this.response = [];
+    this.state = read(location.hash, this.data.sources, this.samplers.map((s) => s.name), this.response);
     const { answers, lesson } = this.state, answered = answers[lesson] !== undefined;
     this.asRead = answered && new URLSearchParams(location.hash.slice(1)).has("arms");
     this.show();
-    if (this.said.length > 0) byId("wrong").replaceChildren(...this.said.map((line) => el("p", {}, line)));
+    if (this.response.length > 0) byId("wrong").replaceChildren(...this.response.map((line) => el("p", {}, line)));
     if (byId("bench").hidden) history.replaceState(null, "", write(this.state));
     else if (!answered) this.open(); // an answered lesson opens what it shows
   }
 
-  /** Opens what the state says; settings that the core refuses are told and left out. */
-  private open(said: string[] = this.said): void {
+  /** Opens the state; settings that the core rejects are reported and omitted. */
+  private open(response: string[] = this.response): void {
     const { state, source } = this;
-    this.said = [];
+    this.response = [];
     this.idle = false;
     this.openedAt = performance.now();
     const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
-    byId("wrong").replaceChildren(...said.map((line) => el("p", {}, line)));
+    byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
       const plain = fresh(state.experiment, source), { good } = this;
@@ -100,11 +100,11 @@ export class Page implements Viewer {
       const back = good?.experiment === state.experiment && differs(good) ? good : undefined, { set, arms } = back ?? plain;
       Object.assign(state, { set: { ...set }, arms: [...arms], arm: 0 });
       this.refused = true;
-      this.open([...said, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
+      this.open([...response, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
     });
   }
 
-  /** A setting changes: at once in the address, in the pictures thirty times a second at most. */
+  /** Applies a setting: at once in the address, in the pictures at most thirty times a second. */
   private change(path: string, value: string | undefined): void {
     if (value === undefined) delete this.state.set[path];
     else this.state.set[path] = value;
@@ -132,14 +132,14 @@ export class Page implements Viewer {
     };
     const same = this.pictures.length === shown.length + 1 && this.pictures[0]?.canvas.width === d.width && this.pictures[0].canvas.height === d.height;
     this.pictures = [...shown.map((_, index) => new Picture(index, d, picking)), new Picture(-1, d, picking)].map((picture, k) => {
-      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stands until it is painted over
+      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stays until it is painted over
       return picture;
     });
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
       picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
       if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
-      else picture.about(d.arms[shown[picture.index]!.arm]!), this.meters(picture.index);
+      else picture.about(d.arms[shown[picture.index]!.arm]!), this.metrics(picture.index);
     }
     const held = (document.activeElement as HTMLElement | null)?.dataset["corner"];
     byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
@@ -150,7 +150,8 @@ export class Page implements Viewer {
     this.refused = false;
   }
 
-  /** All settings, or those that a lesson lets one play with. A hand on one of them keeps it: they are not made anew then. */
+  /** All settings, or those that a lesson allows to change. They are not created again while the user moves one of
+   *  them. */
   private knobs(): void {
     const { described } = this.model, held = document.activeElement?.closest("[data-path]") && document.activeElement.getAttribute("aria-label");
     if (described) byId("knobs").replaceChildren(...controlRows(described, (path, value) => this.change(path, value), this.lesson?.play));
@@ -167,40 +168,40 @@ export class Page implements Viewer {
 
   painted(index: number, box: Box): void {
     const picture = index < 0 ? this.pictures.at(-1) : this.pictures[index];
-    const told = document.documentElement.dataset;
-    told["first"] ??= String(Math.round(performance.now()));
-    if (this.awaited && index >= 0) (told["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
+    const info = document.documentElement.dataset;
+    info["first"] ??= String(Math.round(performance.now()));
+    if (this.awaited && index >= 0) (info["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
     if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
   }
 
-  private meters(index: number): void { this.pictures[index]?.meters(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
-  tailed(): void { this.model.shown.forEach((_, index) => this.meters(index)); }
+  private metrics(index: number): void { this.pictures[index]?.metrics(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
+  tailed(): void { this.model.shown.forEach((_, index) => this.metrics(index)); }
 
   measured(): void {
     const { shown } = this.model, painted = this.model.referenceDone && this.state.view !== "photograph" ? this.repaint() : undefined;
     this.tailed();
     const region = this.model.described.regions[0]?.name;
-    const lines = shown.filter((s) => s.rungs.length > 0).map((s) => {
-      const last = s.rungs.at(-1)!;
-      return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.meters.meters[`rmse.${region}`]!.text}` : ""}`;
+    const lines = shown.filter((s) => s.sampleCounts.length > 0).map((s) => {
+      const last = s.sampleCounts.at(-1)!;
+      return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.metrics.metrics[`rmse.${region}`]!.text}` : ""}`;
     });
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
     void this.finished(Promise.all([painted, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
   }
 
-  /** Tells the tests, once all of it is shown. */
+  /** Notifies the tests once everything is shown. */
   private async finished(shown: Promise<unknown>): Promise<void> {
-    const { described, took } = this.model, told = document.documentElement.dataset;
-    told["films"] = String(Math.round(this.model.filmsTook));
+    const { described, took } = this.model, info = document.documentElement.dataset;
+    info["films"] = String(Math.round(this.model.filmsTook));
     await shown;
     if (described !== this.model.described || this.idle) return;
-    told["memory"] = `${this.model.door.size} ${this.model.pool.size}`; // of the page's instance, of the workers
-    told["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
-    told["took"] = String(Math.round(took));
+    info["memory"] = `${this.model.api.size} ${this.model.pool.size}`; // of the page's instance, of the workers
+    info["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
+    info["took"] = String(Math.round(took));
   }
 
-  /** All pictures, unless others are wanted meanwhile. */
+  /** All pictures, unless others are requested meanwhile. */
   private async repaint(): Promise<void> {
     const { pictures, model, seen } = this, mine = ++this.painting;
     const stands = (): boolean => mine === this.painting && pictures === this.pictures && seen === model.described;
@@ -227,7 +228,7 @@ export class Page implements Viewer {
     });
   }
 
-  /** A sentence with what to do; `all`: there is nothing to show of these settings but their command. */
+  /** A message with the next step; `all`: nothing can be shown for these settings except their command. */
   failed(error: DoorError, all = false): void {
     if (all) {
       byId("command").textContent = command(this.state, this.source);
@@ -238,7 +239,7 @@ export class Page implements Viewer {
     byId("wrong").replaceChildren(el("p", {}, error.sentence));
   }
 
-  /** The bench, the lessons or the sheet. A lesson brings its arms and keeps the bench below it. */
+  /** The bench, the lessons or the sheet. A lesson has its own arms and keeps the bench below it. */
   private show(): void {
     const { part, answers } = this.state, { lesson } = this;
     for (const link of document.querySelectorAll<HTMLElement>("#tabs a"))
@@ -282,7 +283,7 @@ export class Page implements Viewer {
           this.state.answers[lesson.id] = answer;
           this.turn();
         }
-        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
+        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it uses samplers, not pictures
         if (!kept) Object.assign(this.state, { experiment: Object.keys(this.data.sources)[0]!, arms: [...lesson.arms], n: lesson.n, view: lesson.view ?? "photograph", arm: 0 });
         byId("bench").hidden = false;
         this.open();

@@ -1,5 +1,6 @@
-// A question is a list of functions, one a call from the page; what they did is counted until the page asks. Boxes are
-// cut into parts at most 64 pixels across. Sites are kept by box for as many pixels as the page allows, else for one.
+// A request is a list of functions, one for each call from the page; their work is counted until the page asks. Boxes
+// are cut into parts at most 64 pixels across. Shading points are kept by box for as many pixels as the page permits,
+// else for one.
 #include "parts.h"
 
 #include <algorithm>
@@ -13,38 +14,38 @@ namespace crescent::web {
 namespace {
 
 double done = 0;
-Parts left;                  // the next one last
-std::size_t most_sites = 0;  // kept of one experiment; some 200 bytes each
+Parts left;                   // the next one last
+std::size_t most_points = 0;  // kept for one experiment; about 200 bytes each
 
 std::uint64_t bad_of(const Moments& m, std::size_t count) {
     return std::accumulate(m.bad.begin(), m.bad.begin() + static_cast<std::ptrdiff_t>(count), std::uint64_t{0});
 }
 
-/// Where a pixel of the image stands in a box.
+/// Returns the index of an image pixel in a box.
 std::uint32_t within(std::uint32_t pixel, const TileBox& box) {
     const auto width = static_cast<std::uint32_t>(bench().width());
     const auto i = static_cast<int>(pixel % width), j = static_cast<int>(pixel / width);
     return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
 }
 
-/// What the primary rays of a box meet; asked for arm after arm and rung after rung, they are traced once.
-std::vector<ShadingPoints>& sites_seen(const TileBox& box) {
+/// Returns the hits of the primary rays of a box; they are traced once for all samplers and sample counts.
+std::vector<ShadingPoints>& points_seen(const TileBox& box) {
     Bench& b = bench();
     const std::array key = {box.x0, box.y0, box.x1, box.y1};
-    if (const auto known = b.sites.find(key); known != b.sites.end()) return known->second;
-    if (b.sites_last == key) return b.last;
+    if (const auto known = b.shading_points.find(key); known != b.shading_points.end()) return known->second;
+    if (b.points_last == key) return b.last;
     b.shapes.shape.resize(b.pixels());
-    std::vector<ShadingPoints> made = sites_of(b.scene, box, b.shapes.shape.data());
-    if (b.sites_kept + pixels_of(box) > most_sites) return b.sites_last = key, b.last = std::move(made);
-    b.sites_kept += pixels_of(box);
-    return b.sites[key] = std::move(made);
+    std::vector<ShadingPoints> made = shading_points_of(b.scene, box, b.shapes.shape.data());
+    if (b.points_kept + pixels_of(box) > most_points) return b.points_last = key, b.last = std::move(made);
+    b.points_kept += pixels_of(box);
+    return b.shading_points[key] = std::move(made);
 }
 
 void next_part() {
     ensure(!left.empty(), "a question is under way");
     const std::function<void()> part = std::move(left.back());
     left.pop_back();
-    if (!left.empty()) say(ordered_json{{"more", left.size()}});
+    if (!left.empty()) respond(ordered_json{{"more", left.size()}});
     part();
 }
 
@@ -54,8 +55,8 @@ std::uint64_t pixels_of(const TileBox& b) {
     return static_cast<std::uint64_t>(b.x1 - b.x0) * static_cast<std::uint64_t>(b.y1 - b.y0);
 }
 
-Box asked_box(const ordered_json& asked) {
-    const ordered_json& v = asked.at("box");
+Box requested_box(const ordered_json& query) {
+    const ordered_json& v = query.at("box");
     return {v.at(0).get<int>(), v.at(1).get<int>(), v.at(2).get<int>(), v.at(3).get<int>()};
 }
 
@@ -87,13 +88,13 @@ std::uint64_t cost_of(const std::string& sampler, std::uint64_t n) {
 Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed) {
     Film film(box.x1 - box.x0, box.y1 - box.y0, n);
     count_work(pixels_of(box) * cost_of(sampler, n));
-    for (ShadingPoints& sites : sites_seen(box)) {
-        const Moments moments = estimate_sites(sites, sampler, n, seed, "", nullptr);
-        const std::vector<std::uint32_t> of_image = sites.pixel;
-        for (std::uint32_t& pixel : sites.pixel) pixel = within(pixel, box);
-        resolve_film(bench().scene, sites, moments, film);
-        sites.pixel = of_image;
-        film.invalid += bad_of(moments, sites.count);
+    for (ShadingPoints& shading_points : points_seen(box)) {
+        const Moments moments = estimate_points(shading_points, sampler, n, seed, "", nullptr);
+        const std::vector<std::uint32_t> of_image = shading_points.pixel;
+        for (std::uint32_t& pixel : shading_points.pixel) pixel = within(pixel, box);
+        resolve_film(bench().scene, shading_points, moments, film);
+        shading_points.pixel = of_image;
+        film.invalid += bad_of(moments, shading_points.count);
     }
     return film;
 }
@@ -112,20 +113,20 @@ void reference_over(const TileBox& box, ReferenceFilm& film) {
     b.quadrature->write(box, {&film, 1});
 }
 
-/// What is to be called before reference_tile(); {} once it is done.
+/// Must be called before reference_tile(); returns {} once it is done.
 CRESCENT_EXPORT(prepare_reference)()->void {
     begin({[] {
         prepare_reference();
-        say(ordered_json::object());
+        respond(ordered_json::object());
     }});
 }
-/// The next part of the question that was begun.
+/// Runs the next part of the current request.
 CRESCENT_EXPORT(go_on)()->void { next_part(); }
-/// Keeps what primary rays met for so many pixels of an experiment: where the same tiles are asked for again.
-CRESCENT_EXPORT(keep_sites)(double pixels)->void { most_sites = static_cast<std::size_t>(pixels); }
-/// Samples that were drawn, or what cost as much, since the last call.
+/// Keeps the hits of primary rays for this many pixels of an experiment, for tiles that are requested again.
+CRESCENT_EXPORT(keep_points)(double pixels)->void { most_points = static_cast<std::size_t>(pixels); }
+/// Returns the samples drawn since the last call, or work of equal cost.
 CRESCENT_EXPORT(worked)()->double { return std::exchange(done, 0.0); }
-/// The most that one part may do, and what a pixel counts of a reference, and of a film beside its samples.
+/// The largest work of one part, and the cost of a pixel of a reference, and of a film without its samples.
 CRESCENT_EXPORT(most_of_part)()->double { return static_cast<double>(most_of_part); }
 CRESCENT_EXPORT(reference_cost)()->double { return static_cast<double>(reference_cost); }
 CRESCENT_EXPORT(film_cost)()->double { return static_cast<double>(film_cost); }

@@ -1,54 +1,54 @@
-// Work in parts of bounded size: a page without workers answers to its reader between two of them. Work is counted in
-// samples of a pixel; a part of a film, of a reference, of a tail, of what a lesson asks, of the verdicts on a sampler
-// (pause.h) has at most most_of_part.
+// Work in parts of bounded size: a page without workers handles input between two of them. Work is counted in samples
+// of a pixel; a part of a film, of a reference, of a tail, of a lesson's measurement, of a sampler's check (pause.h)
+// has at most most_of_part.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "door.h"
+#include "api.h"
 
 namespace crescent::web {
 
 inline constexpr std::uint64_t most_of_part = 100'000;
-/// What a pixel of a reference counts: one in a penumbra takes twice what the others do, by the rates in docs/speed.md.
+/// The cost of a pixel of a reference: one in a penumbra takes twice that of the others, by the rates in docs/speed.md.
 inline constexpr std::uint64_t reference_cost = 2000;
-/// What a pixel counts in films beside its samples, put into its place, measured, for the scale of maps, as a colour.
-inline constexpr std::uint64_t film_cost = 30, put_cost = 2, meter_cost = 1, scale_cost = 3, colour_cost = 10;
-/// Pixels of a plane that count one where it is hashed, or takes its memory.
+/// The cost of a pixel in films without its samples: copied to its place, measured, for the scale of maps, as a colour.
+inline constexpr std::uint64_t film_cost = 30, put_cost = 2, metric_cost = 1, scale_cost = 3, colour_cost = 10;
+/// The number of pixels of a plane with cost one when hashed or allocated.
 inline constexpr std::uint64_t hashed = 10;
-/// And a sample that is looked at by itself, for a tail.
+/// The cost of a sample used for a tail.
 inline constexpr std::uint64_t tail_cost = 4;
-/// And a step of what is computed between two questions, or for a lobe's albedo.
+/// The cost of a step between two queries, or of one for a lobe's albedo.
 inline constexpr std::uint64_t step_cost = 10;
-/// And a sample of a furnace, which fills one lane of a pack; to look at it for the tail.
+/// The cost of a sample of a furnace, which fills one lane of a pack, and of its use for the tail.
 inline constexpr std::uint64_t furnace_cost = 1;
 
-/// What "box": [x0, y0, x1, y1] of a request means, both ends inside.
-Box asked_box(const ordered_json& asked);
+/// Returns "box": [x0, y0, x1, y1] of a request, both ends inclusive.
+Box requested_box(const ordered_json& query);
 TileBox tile_of(const Box& box);
 std::uint64_t pixels_of(const TileBox& box);
 
-/// Adds to what was done since the page asked last.
+/// Adds to the work done since the page's last query.
 void count_work(std::uint64_t samples);
 double work_of_part();
 
-/// A box in boxes whose pixels cost at most most_of_part together, row by row from the bottom.
+/// Cuts a box into boxes whose pixels cost at most most_of_part together, row by row from the bottom.
 std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel);
 
 using Parts = std::vector<std::function<void()>>;
-/// Does the first part of a question, says how many are left, {"more": ...}, and keeps them for go_on(); the last part
-/// says the answer. What was kept before is dropped.
+/// Does the first part of a request, reports how many are left, {"more": ...}, and keeps them for go_on(); the last
+/// part returns the response. Parts kept before are dropped.
 void begin(Parts parts);
 
-/// The film of a box alone: a sampler of the list at n samples.
+/// Returns the film of a box alone: a built-in sampler at n samples.
 Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed);
-/// What one of its pixels counts.
+/// Returns the cost of one of its pixels.
 std::uint64_t cost_of(const std::string& sampler, std::uint64_t n);
-/// What a reference needs of the lobes, where it is not made yet; pauses (pause.h).
+/// Prepares what a reference needs of the lobes, if not done yet; pauses (pause.h).
 void prepare_reference();
-/// The pixels of a box into a reference of the scene's size.
+/// Writes the pixels of a box into a reference of the scene's size.
 void reference_over(const TileBox& box, ReferenceFilm& film);
 
 }  // namespace crescent::web

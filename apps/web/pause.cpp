@@ -1,5 +1,5 @@
-// A sampler is asked in blocks of a quarter of a part; where the next one does not fit, the import door.pause leaves
-// the module. The locals go into 128 KiB of memory, whose first two words say from where to where.
+// A sampler is queried in blocks of a quarter of a part; if the next one does not fit, the import api.pause leaves the
+// module. The locals are saved in 128 KiB of memory, whose first two words are its bounds.
 #include "pause.h"
 
 #include <array>
@@ -10,14 +10,14 @@ namespace crescent::web {
 
 namespace {
 
-/// The page's: leaves the module, unless it comes back to it.
-extern "C" __attribute__((import_module("door"), import_name("pause"))) void door_pause();
+/// Provided by the page: leaves the module, or returns to it.
+extern "C" __attribute__((import_module("api"), import_name("pause"))) void door_pause();
 
-/// What an answer of a sampler counts, in samples of a pixel: it is asked in double and one by one.
+/// The cost of one query of a sampler, in samples of a pixel: it is evaluated in double and one by one.
 constexpr std::uint64_t answer_cost = 40;
 constexpr std::size_t most_answers = most_of_part / answer_cost / 4;
 
-/// ask(from, count) for all of `size` in blocks.
+/// Calls ask(from, count) for all of `size` in blocks.
 template <class Ask> void in_blocks(std::size_t size, const Ask& ask) {
     for (std::size_t from = 0; from < size; from += most_answers) {
         const std::size_t count = std::min(most_answers, size - from);
@@ -49,8 +49,8 @@ public:
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
         ask(at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner().true_f(a, o); });
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner().reference_f(a, o); });
     }
     void yield_to_host(std::size_t steps) const override { make_room(steps * step_cost); }
 
@@ -62,7 +62,7 @@ private:
     }
 };
 
-/// Where a call that is paused keeps its locals: two addresses, from and to, then the room between them.
+/// Where a paused call keeps its locals: two addresses, from and to, then the memory between them.
 alignas(16) std::array<std::uint32_t, 1 << 15> kept;
 
 }  // namespace
@@ -76,8 +76,8 @@ std::shared_ptr<const SamplerAdapter> paused(std::shared_ptr<const SamplerAdapte
     return std::make_shared<Paused>(std::move(sampler));
 }
 
-/// That room, empty.
-CRESCENT_EXPORT(pause_room)()->const void* {
+/// Returns that memory, empty.
+CRESCENT_EXPORT(pause_buffer)()->const void* {
     kept[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(kept.data() + 4));
     kept[1] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(kept.data() + kept.size()));
     return kept.data();

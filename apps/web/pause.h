@@ -1,5 +1,5 @@
-// Work that cannot be cut into parts pauses in the middle: wasm-opt's pass asyncify lets a call leave the module from
-// wherever it is, and come back there. A pause changes nothing of what is computed.
+// Work that cannot be cut into parts pauses in the middle: wasm-opt's pass asyncify lets a call leave the module at any
+// depth and return there. A pause does not change the results.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace crescent::web {
 
-/// `sampler`, asked in blocks of at most one part's work (parts.h); it pauses before a block that does not fit into
-/// what is left of the part.
+/// Returns `sampler`, queried in blocks of at most one part's work (parts.h); it pauses before a block that exceeds the
+/// rest of the part.
 std::shared_ptr<const SamplerAdapter> paused(std::shared_ptr<const SamplerAdapter> sampler);
 
-/// To be called before work of this cost (parts.h): pauses where it does not fit into what is left of the part.
+/// Call before work of this cost (parts.h): pauses if it exceeds the rest of the part.
 void make_room(std::uint64_t cost);
 
 }  // namespace crescent::web

@@ -1,5 +1,5 @@
-// Films -> pixels for a canvas: photographs through the display chain, instruments through turbo or through two hues.
-// Rows run from the top, four bytes a pixel: R, G, B, 255.
+// Converts films to pixels for a canvas: tone-mapped photographs, maps in turbo or in two hues. Rows run from the top,
+// four bytes per pixel: R, G, B, 255.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,9 +13,9 @@ namespace {
 
 enum class Picture { photograph, heat, signed_map };
 
-const Srgb8 background{20, 21, 23};  // where an instrument has nothing to say
+const Srgb8 background{20, 21, 23};  // where a map has no value
 
-/// Two hues that stand for two arms, each fading to the ground: t in [-1, 1].
+/// Two hues for two arms, each fading to the ground: t in [-1, 1].
 Srgb8 two_hues(double t) {
     if (std::isnan(t)) return not_a_number_colour;
     const double k = std::sqrt(std::min(std::fabs(t), 1.0));
@@ -84,12 +84,12 @@ struct Shade {
             const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
             put(&disk_pixels[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
         }
-        if (to == side) say(ordered_json::object());
+        if (to == side) respond(ordered_json::object());
     }
 };
 
 /// The 98th percentile of |Y - Y_ref| over the geometry pixels of some films, in parts: values by the first 16 bits of
-/// a double, which order numbers that are not negative as their values do; then those of the place's bin.
+/// a double, which order non-negative numbers as their values do; then those of the bin of the percentile.
 class Percentile {
 public:
     void count(int film, std::size_t from, std::size_t to) {
@@ -117,7 +117,7 @@ private:
             if (const double v = residual(slot(film).film, at); std::isfinite(v)) take(v);
         }
     }
-    /// The bin in which the place lies, and the place within it.
+    /// Finds the bin of the percentile, and the rank within it.
     void find() {
         found_ = true;
         const std::size_t all = std::accumulate(sizes_.begin(), sizes_.end(), std::size_t{0});
@@ -145,10 +145,10 @@ Parts painted(const Disk& disk, int size, const std::function<double(Vec3d)>& va
     return parts;
 }
 
-/// The disk that was painted last.
+/// Returns the disk that was painted last.
 CRESCENT_EXPORT(disk)()->const void* { return disk_pixels.data(); }
 
-/// The scale of maps as a row of `size` pixels: turbo, or for 2 the two hues with neither in the middle.
+/// Returns the scale of maps as a row of `size` pixels: turbo; for 2, the two hues with neither in the middle.
 CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
     std::vector<std::byte>& out = scratch<std::byte>();
     out.resize(static_cast<std::size_t>(size) * 4);
@@ -159,8 +159,8 @@ CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
     return out.data();
 }
 
-/// The pixels of a box: of film `index`, or of the reference for -1. picture 0: its photograph; 1: |Y - Y_ref|, turbo
-/// from 0 to `top`; 2: |Y_other - Y_ref| - |Y - Y_ref| over `top`, in the first hue where `other` is nearer.
+/// Paints the pixels of a box: of film `index`, or of the reference for -1. picture 0: its photograph; 1: |Y - Y_ref|,
+/// turbo from 0 to `top`; 2: |Y_other - Y_ref| - |Y - Y_ref| over `top`, in the first hue if `other` is nearer.
 CRESCENT_EXPORT(paint)
 (int picture, int index, int other, double top, int x0, int y0, int x1, int y1)->const void* {
     const TileBox box{x0, y0, x1, y1};
@@ -178,8 +178,8 @@ CRESCENT_EXPORT(paint)
     return out.data();
 }
 
-/// Where the scale of maps ends, {"top": ...}: the 98th percentile of |Y - Y_ref| over the geometry pixels of the first
-/// `count` films.
+/// Returns the end of the scale of maps, {"top": ...}: the 98th percentile of |Y - Y_ref| over the geometry pixels of
+/// the first `count` films.
 CRESCENT_EXPORT(scale)(int count)->void {
     const auto of = std::make_shared<Percentile>();
     const std::size_t pixels = bench().pixels(), most = most_of_part / scale_cost;
@@ -188,7 +188,7 @@ CRESCENT_EXPORT(scale)(int count)->void {
         for (int film = 0; film < count; ++film)
             for (std::size_t from = 0; from < pixels; from += most)
                 parts.emplace_back([=] { ((*of).*step)(film, from, std::min(pixels, from + most)); });
-    parts.emplace_back([=] { say(ordered_json{{"top", of->value()}}); });
+    parts.emplace_back([=] { respond(ordered_json{{"top", of->value()}}); });
     begin(std::move(parts));
 }
 

@@ -1,7 +1,7 @@
-// The pictures side by side, each with its meters, the hash of its film and the program's.
-import { Box } from "./door";
+// The pictures side by side, each with its metrics, the hash of its film and the program's.
+import { Box } from "./api";
 import { el, made, minus } from "./dom";
-import { Arm, Described, Meter, Model, Shown } from "./model";
+import { Arm, Described, Metric, Model, Shown } from "./model";
 import { byKey, Frame, Outlined, Picking } from "./frame";
 import { State } from "./state";
 
@@ -15,7 +15,7 @@ export class Picture {
   private readonly words = el("figcaption");
   private readonly aim = el("p", { class: "aim" });
   private readonly versus = el("p", { class: "aim" });
-  private readonly table = el("div", { class: "meters" });
+  private readonly table = el("div", { class: "metrics" });
 
   constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
     this.frame = new Frame(d, picking);
@@ -30,22 +30,22 @@ export class Picture {
     this.canvas.setAttribute("aria-label", `${title} ${line}. Arrow keys choose a pixel.`);
   }
 
-  /** What the arm aims by, and its density; of two techniques, their weights. */
+  /** The axis of the arm, and its density; for two techniques, their weights. */
   about(arm: Arm): void {
     this.aim.replaceChildren(made(`${arm.summary}: <math><mi>${arm.techniques > 1 ? "w" : "p"}</mi><mo>=</mo>${arm.formula}</math>`));
   }
 
-  /** The scale of the maps beside, under the reference. */
+  /** The scale of the neighbouring maps, under the reference. */
   legend(model: Model, state: State, top: number): void {
     if (state.view === "photograph" || !model.referenceDone) return this.table.replaceChildren();
-    const heat = state.view === "heat", width = 256, end = model.door.say("figures", undefined, top);
+    const heat = state.view === "heat", width = 256, end = model.api.say("figures", undefined, top);
     const bar = el("canvas", { width, height: 1, class: "bar", role: "img", "aria-label": heat ? `the colours of |Y − Y_ref| from 0 to ${end}` : "the two colours of the signed maps" });
-    bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.door.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
+    bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.api.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
     const ends = heat ? ["|Y − Y_ref| = 0", end] : [`the other arm is nearer by ${end}`, `this one by ${end}`];
     this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
 
-  /** The corners of a region that was drawn can be moved; by the tabulator, those on the reference are reached. */
+  /** The corners of a drawn region can be moved; the tab key reaches those on the reference. */
   outlines(pixel: [number, number] | undefined): void {
     const own = (name: string): Partial<Outlined> => (name === mine ? { move: this.picking.region, reached: this.index < 0 } : {});
     this.frame.outlines(this.d.regions.map((region) => ({ ...region, ...own(region.name) })), pixel);
@@ -59,7 +59,7 @@ export class Picture {
     this.canvas.getContext("2d")!.putImageData(pixels, box.x0, this.d.height - box.y1);
   }
 
-  /** All of it, strip by strip from the top, while that is wanted. */
+  /** Paints all of it, strip by strip from the top, while it is wanted. */
   async repaint(model: Model, state: State, top: number, wanted: () => boolean): Promise<void> {
     for (let y1 = this.d.height; y1 > 0; y1 -= strip) {
       await model.turns.pass();
@@ -74,37 +74,38 @@ export class Picture {
     return [", the program's ", el("code", {}, program), verdict];
   }
 
-  /** Every row is there from the start, so that nothing moves when its number comes. `native`: the hash of the program's film, where this one has it. */
-  meters(s: Shown, native: (key: string) => string | undefined): void {
-    const last = s.rungs.at(-1);
+  /** Every row exists from the start, so that nothing moves when its number arrives. `native`: the hash of the
+   *  program's film, if this is one of its films. */
+  metrics(s: Shown, native: (key: string) => string | undefined): void {
+    const last = s.sampleCounts.at(-1);
     this.name(s.name, last ? `N = ${last.n}` : "being sampled");
-    const m = last?.meters, rows: HTMLTableRowElement[] = [], waiting: Meter = { value: 0, text: "…" };
-    const row = (name: string, meter: Meter | undefined = last ? undefined : waiting, note = ""): void => {
-      if (!meter) return;
-      const room = this.d.source !== "" && !note; // for what was published, where anything was
-      const published = meter.published || room ? el("small", {}, meter.published ? `published ${minus(meter.published)}` : "\u00a0") : undefined;
+    const m = last?.metrics, rows: HTMLTableRowElement[] = [], waiting: Metric = { value: 0, text: "…" };
+    const row = (name: string, metric: Metric | undefined = last ? undefined : waiting, note = ""): void => {
+      if (!metric) return;
+      const room = this.d.source !== "" && !note; // for published values, if there are any
+      const published = metric.published || room ? el("small", {}, metric.published ? `published ${minus(metric.published)}` : "\u00a0") : undefined;
       rows.push(el("tr", {}, el("th", { scope: "row" }, name),
-        el("td", { class: "n" }, minus(meter.text), published)));
+        el("td", { class: "n" }, minus(metric.text), published)));
       if (note) rows.push(el("tr", { class: "note" }, el("td", { colspan: 2 }, note)));
     };
     for (const { name } of this.d.regions) {
-      row(`RMSE of ${name}`, m?.meters[`rmse.${name}`], m?.unsure?.includes(name) ? "the reference is not good enough" : "");
+      row(`RMSE of ${name}`, m?.metrics[`rmse.${name}`], m?.unsure?.includes(name) ? "the reference is not good enough" : "");
       const tail = s.tails[name];
       row(`tail k̂ of ${name}`, tail ? { value: 0, text: tail.text ?? "–" } : waiting, tail?.words ?? "being measured");
     }
-    row("fireflies", m?.meters["fireflies"]);
-    row("under the horizon", m?.meters["horizon_frac"]);
-    row("mean Y", m?.meters["y_mean"]);
+    row("fireflies", m?.metrics["fireflies"]);
+    row("under the horizon", m?.metrics["horizon_frac"]);
+    row("mean Y", m?.metrics["y_mean"]);
     if (m && m.bad > 0) row("not a number", { value: m.bad, text: String(m.bad) });
     this.table.replaceChildren(el("table", {}, el("tbody", {}, ...rows)),
       el("p", { class: "hash" }, ...(m && last ? ["film ", el("code", { "data-hash": `${s.name} ${last.n}` }, m.hash), ...this.beside(m.hash, native(m.key))] : ["film …"])));
   }
 }
 
-/** The path under which a region that was drawn is set. */
+/** The path under which a drawn region is set. */
 export const drawnRegion = `regions.${mine}.box`;
 
-/** The pixel that an arrow key leads to, ten pixels on with shift; from the middle where none is chosen. */
+/** The pixel that an arrow key leads to, ten pixels with shift; from the middle if none is selected. */
 export function byArrow(event: KeyboardEvent, from: [number, number] | undefined, d: Described): [number, number] | undefined {
   const by = byKey(event);
   if (!by) return undefined;

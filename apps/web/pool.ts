@@ -1,20 +1,20 @@
-// Jobs -> answers, in workers or, where a browser has none, in slices on the page's own thread. A new opening cancels
-// all that was asked before it: what is under way is dropped when it comes.
-import { Box, DoorError } from "./door";
+// Runs jobs in workers or, if a browser has none, in slices on the page's own thread. A new opening cancels all earlier
+// requests: results under way are dropped.
+import { Box, DoorError } from "./api";
 import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
 import { Turns } from "./turns";
 
 type Done = (answer: Answer) => void;
 type Failed = (error: DoorError) => void;
 interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
-type Kept = Map<string, Hand>; // who keeps what the primary rays of a box met
+type Kept = Map<string, Hand>; // which worker keeps the hits of a box
 const boxOf = ({ job }: Waiting): string => (job.kind === "tile" ? Object.values(job.box).join() : "");
 
-const underWay = 2; // jobs that a worker holds, so that it never waits for the page
+const underWay = 2; // jobs queued per worker, so that it never waits for the page
 const side = 64; // of a tile, in pixels
 
 class Hand {
-  size = 0; // bytes that its instance has taken
+  size = 0; // bytes allocated by its instance
   private readonly held = new Map<number, Waiting>();
   private next = 0;
   constructor(private readonly worker: Worker, private readonly free: () => void) {
@@ -35,7 +35,7 @@ class Hand {
   }
 }
 
-/** A queue that has no worker: jobs in parts, one after another, each in an instance that no other job touches meanwhile. */
+/** A queue without a worker: jobs in parts, one after another, each in an instance that no other job uses meanwhile. */
 class Lane {
   readonly answering: Answering;
   queue: Waiting[] = [];
@@ -45,7 +45,7 @@ class Lane {
   get busy(): boolean { return this.current !== undefined || this.queue.length > 0; }
   drop(): void { this.queue = []; this.current = undefined; }
 
-  /** Does one part of a job. Returns how much work it was, in samples. */
+  /** Does one part of a job. Returns its work, in samples. */
   part(): number {
     const fresh = this.current === undefined, waiting = (this.current ??= this.queue.shift()!);
     try {
@@ -64,14 +64,14 @@ class Lane {
 
 export class Pool {
   private hands: Hand[] = [];
-  private alone: { lasting: Lane; passing: Lane } | undefined; // what is opened meanwhile breaks no lasting question
+  private alone: { lasting: Lane; passing: Lane } | undefined; // an opening in between does not break a lasting request
   private queue: Waiting[] = [];
   private kept: Kept = new Map();
   private opened: Opening | undefined;
   private era = 0;
   private slicing = false;
   private settled = false;
-  readonly ready: Promise<void>; // once it is known whether there are workers: what is asked waits for that
+  readonly ready: Promise<void>; // resolved once it is known whether there are workers: requests wait for it
 
   /** `source`: the worker's script. */
   constructor(module: WebAssembly.Module, source: string, count: number, private readonly turns: Turns) {
@@ -106,33 +106,33 @@ export class Pool {
     });
   }
 
-  /** Workers at work; 0: slices of the page's own thread. */
+  /** The number of workers; 0: slices of the page's own thread. */
   get workers(): number { return this.hands.length; }
 
-  /** Drops every question that was asked, but for lasting ones. */
+  /** Drops all requests except lasting ones. */
   cancel(): void {
     ++this.era;
     this.queue = this.queue.filter((waiting) => waiting.lasting);
     this.alone?.passing.drop();
   }
 
-  /** Bytes that the instances of all workers have taken; the largest part that was done without them, in samples. */
+  /** Bytes allocated by the instances of all workers; the largest part done without workers, in samples. */
   get size(): number { return this.hands.reduce((sum, hand) => sum + hand.size, 0); }
   get most(): number { return Math.max(this.alone?.lasting.answering.most ?? 0, this.alone?.passing.answering.most ?? 0); }
 
-  /** Every instance opens this experiment; questions that were asked before are dropped. */
+  /** Every instance opens this experiment; earlier requests are dropped. */
   open(opening: Opening): void {
     this.cancel();
     this.opened = opening;
-    if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that asks it
+    if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that needs it
     this.kept.clear();
     for (const hand of this.hands) this.openIn(hand, opening);
   }
-  private openIn(hand: Hand, opening: Opening): void { // what they refuse is refused on the page's own thread too
+  private openIn(hand: Hand, opening: Opening): void { // what they reject is rejected on the page's own thread too
     hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 
-  /** `lasting`: the question is answered whatever is opened meanwhile, and before all others. */
+  /** `lasting`: the request survives other openings, and comes before all others. */
   async ask(job: Job, lasting = false): Promise<Answer> {
     const era = this.era;
     if (!this.settled) await this.ready;
@@ -146,8 +146,8 @@ export class Pool {
     });
   }
 
-  /** The picture cut into boxes, one a job. `cost`: samples a pixel. A job has at most `most` samples, or in a worker twenty
-      times as many, because a new setting has to wait for the jobs that are under way. */
+  /** The picture cut into boxes, one per job. `cost`: samples per pixel. A job has at most `most` samples, or in a worker
+   *  twenty times as many, because a new setting has to wait for running jobs. */
   tiles(width: number, height: number, cost: number, most: number): Box[] {
     const pixels = Math.max(1, Math.floor((this.alone ? most : 20 * most) / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
@@ -166,7 +166,8 @@ export class Pool {
     }
     for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.nextFor(hand));
   }
-  /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another worker. */
+  /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another
+   *  worker. */
   private nextFor(hand: Hand): Waiting {
     const good = (waiting: Waiting): boolean => [hand, undefined].includes(this.kept.get(boxOf(waiting)));
     const [waiting] = this.queue.splice(Math.max(0, this.queue.findIndex(good)), 1);
@@ -175,15 +176,15 @@ export class Pool {
   }
   private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
 
-  /** Parts of jobs, as many in each turn as it has room for. */
+  /** Runs parts of jobs, as many in each turn as it has room for. */
   private async slices(): Promise<void> {
     if (this.slicing) return;
     this.slicing = true;
-    const { lasting, passing } = this.alone!, told = document.documentElement.dataset;
+    const { lasting, passing } = this.alone!, info = document.documentElement.dataset;
     while (lasting.busy || passing.busy) {
       await this.turns.pass();
       if (lasting.busy || passing.busy) this.turns.count((lasting.busy ? lasting : passing).part());
-      told["part"] = String(this.most);
+      info["part"] = String(this.most);
     }
     this.slicing = false;
   }

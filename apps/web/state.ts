@@ -1,5 +1,5 @@
-// What the address says, and the command line that makes the same numbers. The address is data: what is wrong in it
-// gives its default, and a line that says so.
+// The state in the address, and the command line that gives the same numbers. The address is data: an invalid part is
+// replaced by its default, with a message.
 import { Lesson, lessons } from "./lessons";
 import { ladder, Region } from "./model";
 
@@ -15,7 +15,7 @@ export interface State {
   arms: string[];
   n: number;
   view: "photograph" | "heat" | "signed";
-  set: Record<string, string>; // path -> value, as --set takes it
+  set: Record<string, string>; // path -> value, as --set accepts it
   pixel: [number, number] | undefined;
   arm: number; // whose draws the hemisphere shows
   part: Part;
@@ -24,20 +24,20 @@ export interface State {
 }
 
 const path = /^(?!__)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){0,3}$/;
-const own = /^(n|arms\.[^.]+\.n|reference\.kind)$/; // what the page sets itself
+const own = /^(n|arms\.[^.]+\.n|reference\.kind)$/; // set by the page itself
 const keys = ["experiment", "arms", "n", "view", "set", "pixel", "arm", "part", "lesson", "answer"];
 const number = "-?(\\d+\\.?\\d*|\\.\\d+)([eE][-+]?\\d{1,3})?";
 const value = new RegExp(`^(${number}|\\[ *${number}( *, *${number}){0,7} *\\]|"[a-z-]{1,40}")$`);
 
 export function fresh(experiment: string, source: Source): State {
-  const arms = Object.keys(source.arms).slice(0, 3), rungs = source.arms[arms[0]!]!;
+  const arms = Object.keys(source.arms).slice(0, 3), sampleCounts = source.arms[arms[0]!]!;
   return {
-    experiment, arms, n: Math.max(...ladder.filter((n) => n <= Math.max(...rungs))), view: "photograph", set: {}, pixel: undefined, arm: 0, part: "bench",
+    experiment, arms, n: Math.max(...ladder.filter((n) => n <= Math.max(...sampleCounts))), view: "photograph", set: {}, pixel: undefined, arm: 0, part: "bench",
     lesson: "", answers: {},
   };
 }
 
-/** Whether a lesson can be answered so. */
+/** Whether this is a valid answer of a lesson. */
 function answers({ ask }: Lesson, to: string, size: readonly [number, number]): boolean {
   if (ask.kind === "choice") return ask.options.some(({ value }) => value === to);
   if (ask.kind === "slider") return to !== "" && Number(to) >= ask.low && Number(to) <= ask.high;
@@ -46,7 +46,7 @@ function answers({ ask }: Lesson, to: string, size: readonly [number, number]): 
 }
 
 /** The part of the page, the lesson and its answers. */
-function readLessons(asked: URLSearchParams, state: State, size: readonly [number, number], said: string[], wrong: (key: string, instead: string) => void): void {
+function readLessons(asked: URLSearchParams, state: State, size: readonly [number, number], response: string[], wrong: (key: string, instead: string) => void): void {
   const part = asked.get("part");
   if (part === "bench" || part === "lessons" || part === "sheet") state.part = part;
   else if (part !== null) wrong("part", "the bench is open");
@@ -56,16 +56,16 @@ function readLessons(asked: URLSearchParams, state: State, size: readonly [numbe
   for (const text of asked.getAll("answer")) {
     const at = text.indexOf(":"), to = text.slice(at + 1), of = lessons.find(({ id }) => id === text.slice(0, at));
     if (of && answers(of, to, size)) state.answers[of.id] = to;
-    else said.push(`The address says answer=${text.slice(0, 60)}, which answers no lesson: it is left out.`);
+    else response.push(`The address says answer=${text.slice(0, 60)}, which answers no lesson: it is left out.`);
   }
 }
 
-/** Reads an address; `said` receives a line for everything that was not understood. */
-export function read(hash: string, sources: Record<string, Source>, samplers: string[], said: string[]): State {
+/** Reads an address; `response` receives a line for everything that is invalid. */
+export function read(hash: string, sources: Record<string, Source>, samplers: string[], response: string[]): State {
   const asked = new URLSearchParams(hash.replace(/^#/, ""));
   const first = Object.keys(sources)[0]!;
   const wrong = (key: string, instead: string): void => {
-    said.push(`The address says ${key}=${(asked.get(key) ?? "").slice(0, 60)}, which is none here: ${instead}.`);
+    response.push(`The address says ${key}=${(asked.get(key) ?? "").slice(0, 60)}, which is none here: ${instead}.`);
   };
   let experiment = asked.get("experiment") ?? first;
   if (!Object.hasOwn(sources, experiment)) wrong("experiment", `${first} is open`), (experiment = first);
@@ -87,9 +87,9 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   for (const text of asked.getAll("set")) {
     const at = text.indexOf("=");
     const key = text.slice(0, at), to = text.slice(at + 1);
-    if (own.test(key)) said.push(`The address says set=${text.slice(0, 60)}, which the page sets itself: it is left out.`);
+    if (own.test(key)) response.push(`The address says set=${text.slice(0, 60)}, which the page sets itself: it is left out.`);
     else if (at > 0 && path.test(key) && value.test(to)) state.set[key] = to;
-    else said.push(`The address says set=${text.slice(0, 60)}, which is no setting: it is left out.`);
+    else response.push(`The address says set=${text.slice(0, 60)}, which is no setting: it is left out.`);
   }
   const pixel = asked.get("pixel");
   if (pixel !== null) {
@@ -100,10 +100,10 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   const arm = Number(asked.get("arm") ?? 0);
   if (Number.isInteger(arm) && arm >= 0 && arm < state.arms.length) state.arm = arm;
   else wrong("arm", "the first one is shown");
-  readLessons(asked, state, sources[first]!.size, said, wrong);
+  readLessons(asked, state, sources[first]!.size, response, wrong);
   for (const key of new Set(asked.keys()))
     if (!keys.includes(key)) wrong(key, "it is left out");
-    else if (key !== "set" && key !== "answer" && asked.getAll(key).length > 1) said.push(`The address says ${key} twice: the first one counts.`);
+    else if (key !== "set" && key !== "answer" && asked.getAll(key).length > 1) response.push(`The address says ${key} twice: the first one counts.`);
   return state;
 }
 
@@ -119,28 +119,29 @@ export function write(state: State): string {
   return `#${out.toString().replaceAll("%2C", ",").replaceAll("%3D", "=").replaceAll("%3A", ":").replaceAll("%2F", "/")}`;
 }
 
-/** Rungs that an arm of the experiment does not have, as --set takes them; "" where there are none. */
-function rungs(arm: string, state: State, source: Source): string {
+/** Sample counts that an arm of the experiment does not have, in the form for --set; "" if there are none. */
+function sampleCounts(arm: string, state: State, source: Source): string {
   if (source.arms[arm]?.includes(state.n)) return "";
   const most = Math.max(state.n, 64);
   return `arms.${arm}.n=[${ladder.filter((n) => n <= most && (n > 1 || state.n === 1)).join(", ")}]`;
 }
 
-/** The program's hash of a film that the page has too, where the settings are the experiment's; regions and k change none. */
+/** The program's hash of a film that the page has too, if the settings are the experiment's; regions and k do not
+ *  change it. */
 export function nativeHash(state: State, source: Source, key: string): string | undefined {
   return Object.keys(state.set).every((path) => /^(regions\.|firefly_k$)/.test(path)) ? source.films[key] : undefined;
 }
 
-/** What was set, and what the arms that are looked at need beside it. */
+/** The changed settings, and those that the displayed arms also need. */
 export function overrides(state: State, source: Source): string[] {
   const set = Object.entries(state.set).map(([key, to]) => `${key}=${to}`);
-  return [...set, ...state.arms.map((arm) => rungs(arm, state, source)).filter((word) => word !== "")];
+  return [...set, ...state.arms.map((arm) => sampleCounts(arm, state, source)).filter((word) => word !== "")];
 }
 
-/** A word as a shell takes it. */
+/** A word quoted for a shell. */
 export const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
 
 export function command(state: State, source: Source): string {
-  const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, whatever the file says
+  const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, for any file
   return ["./run", source.file, ...[...overrides(state, source), ...measured].flatMap((word) => ["--set", quoted(word)])].join(" ");
 }

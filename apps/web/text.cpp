@@ -1,14 +1,14 @@
-// Requests and answers in words, and what happens to an error: the page is told, and the call does not return.
+// Requests and responses as text, and errors: they are reported to the page, and the call does not return.
 #include <cstdlib>
 #include <new>
 #include <typeinfo>
 
-#include "door.h"
+#include "api.h"
 
 extern "C" {
 
-/// The page's: throws an error of its own out of the call.
-[[noreturn]] __attribute__((import_module("door"), import_name("failed"))) void door_failed(
+/// Provided by the page: throws an error of its own out of the call.
+[[noreturn]] __attribute__((import_module("api"), import_name("failed"))) void api_failed(
     const char* kind, std::size_t kind_size, const char* text, std::size_t text_size);
 
 void* __cxa_allocate_exception(std::size_t size) { return std::malloc(size); }
@@ -20,7 +20,7 @@ void __cxa_free_exception(void* exception) { std::free(exception); }
     const std::string kind = *type == typeid(crescent::InputError) ? "input"
         : *type == typeid(std::bad_alloc)                          ? "memory"
                                                                    : "bug";
-    door_failed(kind.data(), kind.size(), text.data(), text.size());
+    api_failed(kind.data(), kind.size(), text.data(), text.size());
 }
 }
 
@@ -28,32 +28,34 @@ namespace crescent::web {
 
 namespace {
 
-std::string asked, answered;
+std::string query, response;
 
 }  // namespace
 
-ordered_json request() { return ordered_json::parse(asked); }
-void say(std::string text) { answered = std::move(text); }
-void say(const ordered_json& answer) { answered = answer.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
+ordered_json request() { return ordered_json::parse(query); }
+void respond(std::string text) { response = std::move(text); }
+void respond(const ordered_json& answer) {
+    response = answer.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
 
-ordered_json told(double x) {
+ordered_json json_number(double x) {
     if (std::isfinite(x)) return x;
     return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
 }
 
-CRESCENT_EXPORT(room)(std::size_t size)->char* {
-    asked.assign(size, ' ');
-    return asked.data();
+CRESCENT_EXPORT(request_buffer)(std::size_t size)->char* {
+    query.assign(size, ' ');
+    return query.data();
 }
-CRESCENT_EXPORT(said_at)()->const char* { return answered.data(); }
-CRESCENT_EXPORT(said_size)()->std::size_t { return answered.size(); }
+CRESCENT_EXPORT(response_data)()->const char* { return response.data(); }
+CRESCENT_EXPORT(response_size)()->std::size_t { return response.size(); }
 
-/// Words with formulas between dollar signs as HTML with MathML.
-CRESCENT_EXPORT(html)()->void { say(formula::html(request().get<std::string>())); }
-/// A number for reading.
-CRESCENT_EXPORT(figures)(double x)->void { say(crescent::figures(x)); }
+/// Formats text with formulas between dollar signs as HTML with MathML.
+CRESCENT_EXPORT(html)()->void { respond(formula::html(request().get<std::string>())); }
+/// Formats a number for reading.
+CRESCENT_EXPORT(figures)(double x)->void { respond(crescent::figures(x)); }
 
-CRESCENT_EXPORT(style)()->void { say(std::string(style_sheet)); }
-CRESCENT_EXPORT(version_of)()->void { say(version() + ", " + commit()); }
+CRESCENT_EXPORT(style)()->void { respond(std::string(style_sheet)); }
+CRESCENT_EXPORT(version_of)()->void { respond(version() + ", " + commit()); }
 
 }  // namespace crescent::web

@@ -1,22 +1,22 @@
-// Turns of the page's own thread: what it does between two looks at its reader. A turn ends after so much work, which the
-// core counts in samples (apps/web/parts.h), or so many milliseconds, whichever comes first.
+// Turns of the page's own thread: the work between two checks for input. A turn ends after a limit of work, which the
+// core counts in samples (apps/web/parts.h), or of milliseconds, whichever comes first.
 
-const mostMs = 4; // what a turn began last ends within the 10 that a reader may wait
+const mostMs = 4; // the last task of a turn ends within the 10 that a user may wait
 const mostParts = 4; // of apps/web/parts.h
 const bins = 64; // ms
 
 export class Turns {
-  private largest = 0; // work of a turn so far, told to the tests
-  /** How many turns took so many ms; the last bin has what took longer. */
+  private largest = 0; // work of a turn so far, read by the tests
+  /** How many turns took this many ms; the last bin has the longer ones. */
   private readonly took = new Array<number>(bins).fill(0);
   private work = 0;
-  private promised = 0; // to those whom pass() let go on in this turn, who have not counted yet: a part each
+  private promised = 0; // to those whom pass() released in this turn, who have not counted yet: a part each
   private since = 0;
   private open = false;
   private readonly waiting: (() => void)[] = [];
-  private readonly channel = new MessageChannel(); // setTimeout waits for 4 ms where it is asked again and again
+  private readonly channel = new MessageChannel(); // setTimeout waits for 4 ms when called repeatedly
 
-  /** `part`: the most that one part does, in samples. */
+  /** `part`: the largest work of one part, in samples. */
   constructor(private readonly part: number) {
     this.channel.port1.onmessage = (): void => this.next();
   }
@@ -29,7 +29,7 @@ export class Turns {
     this.channel.port2.postMessage(0);
   }
 
-  /** One turn is over, and the next is for who has waited longest. */
+  /** Ends a turn; the next one belongs to the task that has waited longest. */
   private next(): void {
     if (this.work > this.largest) document.documentElement.dataset["turn"] = String((this.largest = this.work));
     this.took[Math.min(bins - 1, Math.floor(performance.now() - this.since))]!++;
@@ -40,14 +40,14 @@ export class Turns {
     go();
   }
 
-  /** What was done in this turn. */
+  /** The work done in this turn. */
   count(work: number): void {
     this.begin();
     this.work += work;
     this.promised = Math.max(0, this.promised - this.part);
   }
 
-  /** Goes on in this turn while it has room, else in one of the next. */
+  /** Continues in this turn if it has room, else in one of the next. */
   async pass(): Promise<void> {
     this.begin();
     while (this.work + this.promised >= mostParts * this.part || performance.now() - this.since >= mostMs)
@@ -55,7 +55,7 @@ export class Turns {
     this.promised += this.part;
   }
 
-  /** The least number of ms within which this share of the turns ended. */
+  /** The smallest number of ms within which this share of the turns ended. */
   within(share: number): number {
     const all = this.took.reduce((sum, count) => sum + count, 0);
     let sum = 0;

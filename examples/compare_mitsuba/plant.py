@@ -1,11 +1,11 @@
-"""Plants a bias of 1 % into the albedo of one wall of Mitsuba's Cornell box, and asks `crescent compare` whether it is
-there: the false-alarm rate and the power of `--expect same`, measured on renders.
+"""Plants a bias of 1 % in the albedo of one wall of Mitsuba's Cornell box, and tests whether `crescent compare` detects
+it: the false-alarm rate and the power of `--expect same`, measured on renders.
 
     pip install mitsuba
     python plant.py OUT [--crescent crescent] [--repeats 100] [--write docs/compare.md]
 
-Each repeat renders three sets of seeds: two of the scene as it is, one with the bias. `crescent compare --expect same`
-on the two equal sets is to end with exit code 0, on the third and the first with 1. With --write, the measured rates
+Each repeat renders three sets of seeds: two of the unchanged scene, one with the bias. `crescent compare --expect same`
+must exit with code 0 for the two equal sets, and with 1 for the third and the first. With --write, the measured rates
 are put between the two lines of the file that say "measured by plant.py" and "end of plant.py".
 """
 import argparse
@@ -28,7 +28,7 @@ def render_set(world, out, seeds, spp):
 
 
 def same(args, a, b, where):
-    """The exit code of `crescent compare --expect same` on two folders."""
+    """Returns the exit code of `crescent compare --expect same` on two folders."""
     box = ",".join(str(x * args.size // 64) for x in WALL)
     command = [args.crescent, "compare", "--arm", f"a={a}/*.exr", "--arm", f"b={b}/*.exr", "--region", f"wall={box}",
                "--expect", "same", "--alpha", str(args.alpha), "--smallest", "1%", "--out", where, "--quiet"]
@@ -36,7 +36,7 @@ def same(args, a, b, where):
 
 
 def rate(hits, of):
-    """A rate and its 95 % interval, Wilson 1927."""
+    """Returns a rate and its 95 % interval, Wilson 1927."""
     z, p = 1.96, hits / of
     middle = (p + z * z / (2 * of)) / (1 + z * z / of)
     half = z / (1 + z * z / of) * (p * (1 - p) / of + z * z / (4 * of * of)) ** 0.5

@@ -13,7 +13,7 @@ import os
 
 import mitsuba as mi
 
-# The LLVM variant is many times faster where libLLVM is found (DRJIT_LIBLLVM_PATH says where it is).
+# The LLVM variant is many times faster, if libLLVM is found (DRJIT_LIBLLVM_PATH gives its path).
 mi.set_variant("scalar_rgb" if os.environ.get("MITSUBA_SCALAR") else "llvm_ad_rgb")
 
 INTEGRATORS = {

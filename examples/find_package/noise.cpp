@@ -1,4 +1,4 @@
-// noise FILE.toml: how noisy each arm of an experiment is, as the root of the mean variance of its pixels (luminance,
+// noise FILE.toml: the noise of each arm of an experiment, as the root of the mean variance of its pixels (luminance,
 // W/(sr m^2)).
 #include <cmath>
 #include <iostream>

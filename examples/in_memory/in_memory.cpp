@@ -1,5 +1,5 @@
-// A run in memory: an experiment made in code, its steps called one by one, one RMSE of two arms with its interval over
-// seeds. No file is read and none is written. `in_memory stop` sets the stop flag on the way, as a host's button would.
+// A run in memory: an experiment made in code, its steps called one by one, the RMSE of two arms with its interval over
+// seeds. No file is read or written. `in_memory stop` sets the stop flag during the run, as a host's button would.
 #include <cstdio>
 #include <cstring>
 
@@ -29,13 +29,13 @@ crescent::Experiment two_arms() {
     e.camera = {{0, 1, 4}, {0, 1, 0}, {0, 1, 0}, 40};
     e.shapes = {ball()};
     e.fill = {0.3, 0.3, 0.3};
-    crescent::DiskLight lamp;
-    lamp.name = "lamp";
-    lamp.center = {1, 3, 2};
-    lamp.normal = crescent::normalize(crescent::Vec3d{-1, -2, -2});
-    lamp.radius = 0.5;
-    lamp.radiance = {40, 40, 40};
-    e.disks = {lamp};
+    crescent::DiskLight area_light;
+    area_light.name = "lamp";
+    area_light.center = {1, 3, 2};
+    area_light.normal = crescent::normalize(crescent::Vec3d{-1, -2, -2});
+    area_light.radius = 0.5;
+    area_light.radiance = {40, 40, 40};
+    e.disks = {area_light};
     e.arms = {{"by the cosine", "cosine", {4, 16}, {}}, {"by the lobe", "phong", {4, 16}, {}}};
     e.regions = {{"ball", {32, 16, 64, 48}, {}}};
     return e;
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
         crescent::collect(plan, std::move(prepared), std::move(results), engine, monitor);
 
     for (const crescent::SeedSpread& band : measured.metrics.bands)
-        if (band.meter == "rmse.ball" && band.key.n == 16)
+        if (band.metric == "rmse.ball" && band.key.n == 16)
             std::printf("%s: RMSE %.4g, 5 to 95 %% of %d seeds: %.4g to %.4g%s\n", band.key.arm.c_str(), band.measured,
                 band.band.seeds, band.band.q05, band.band.q95, band.band.heavy ? " (heavy tail)" : "");
 }

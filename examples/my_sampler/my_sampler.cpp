@@ -1,5 +1,4 @@
-// A sampler of one's own, judged: a struct with sample(wo, u) and pdf(wo, wi) in plain floats. Prints what is not
-// right.
+// A check of a user's sampler: a struct with sample(wo, u) and pdf(wo, wi) in plain floats. Prints what is wrong.
 #include <array>
 #include <cmath>
 #include <cstdio>

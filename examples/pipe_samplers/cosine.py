@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A sampler for `crescent check --exec 'python3 cosine.py'`: the cosine-weighted hemisphere and a Lambert BRDF of 0.5.
 
-One request a line, one answer a line, in order; n = +z; end of input ends it."""
+One request per line, one response per line, in order; n = +z; end of input ends it."""
 import math
 import os
 
@@ -23,7 +23,7 @@ def answer(words):
 
 
 rest = ""
-while chunk := os.read(0, 1 << 16):  # many requests stand ready at once: answer them all with one write
+while chunk := os.read(0, 1 << 16):  # many requests may be pending: respond to all of them with one write
     *lines, rest = (rest + chunk.decode()).split("\n")
     out = "".join(answer(line.split()) + "\n" for line in lines).encode()
     while out:

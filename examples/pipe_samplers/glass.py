@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Rough glass for `crescent check --exec 'python3 glass.py'`, in protocol 2, by blocks of doubles.
 
-GGX, Smith's G separable: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", equation
-numbers beside the lines; normals are drawn as they are seen, Heitz 2018. Three random numbers a sample: the third
-chooses between reflection and refraction by Fresnel. w_o on both sides, radiance scaled by eta^2. A million answers
-take about a second."""
+GGX, Smith's G separable: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", with equation
+numbers at the lines; normals are drawn from the visible ones, Heitz 2018. Three random numbers per sample: the third
+selects reflection or refraction by Fresnel. w_o on both sides, radiance scaled by eta^2. A million responses take about
+a second."""
 import struct
 import sys
 
@@ -22,7 +22,7 @@ def unit(v):
 
 
 def fresnel(c, eta):
-    """Unpolarised, c = |cos| on the side that is left, eta: index beyond over index here."""
+    """Unpolarised, c = |cos| on the side of incidence, eta: index on the other side over index on this side."""
     g2 = eta * eta - 1 + c * c
     g = np.sqrt(np.maximum(g2, 0))
     f = 0.5 * ((g - c) / (g + c)) ** 2 * (1 + ((c * (g + c) - 1) / (c * (g - c) + 1)) ** 2)  # (22)
@@ -40,7 +40,7 @@ def ggx(m):
 
 
 def normals(o, i):
-    """The half vector of reflection or refraction, on the upper side, and what goes with it."""
+    """Returns the half vector of reflection or refraction, on the upper side, and related values."""
     eta = np.where(o[:, 2] > 0, ETA, 1 / ETA)
     across = o[:, 2] * i[:, 2] < 0
     m = unit(o + np.where(across, eta, 1.0)[:, None] * i)  # (13), (16)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """An environment light for `crescent check --exec 'python3 sky.py [ROWS COLUMNS]'`, by blocks of doubles.
 
-2048 x 4096 texels in theta x phi with a sun of 0.27 degrees; a row by its CDF, a column by that row's. The chance of a
-texel is its radiance times the sine at its middle, and p is constant in theta x phi within it: p = chance / (d theta
-d phi sin theta). It depends on no w_o and has no BRDF."""
+2048 x 4096 texels in theta x phi with a sun of 0.27 degrees; a row by its CDF, a column by that row's. The probability
+of a texel is its radiance times the sine at its middle, and p is constant in theta x phi within it: p = probability /
+(d theta d phi sin theta). It depends on no w_o and has no BRDF."""
 import sys
 
 import numpy as np
@@ -62,7 +62,7 @@ sys.stdin.buffer.readline()  # hello 2
 print("hello 2 sky.py domain=sphere wo=none block=f64", flush=True)
 while True:
     what, count = read(4), int.from_bytes(read(4), "little")
-    width = 5 if what == b"smpl" else 6  # w_o, which is not looked at, and u or wi
+    width = 5 if what == b"smpl" else 6  # w_o, which is not used, and u or wi
     rows = np.frombuffer(read(8 * count * width)).reshape(count, width)
     if what == b"smpl":
         answer = sample(rows[:, 3], rows[:, 4])

@@ -1,5 +1,5 @@
-// Whether a sampler is right: crescent::check_sampler and what its answer says. check/user.h has the signatures that
-// a sampler may have; crescent/gtest.h the same as matchers of GoogleTest.
+// Checks a sampler: crescent::check_sampler and its result. check/user.h has the signatures that a sampler may have;
+// crescent/gtest.h has GoogleTest matchers.
 #pragma once
 
 #include "check/report/print.h"

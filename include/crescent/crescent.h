@@ -1,23 +1,23 @@
-// The public face of crescent. Doors and programs of others include this file and nothing else of src/.
+// The public interface of crescent: front ends and other programs include only this file.
 //
 //   load, parse       an experiment file or text -> Experiment; InputError names every mistake with its place
 //   Scene             an Experiment -> what a pixel sees: surface point, normal, BRDF, lights, what blocks them
-//   Arms              the samplers on trial as a list of types; for_each_sampler walks it
-//   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
-//   OpenPixel         one pixel of a scene -> each of its samples taken apart: direction, density, f, L, cosine, X
-//   judge             a sampler by itself -> ordered verdicts with their evidence; check/gtest.h has the matchers
-//   find_instrument   what else can compute films, where a door has brought it
-//   film_maker        what makes an explainer of a run, where a door has brought it
+//   Samplers          the built-in samplers as a list of types; for_each_sampler visits each
+//   estimate_films    Scene + sampler -> films: per pixel the moments of n samples, one film per sample count
+//   OpenPixel         one pixel of a scene -> the parts of each of its samples: direction, density, f, L, cosine, X
+//   check_sampler     a sampler -> ordered verdicts with their evidence; crescent/gtest.h has the matchers
+//   find_backend      another back end for films, if the program registered one
+//   film_maker        makes an explainer video of a run, if the program registered it
 //   plan, prepare, execute, collect, write
-//                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and meters -> every
-//                     number -> a folder; a stop is an answer, see run/execute.h
+//                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and metrics -> every
+//                     number -> a folder; a stop is returned as a value, see run/execute.h
 //   join              runs of parts of an experiment's seeds -> the metrics of all of them
-//   measure_in_memory an Experiment -> films, meters and evidence, nothing written
-//   compare           renders of other programs -> meters, bias tests, plates and report under one folder
-//   run               an Experiment -> films, meters, plates and report under one folder
+//   measure_in_memory an Experiment -> films, metrics and article checks, nothing written
+//   compare           renders of other programs -> metrics, bias tests, plates and report under one folder
+//   run               an Experiment -> films, metrics, plates and report under one folder
 //
-// Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
-// reader's mistake, OutputError something missing or not writable, Interrupted a stop that was asked for, Bug ours.
+// Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees if a name says so. InputError is a mistake
+// in the input, OutputError a missing part or a failed write, Interrupted a requested stop, Bug a defect of crescent.
 #pragma once
 
 #include "base/errors.h"

@@ -1,5 +1,5 @@
-// The public face of what needs neither files, threads nor exceptions: for doors to machines that have none, such as a
-// page in a browser. crescent.h is the whole of it.
+// The public interface without files, threads and exceptions, for front ends on machines that have none, such as a page
+// in a browser. crescent.h has the whole interface.
 #pragma once
 
 #include "base/errors.h"

@@ -1,8 +1,8 @@
 """crescent: a bench for importance samplers in rendering.
 
     import crescent
-    judgement = crescent.check(sample, pdf, f, name="mine")
-    print(judgement)
+    result = crescent.check(sample, pdf, f, name="mine")
+    print(result)
 
 ``sample(wo[n,3], u[n,2]) -> (wi[n,3], pdf[n])``; local frame, n = +z; both directions leave the surface; pdf in 1/sr;
 f in 1/sr without the cosine.
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ._check import Description, check, describe
 from ._crescent import commit
 from ._crescent import version as __version__
-from ._judgement import CheckResult, Verdict
+from ._result import CheckResult, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, join, load, parse, run
@@ -51,7 +51,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """The modules of the package that are loaded when they are first used."""
+    """Loads a module of the package on first use."""
     if name in ("adapters", "testing"):
         return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

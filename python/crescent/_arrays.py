@@ -1,7 +1,7 @@
-"""What the callables of a sampler give, brought to arrays of doubles; what does not fit is told with its first bad row.
+"""Converts the results of a sampler's callables to arrays of doubles; errors name the first bad row.
 
-Any array that speaks DLPack or NumPy's protocol is taken. Directions are ``[n, 3]``, densities ``[n]``, weights and f
-``[n]`` or ``[n, 3]``, one row an asked row. A plain number stands for the same number in every row.
+Any array that supports DLPack or NumPy's protocol is accepted. Directions are ``[n, 3]``, densities ``[n]``, weights
+and f ``[n]`` or ``[n, 3]``, one row for each row of the query. A plain number means the same number in every row.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ Array = NDArray[np.float64]
 
 
 def as_numpy(value: Any, what: str) -> NDArray[Any]:
-    """The array behind `value`, on the host; ValueError where it is none, with the first row that does not fit."""
+    """Returns the array of `value`, on the host; ValueError if it is none, with the first row that does not fit."""
     if isinstance(value, np.ndarray):
         return value
-    if hasattr(value, "detach"):  # a tensor that autograd follows, or that lies on a device
+    if hasattr(value, "detach"):  # a tensor that autograd tracks, or that is on a device
         value = value.detach().cpu()
     if is_drjit(value):
         return of_drjit(value)
@@ -29,7 +29,7 @@ def as_numpy(value: Any, what: str) -> NDArray[Any]:
         try:
             return np.from_dlpack(value)
         except (BufferError, RuntimeError, TypeError, ValueError):
-            pass  # another device, or a scalar: NumPy's protocol brings it here
+            pass  # another device, or a scalar: NumPy's protocol converts it
     try:
         return np.asarray(value)
     except ValueError:
@@ -37,12 +37,12 @@ def as_numpy(value: Any, what: str) -> NDArray[Any]:
 
 
 def is_drjit(value: Any) -> bool:
-    """Whether it is an array of Dr.Jit, as Mitsuba's are."""
+    """Returns whether it is an array of Dr.Jit, as Mitsuba's are."""
     return type(value).__module__.partition(".")[0] in ("drjit", "mitsuba") and hasattr(value, "numpy")
 
 
 def of_drjit(value: Any) -> NDArray[Any]:
-    """Its rows: Dr.Jit's vectors have a component a row. An array of a single entry is a number."""
+    """Returns its rows: Dr.Jit's vectors have one component per row. An array of a single entry is a number."""
     array = np.asarray(value.numpy())
     if sys.modules["drjit"].is_tensor_v(value):
         return array
@@ -50,7 +50,7 @@ def of_drjit(value: Any) -> NDArray[Any]:
 
 
 def _first_ragged(rows: Sequence[Any]) -> str:
-    """The first of a list of rows that is not as long as row 0."""
+    """Returns the first of a list of rows whose length differs from that of row 0."""
     first = np.shape(rows[0])
     for i, row in enumerate(rows):
         if np.shape(row) != first:
@@ -124,7 +124,8 @@ Parts = tuple[Array, Array, Array | None, Array | None]
 
 
 def draws(answer: Any, n: int, name: str) -> Parts:
-    """(wi, pdf, weight or None, delta or None) of what `sample` gave: a tuple of two to four, or a mapping."""
+    """Returns (wi, pdf, weight or None, delta or None) from the result of `sample`: a tuple of two to four, or a
+    mapping."""
     if isinstance(answer, Mapping):
         unknown = set(answer) - {"wi", "pdf", "weight", "delta"}
         if unknown or not {"wi", "pdf"} <= set(answer):
@@ -151,7 +152,7 @@ def draws(answer: Any, n: int, name: str) -> Parts:
 
 
 def asks_sample(sample: Callable[..., Any], name: str, takes_wo: bool) -> Callable[[Array, Array], Parts]:
-    """`sample` as the core asks it: arrays of doubles in, all four parts out."""
+    """Wraps `sample` for the core: arrays of doubles in, all four parts out."""
 
     def ask(wo: Array, u: Array) -> Parts:
         return draws(sample(wo, u) if takes_wo else sample(u), len(u), name)
@@ -160,7 +161,7 @@ def asks_sample(sample: Callable[..., Any], name: str, takes_wo: bool) -> Callab
 
 
 def asks_pdf(pdf: Callable[..., Any], name: str, takes_wo: bool) -> Callable[[Array, Array], Array]:
-    """`pdf` as the core asks it."""
+    """Wraps `pdf` for the core."""
 
     def ask(wo: Array, wi: Array) -> Array:
         return column(pdf(wo, wi) if takes_wo else pdf(wi), len(wi), f"{name}: pdf")
@@ -169,7 +170,7 @@ def asks_pdf(pdf: Callable[..., Any], name: str, takes_wo: bool) -> Callable[[Ar
 
 
 def asks_f(f: Callable[..., Any], name: str, count: int) -> Callable[[Array, Array], Array]:
-    """`f` as the core asks it, `count` channels."""
+    """Wraps `f` for the core, with `count` channels."""
 
     def ask(wo: Array, wi: Array) -> Array:
         values = channels(f(wo, wi), len(wi), f"{name}: f")

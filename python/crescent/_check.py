@@ -1,4 +1,4 @@
-"""Is this sampler wrong, right but heavy-tailed, or right and good? One call: :func:`check`."""
+"""Checks samplers: :func:`check` finds errors, heavy tails and inefficiency."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._files import names_a_file, sampler_at
-from ._judgement import CheckResult
+from ._result import CheckResult
 from ._libraries import library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
 
@@ -23,7 +23,7 @@ Progress = Callable[[str, float, float], None]
 
 @dataclass(frozen=True)
 class Description:
-    """What distribution draws have: ``print`` shows it; `cases` has the numbers, each with its 95 % interval."""
+    """The distribution of draws: ``print`` shows it; `cases` has the numbers, each with its 95 % interval."""
 
     text: str
     cases: list[dict[str, Any]]
@@ -74,7 +74,7 @@ def _numbers(settings: Mapping[str, float]) -> dict[str, float]:
 
 
 def _of_library(s: Sampler) -> Sampler:
-    """The sampler with callables that take NumPy's arrays, whatever its own take."""
+    """Returns the sampler with callables that take NumPy's arrays, for any library of its own."""
     if s.array_module is np or s.array_module == "numpy":
         return s
     rows = rows_to_look_with(8, s.u) if s.wo != "none" else rows_to_look_with(8, s.u)[1:]
@@ -96,7 +96,7 @@ def _of_library(s: Sampler) -> Sampler:
 
 
 def _look(s: Sampler) -> tuple[int, bool, bool]:
-    """Channels, whether it gives weights, whether it gives delta parts: seen from a few answers."""
+    """Returns channels, whether it returns weights, and whether it returns delta parts, from a few results."""
     n, takes_wo = 8, s.wo != "none"
     wo, u = rows_to_look_with(n, s.u)
     wi, _, weight, delta = _arrays.asks_sample(s.sample, s.title(), takes_wo)(wo, u)
@@ -109,7 +109,7 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
     return max(counts, default=1), weight is not None, delta is not None
 
 
-def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
+def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     grid = _grid(wo_deg, s.wo)
     try:
         s = _of_library(s)
@@ -120,7 +120,7 @@ def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases
     count = s.channels or channels
     takes_wo = s.wo != "none"
     eta = None if s.eta is None else [float(v) for v in np.atleast_1d(s.eta)]
-    return _crescent.trials_of_callables(
+    return _crescent.cases_of_callables(
         sample=_arrays.asks_sample(s.sample, s.title(), takes_wo),
         pdf=None if s.pdf is None else _arrays.asks_pdf(s.pdf, s.title(), takes_wo),
         f=None if s.f is None else _arrays.asks_f(s.f, s.title(), count),
@@ -141,8 +141,8 @@ def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases
     )
 
 
-def _judge(
-    trials: _crescent.CheckCases,
+def _run_checks(
+    cases: _crescent.CheckCases,
     command: str,
     *,
     alpha: float = 1e-3,
@@ -158,8 +158,8 @@ def _judge(
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total)")
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
-    judged = _crescent.judge(
-        trials,
+    checked = _crescent.run_checks(
+        cases,
         other,
         alpha=alpha,
         seed=seed,
@@ -170,7 +170,7 @@ def _judge(
         command=command,
         progress=progress,
     )
-    return CheckResult(judged)
+    return CheckResult(checked)
 
 
 def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
@@ -181,7 +181,7 @@ def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
     return replace(sample, **known)
 
 
-def _trials_and_title(
+def _cases_and_title(
     sample: Any,
     pdf: Any,
     f: Any,
@@ -190,18 +190,18 @@ def _trials_and_title(
     full: bool,
     wo_deg: Grid | None,
 ) -> tuple[_crescent.CheckCases, str]:
-    """What `check` and `describe` are given, over its w_o, and its name."""
+    """Returns the cases of `check` and `describe` over the w_o, and the sampler's name."""
     _must_be_known(known)
     if isinstance(sample, str) and names_a_file(sample):
         sample = sampler_at(sample)
     if isinstance(sample, str):
         if pdf is not None or f is not None or known:
             raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")
-        return _crescent.trials_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
+        return _crescent.cases_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
     if settings:
         raise TypeError("settings are of a built-in arm; a sampler of one's own has its parameters in itself")
     sampler = _sampler_of(sample, pdf, f, known)
-    return _trials(sampler, full, wo_deg), sampler.title()
+    return _cases(sampler, full, wo_deg), sampler.title()
 
 
 def describe(
@@ -217,15 +217,15 @@ def describe(
     progress: Progress | None = None,
     **known: Unpack[Known],
 ) -> Description:
-    """What distribution the draws of a sampler have at each w_o; its arguments are those of :func:`check`.
+    """Describes the distribution of a sampler's draws at each w_o; the arguments are those of :func:`check`.
 
-    Nothing is judged, and neither pdf nor f is evaluated but to learn their shapes. `full` makes sixteen times as many
+    Nothing is checked, and pdf and f are evaluated only to learn their shapes. `full` makes sixteen times as many
     draws.
     """
-    trials, _ = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    cases, _ = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
-    text, numbers = _crescent.describe(trials, seed=seed, full=full, threads=threads, progress=progress)
+    text, numbers = _crescent.describe(cases, seed=seed, full=full, threads=threads, progress=progress)
     return Description(text, json.loads(numbers))
 
 
@@ -245,30 +245,30 @@ def check(
     progress: Progress | None = None,
     **known: Unpack[Known],
 ) -> CheckResult:
-    """Judges a sampler over a grid of w_o.
+    """Checks a sampler over a grid of w_o.
 
-    `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`), or `sample` is a :class:`Sampler`, or
-    where one is, "mine.py:sampler", whose folder is added to the path as pytest adds that of a test; or it is the name
-    of a built-in arm, whose parameters `settings` gives: ``check("phong", settings={"s": 32})``. What is known
-    of a sampler of callables is given by the fields of :class:`Sampler` as keywords: name, u, domain, wo, channels,
-    delta, eta, ...
+    `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`); or `sample` is a :class:`Sampler`, or the
+    place of one, "mine.py:sampler", whose folder is added to the path as pytest adds that of a test; or it is the name
+    of a built-in sampler, whose parameters `settings` gives: ``check("phong", settings={"s": 32})``. Properties of a
+    sampler of callables are given by the fields of :class:`Sampler` as keywords: name, u, domain, wo, channels, delta,
+    eta, ...
 
-    `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, in place of the grid. `alpha`: how often a right
-    sampler may be called wrong, over everything in the call. `against`: a second sampler, compared with the first.
-    `progress(what, done, total)` is called some times a second.
+    `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, instead of the grid. `alpha`: the probability
+    that a correct sampler is reported as wrong, over everything in the call. `against`: a second sampler, compared with
+    the first. `progress(what, done, total)` is called several times a second.
     """
-    trials, title = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
     if isinstance(against, str):
-        other = _crescent.arm_beside(against, trials)
+        other = _crescent.baseline_of(against, cases)
     elif isinstance(against, Sampler):
-        other = _trials(against, full, wo_deg)
+        other = _cases(against, full, wo_deg)
     elif against is not None:
         raise TypeError(
             f"against is {type(against).__name__}: expected a crescent.Sampler(sample, pdf, f), or the name of an arm"
         )
-    return _judge(
-        trials,
+    return _run_checks(
+        cases,
         f"crescent.check({title!r})",
         alpha=alpha,
         seed=seed,
@@ -281,7 +281,7 @@ def check(
 
 
 def _spelled_out() -> inspect.Signature:
-    """check's parameters with the fields of Sampler one by one, as help() and a notebook show them."""
+    """Returns check's parameters with the fields of Sampler one by one, for help() and notebooks."""
     given = inspect.signature(check)
     keyword = inspect.Parameter.KEYWORD_ONLY
     known = [

@@ -1,6 +1,7 @@
-"""Arrays of Dr.Jit, in either form that its callables are written in; those of Mitsuba's variant where one is set.
+"""Arrays of Dr.Jit, in either form of its callables; those of Mitsuba's variant if one is set.
 
-tensors: [n, 3] as those of NumPy, ``wo[:, 2]``; vectors: an array a component, ``wo.z``, ``u.x``. Answers are either.
+tensors: [n, 3] like those of NumPy, ``wo[:, 2]``; vectors: one array per component, ``wo.z``, ``u.x``. Results may have
+either form.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from ._libraries import Library
 
 
 def rows_of(value: Any, n: int) -> Any:
-    """NumPy's rows of an array of Dr.Jit; a vector of a single entry stands for all `n`."""
+    """Returns NumPy's rows of an array of Dr.Jit; a vector of a single entry is repeated for all `n`."""
     if not _arrays.is_drjit(value):
         return value
     rows = _arrays.of_drjit(value)
@@ -26,7 +27,8 @@ def rows_of(value: Any, n: int) -> Any:
 
 
 def _types(module: Any) -> Any:
-    """Whose Float, TensorXf and vectors: Mitsuba's variant, the module that is given, or what Dr.Jit finds."""
+    """Returns the source of Float, TensorXf and vectors: Mitsuba's variant, the given module, or the one that Dr.Jit
+    finds."""
     mi = sys.modules.get("mitsuba")
     if getattr(module, "__name__", module) in ("drjit", "mitsuba"):
         if mi is not None and mi.variant() and not str(mi.variant()).startswith("scalar"):
@@ -36,7 +38,8 @@ def _types(module: Any) -> Any:
 
 
 class DrJit(Library):
-    """Rows of doubles in, Dr.Jit's arrays of single precision out, or of double in a variant of Mitsuba's; and back."""
+    """Takes rows of doubles and returns Dr.Jit's arrays of single precision, or of double in a variant of Mitsuba's;
+    and back."""
 
     def __init__(self, module: Any = "drjit", tensors: bool = False) -> None:
         super().__init__(np)
@@ -44,7 +47,7 @@ class DrJit(Library):
         self._types = _types(module)
 
     def _vector(self, k: int) -> Any:
-        """The type of k components: Mitsuba's own for points and directions."""
+        """Returns the type of k components: Mitsuba's own for points and directions."""
         of = self._types
         if mine := getattr(of, {2: "Point2f", 3: "Vector3f"}.get(k, ""), None):
             return mine
@@ -71,7 +74,7 @@ class DrJit(Library):
 
     def into(self, rows: Array) -> Any:
         own = super().into(rows)
-        return type(own)(own)  # shares the memory; what a callable writes into is a copy
+        return type(own)(own)  # shares the memory; an array that a callable writes into is a copy
 
     def _cut(self, answer: Any, n: int) -> Any:
         if isinstance(answer, Mapping):
@@ -81,7 +84,7 @@ class DrJit(Library):
         return rows_of(answer, n)
 
     def fits(self, sample: Callable[..., Any], rows: tuple[Array, ...]) -> bool:
-        """Whether `sample` answers arrays of this form with one draw a row."""
+        """Returns whether `sample` returns one draw per row for arrays of this form."""
         try:
             wi = _arrays.draws(self.asks(sample)(*rows), len(rows[-1]), "")[0]
         except Exception:
@@ -90,6 +93,7 @@ class DrJit(Library):
 
 
 def drjit_for(module: Any, sample: Callable[..., Any], rows: tuple[Array, ...]) -> DrJit:
-    """The form that `sample` takes; tensors first: what is written for vectors takes rows of these, so too few."""
+    """Returns the form that `sample` takes. Tensors are tried first: code written for vectors would take their rows,
+    and so return too few."""
     tensors = DrJit(module, tensors=True)
     return tensors if tensors.fits(sample, rows) else DrJit(module)

@@ -1,8 +1,8 @@
-"""Samplers in files: "mine.py:sampler" finds what pytest would, with the imports that pytest would allow.
+"""Samplers in files: "mine.py:sampler" is found as by pytest, with the same imports.
 
-As in pytest's import mode "prepend": the first folder upward from the file that is no package (has no ``__init__.py``)
-goes to the front of ``sys.path``, and the file is imported by its name below that folder. So a sampler's file may
-import the files beside it, and a test that imports it too has the same module.
+As in pytest's import mode "prepend": the first parent folder of the file that is not a package (has no ``__init__.py``)
+is put at the front of ``sys.path``, and the file is imported by its name below that folder. So a sampler's file may
+import the files next to it, and a test that imports it too has the same module.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from ._sampler import Sampler
 
 
 def names_a_file(text: str) -> bool:
-    """Whether it is "FILE.py", "FILE.py:NAME" or "module:NAME"."""
+    """Returns whether it is "FILE.py", "FILE.py:NAME" or "module:NAME"."""
     return ":" in text or text.endswith(".py")
 
 
 def _module_in(path: Path) -> ModuleType:
-    """The module that a file is."""
+    """Returns the module of a file."""
     if not path.is_file():
         near = _crescent.nearest(path.name, [at.name for at in path.parent.glob("*.py")])
         raise ValueError(f"{path}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else ""))
@@ -41,7 +41,7 @@ def _module_in(path: Path) -> ModuleType:
 
 
 def sampler_at(where: str, root: Path | None = None) -> Sampler:
-    """The sampler that "FILE.py:NAME", "module:NAME" or "FILE.py" means; a file is looked for from `root`."""
+    """Returns the sampler of "FILE.py:NAME", "module:NAME" or "FILE.py"; a file is searched from `root`."""
     name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
     found: Any = _module_in((root or Path()) / name) if name.endswith(".py") else importlib.import_module(name)
     if colon:

@@ -1,4 +1,4 @@
-"""A user's sampler: its callables with what is known of it, looked over as it is made."""
+"""A user's sampler: its callables and properties, validated when it is created."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SIDES = ("upper", "both", "none")
 
 
 def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
-    """A whole number of a range; TypeError or ValueError."""
+    """Returns an integer in a range; else raises TypeError or ValueError."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -32,7 +32,7 @@ def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
 
 @dataclass(frozen=True)
 class Sampler:
-    """A sampler's callables with what is known of it.
+    """A sampler's callables and properties.
 
     Local frame, n = +z; wo is given, wi drawn, both leave the surface; pdf in 1/sr; f in 1/sr without the cosine.
     """
@@ -41,19 +41,19 @@ class Sampler:
     pdf: Callable[..., Any] | None = None  #: pdf(wo[n,3], wi[n,3]) -> [n]
     f: Callable[..., Any] | None = None  #: f(wo[n,3], wi[n,3]) -> [n] or [n,3]
     name: str = ""
-    u: int = 2  #: random numbers a sample takes, 1 to 8
-    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 under the surface whatever the callables say there
-    wo: Asked = "upper"  #: the w_o that it answers for; "none": sample(u) and pdf(wi), as of an environment light
-    channels: int | None = None  #: 1 or 3; None: as f and the weights have
-    delta: bool | None = None  #: some draws are of delta parts; None: where sample gives four parts
+    u: int = 2  #: random numbers per sample, 1 to 8
+    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 below the surface, for any result of the callables there
+    wo: Asked = "upper"  #: the w_o that it supports; "none": sample(u) and pdf(wi), as for an environment light
+    channels: int | None = None  #: 1 or 3; None: the number of f and the weights
+    delta: bool | None = None  #: some draws are delta parts; None: if sample returns four parts
     eta: float | Sequence[float] | None = None  #: index of refraction below over above
-    importance: bool = False  #: f is scaled as importance is, not as radiance
+    importance: bool = False  #: f is scaled for importance, not for radiance
     reciprocal: bool = True  #: False: f is known not to be reciprocal
-    own_random: bool = False  #: it draws random numbers of its own: the same u may give another answer
-    serial: bool = False  #: its callables want one thread, the caller's own
-    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
+    own_random: bool = False  #: it draws random numbers of its own: the same u may give another result
+    serial: bool = False  #: its callables require the caller's thread
+    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: the arrays that they return
     array_module: Any = None
-    device: Any = None  #: where these arrays lie, as that library says it
+    device: Any = None  #: the device of these arrays, in that library's notation
 
     def __post_init__(self) -> None:
         for what, taken in (("sample", "wo, u"), ("pdf", "wo, wi"), ("f", "wo, wi")):
@@ -73,12 +73,12 @@ class Sampler:
                 raise ValueError(f"eta is {self.eta!r}: expected a number above 0, or three of them")
 
     def title(self) -> str:
-        """Its name, or that of the function which draws."""
+        """Its name, or that of the function that draws."""
         return self.name or getattr(self.sample, "__name__", type(self.sample).__name__)
 
 
 class Known(TypedDict, total=False):
-    """What check takes as keywords of a sampler of callables: the fields of Sampler."""
+    """The keywords of check for a sampler of callables: the fields of Sampler."""
 
     name: str
     u: int
@@ -96,6 +96,6 @@ class Known(TypedDict, total=False):
 
 
 def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:
-    """A few rows to look at a sampler with: w_o and u."""
+    """Returns a few rows for testing a sampler's form: w_o and u."""
     wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
     return wo, (np.arange(n)[:, None] + 0.5) / n * np.ones((1, numbers)) * np.linspace(1, 0.6, numbers)

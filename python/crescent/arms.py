@@ -1,4 +1,4 @@
-"""The built-in arms and BRDFs as vectorised functions, and numbers about samples.
+"""The built-in samplers and BRDFs as vectorised functions, and the tail index of samples.
 
 phong = crescent.arm("phong", brdf="phong", s=32)
 wi, p = phong.sample(wo, u)
@@ -21,17 +21,17 @@ from ._sampler import Sampler
 
 
 def arm_names() -> list[str]:
-    """The arms of the list."""
+    """The built-in samplers."""
     return list(_crescent.sampler_names())
 
 
 def brdf_names() -> list[str]:
-    """The lobes of the list; a surface is rho_d / pi + rho_s * lobe."""
+    """The built-in lobes; a surface is rho_d / pi + rho_s * lobe."""
     return list(_crescent.brdf_names())
 
 
 def _core(name: str, lobe: str, s: float, alpha: float, rho_d: float, rho_s: float) -> _crescent.ListedArm:
-    """ValueError names the parameter that no surface has."""
+    """ValueError names an unknown parameter."""
     for what, value, most in (("s", s, 1e6), ("alpha", alpha, 1)):
         if not 0 < value <= most:
             raise ValueError(f"{what} is {value:g}: expected a number above 0, up to {most:g}")
@@ -44,9 +44,9 @@ def _core(name: str, lobe: str, s: float, alpha: float, rho_d: float, rho_s: flo
 def arm(
     name: str, *, brdf: str = "", s: float = 32, alpha: float = 0.3, rho_d: float = 0.5, rho_s: float = 0.4
 ) -> Sampler:
-    """A built-in arm on a surface: its sample, pdf and f take directions as one row or as many, [n, 3].
+    """A built-in sampler on a surface: its sample, pdf and f take directions as one row or as many, [n, 3].
 
-    Draws and densities are of single precision, as they render. Arms that aim at lamps are none of these.
+    Draws and densities have single precision, as in renders. Samplers that aim at lights are not available.
     """
     core = _core(name, brdf, s, alpha, rho_d, rho_s)
     return Sampler(
@@ -66,7 +66,7 @@ def brdf(
 
 
 def _finite(a: ArrayLike, what: str, columns: int) -> Array:
-    """As rows of so many numbers; ValueError names the first that is none."""
+    """Converts to rows of this many numbers; ValueError names the first that is not finite."""
     rows = np.atleast_2d(_arrays.numbers(a, what)).astype(np.float64)
     if rows.ndim != 2 or rows.shape[1] != columns:
         raise ValueError(f"{what}: shape {np.shape(a)}, expected (n, {columns}) or ({columns},)")
@@ -77,7 +77,7 @@ def _finite(a: ArrayLike, what: str, columns: int) -> Array:
 
 
 def _rows(wo: ArrayLike, beside: ArrayLike, what: str, columns: int) -> tuple[Array, Array]:
-    """Both as rows, as many of one as of the other."""
+    """Returns both with equal numbers of rows."""
     x, y = _finite(wo, "wo", 3), _finite(beside, what, columns)
     n = max(len(x), len(y)) if len(x) and len(y) else 0
     if not {len(x), len(y)} <= {1, n}:
@@ -94,7 +94,7 @@ class Tail:
 
     k: float
     se: float  #: standard error of k
-    exceedances: int  #: how many of the largest it was fitted to
+    exceedances: int  #: number of the largest weights that were fitted
 
     @property
     def heavy(self) -> bool:
@@ -102,7 +102,7 @@ class Tail:
 
 
 def tail(weights: ArrayLike) -> Tail | None:
-    """k-hat of weights f cos / p (Zhang & Stephens 2009, Vehtari et al. 2024); None where they do not spread."""
+    """k-hat of weights f cos / p (Zhang & Stephens 2009, Vehtari et al. 2024); None if they do not vary."""
     values = np.ascontiguousarray(weights, np.float64).ravel()
     if not np.isfinite(values).all():
         raise ValueError(f"weights: row {int(np.argmin(np.isfinite(values)))} is not finite")
@@ -113,11 +113,11 @@ def tail(weights: ArrayLike) -> Tail | None:
 def pdf_of(
     sample: Callable[..., Any] | Sampler, *, step: float = 1e-4
 ) -> Callable[[Array | None, Array], tuple[Array, Array]]:
-    """The density that a warp of two numbers has, by differences: density(wo, u) -> (wi, 1 / |dw/du1 x dw/du2|).
+    """The density of a warp of two numbers, by finite differences: density(wo, u) -> (wi, 1 / |dw/du1 x dw/du2|).
 
-    True where `sample` is smooth and one-to-one about u: what to hold a formula for the pdf against. Its error is of
-    order step^2 beside that of the rounding over step, and of order step within a step of 0 and 1. A :class:`Sampler`
-    without w_o is asked without it: density(None, u).
+    Valid if `sample` is smooth and one-to-one about u; for testing a formula of the pdf. Its error is of order step^2
+    plus that of the rounding over step, and of order step within a step of 0 and 1. A :class:`Sampler` without w_o is
+    called with None: density(None, u).
     """
     warp = sample.sample if isinstance(sample, Sampler) else sample
     if not callable(warp):

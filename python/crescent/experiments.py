@@ -29,7 +29,7 @@ Progress = Callable[[str, float, float], None]
 
 
 def _toml(value: Any) -> str:
-    """A value as an override gives it."""
+    """Formats a value for an override."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -44,12 +44,12 @@ def _toml(value: Any) -> str:
 
 
 def _quoted(key: str) -> str:
-    """A key as a step of a path: quoted where it is more than a bare word."""
+    """Formats a key as a step of a path: quoted if it is more than a bare word."""
     return key if re.fullmatch(r"[\w-]+", key) else f"'{key}'" if '"' in key else f'"{key}"'
 
 
 def _overrides(changes: Mapping[str, Any]) -> list[str]:
-    """KEY=VALUE of each; a table gives one for each of its keys."""
+    """Returns KEY=VALUE for each; a table gives one for each of its keys."""
     out: list[str] = []
     for path, value in changes.items():
         if isinstance(value, Mapping) and value:
@@ -60,7 +60,7 @@ def _overrides(changes: Mapping[str, Any]) -> list[str]:
 
 
 def _steps(path: str) -> list[str]:
-    """shapes.'a ball'.center[1] -> shapes, a ball, center, 1: as --set reads a path."""
+    """Splits shapes.'a ball'.center[1] into shapes, a ball, center, 1, as --set reads a path."""
     found = [next(filter(None, step)) for step in re.findall(r"\"([^\"]*)\"|'([^']*)'|([^.\[\]\"']+)", path)]
     if not found:
         raise KeyError(f"{path!r}: expected a path such as sphere.s or shapes.sphere.s")
@@ -68,7 +68,8 @@ def _steps(path: str) -> list[str]:
 
 
 def _inside(at: Any, step: str) -> Any:
-    """The value under a key of a table or at an index of a list; KeyError names what there is, and the nearest."""
+    """Returns the value of a key of a table or at an index of a list; KeyError names the existing keys, and the
+    nearest."""
     if isinstance(at, Mapping):
         if step in at:
             return at[step]
@@ -82,7 +83,8 @@ def _inside(at: Any, step: str) -> Any:
 
 
 def _found(tree: Mapping[str, Any], path: str) -> tuple[list[str], Any]:
-    """The steps from the top to a value, and the value. A path may begin at a name, as --set takes it: lamp.radius."""
+    """Returns the steps from the top to a value, and the value. A path may begin at a name, as for --set: key.radius.
+    """
     steps = _steps(path)
     families = [key for key, value in tree.items() if isinstance(value, Mapping) and steps[0] in value]
     starts = [steps] if steps[0] in tree else []
@@ -121,18 +123,18 @@ def _lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
 
 
 class Experiment:
-    """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. A change is checked as a whole.
+    """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. The whole is checked after a change.
 
     Keys are those of ``crescent run --set``: a whole path, ``shapes.sphere.s``, or one that begins at a name,
     ``sphere.s``; an item of a list is ``camera.eye[1]``. A table is set by a dictionary, ``e["arms.phong"] = {"n":
-    [4]}``, and taken out by ``del e["arms.phong"]``. What is read is a copy.
+    [4]}``, and removed by ``del e["arms.phong"]``. Values are read as copies.
     """
 
     def __init__(self, core: _crescent.Experiment) -> None:
         self._core = core
 
     def _tree(self) -> dict[str, Any]:
-        """Every value, with those that a shape inherits."""
+        """Returns every value, including those that a shape inherits."""
         return tomllib.loads(re.sub(r"(?m)^# inherited: ", "", self._core.text))
 
     def __getitem__(self, path: str) -> Any:
@@ -172,7 +174,7 @@ class Experiment:
 
     @property
     def hash(self) -> str:
-        """What identifies an experiment, computed from every value but the number of seeds."""
+        """The identity of an experiment, computed from every value except the number of seeds."""
         return self._core.hash
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -191,13 +193,13 @@ def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) ->
 
 
 def parse(text: str, name: str = "text.toml") -> Experiment:
-    """The same from text; `name` stands for the file in messages."""
+    """The same from text; `name` is the file's name in messages."""
     return Experiment(_crescent.parse(text, name, []))
 
 
 @dataclass(frozen=True, repr=False)
 class Film:
-    """Per pixel what n samples of one arm came to. Rows run bottom-up; radiance in W/(sr m^2), linear Rec. 709."""
+    """Per-pixel statistics of n samples of one arm. Rows run bottom-up; radiance in W/(sr m^2), linear Rec. 709."""
 
     arm: str
     n: int
@@ -257,23 +259,65 @@ class Measured:
 
     @property
     def holds(self) -> bool:
-        """No assertion of the experiment fails; those on plates, or on seeds that were not run, are skipped."""
+        """Whether no assertion of the experiment fails; those on plates, or on seeds that were not run, are skipped."""
         return bool(self._core.holds)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Measured, (self._core,)
 
     def records(self) -> list[dict[str, Any]]:
-        """One row a number: arm, n, s, seed, meter, region, value; a data frame takes it as it is.
+        """One row per number: arm, n, s, seed, `meter`, region, value; suitable for a data frame.
 
-        Counts are int, other numbers float, None where there is none; region is "" for the whole frame. Keys that were
-        changed have a column each, whose values are those of the file.
+        Counts are int, other numbers float, None if there is none; region is "" for the whole frame. Each changed key
+        has a column, whose values are those of the file.
         """
         rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
         return [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
 
+    def to_pandas(self) -> Any:
+        """The rows of :meth:`records` as a pandas.DataFrame."""
+        import pandas  # type: ignore[import-untyped,unused-ignore]
+
+        return pandas.DataFrame(self.records())
+
+    def to_latex(
+        self,
+        table: str = "rmse",
+        region: str | None = None,
+        *,
+        s: float | None = None,
+        bold: str | None = "best",
+        digits: int = 3,
+    ) -> str:
+        """A metric as a LaTeX table (booktabs): a row an arm, a column a sample count, means over seeds with the half
+        width of their 95 % intervals.
+
+        `bold="best"`: arms of which none is significantly worse than the best are bold, if some other arm is (paired t
+        over seeds at 5 %, shared by the arms); with one seed nothing is ranked. None: nothing is bold.
+        """
+        from ._tables import latex
+
+        if bold not in ("best", None):
+            raise ValueError(f"bold is {bold!r}: expected 'best' or None")
+        return latex(self, table, region, self.s if s is None else s, bold == "best", digits)
+
+    @property
+    def s(self) -> float:
+        """The experiment's own Phong exponent."""
+        return float(self._core.s)
+
+    @property
+    def provenance(self) -> str:
+        """One line for an appendix: program, experiment, hash, seeds, compiler."""
+        p = self.metrics["provenance"]
+        seeds = sorted({row["seed"] for row in self.records()})
+        return (
+            f"crescent {p['version']} ({p['commit']}, {p['compiler']}), experiment {p['experiment']['file']} "
+            f"{p['experiment']['hash']}, {len(seeds)} seed{'s' * (len(seeds) != 1)} from {seeds[0]}"
+        )
+
     def to_xarray(self) -> Any:
-        """An xarray.Dataset: a variable a meter over (arm, n, s, seed), and region where it has one; NaN: not run."""
+        """An xarray.Dataset: one variable per metric over (arm, n, s, seed), and region if it has one; NaN: not run."""
         import xarray
 
         rows = self.records()
@@ -291,18 +335,18 @@ class Measured:
         return xarray.Dataset(out)
 
     def write(self, folder: str | PathLike[str]) -> None:
-        """metrics.json, metrics.csv, junit.xml and films/*.exr, which appear as one; the program draws plates."""
+        """Writes metrics.json, metrics.csv, junit.xml and films/*.exr, all at once; only the program draws plates."""
         self._core.write(fspath(folder))
 
     def __repr__(self) -> str:
         return f"<Measured: {len(self.films)} films; assertions {'hold' if self.holds else 'fail'}>"
 
 
-_COUNTS = frozenset(_crescent.counting_meters())
+_COUNTS = frozenset(_crescent.counting_metrics())
 
 
 def _field(column: str, text: str, meter: str) -> Any:
-    """A field of metrics.csv: a number by its column, None where there is none; a key's value as the file has it."""
+    """Reads a field of metrics.csv: a number by its column, None if there is none; a key's value as in the file."""
     if column in ("arm", "meter", "region"):
         return text
     if column in ("n", "seed") or (column == "value" and meter in _COUNTS):
@@ -328,8 +372,8 @@ def run(
 ) -> Measured:
     """Runs an experiment, or the file of one.
 
-    `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and evidence too.
-    `out`: a folder for metrics and films. Films are the same bits whatever `threads` and `isa` say.
+    `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and article checks too.
+    `out`: a folder for metrics and films. Films have the same bits for any `threads` and `isa`.
     """
     folder = None if out is None else abspath(out)
     e = experiment if isinstance(experiment, Experiment) else load(experiment)

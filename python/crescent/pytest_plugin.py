@@ -61,7 +61,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     output = getattr(session.config, "workeroutput", None)  # of a worker of pytest-xdist
     if output is not None:
         mine = session.config.stash[_KEY]
-        output["crescent"] = (mine.tests, mine.judged, mine.spent)
+        output["crescent"] = (mine.tests, mine.checked, mine.spent)
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -69,16 +69,16 @@ def pytest_testnodedown(node: Any, error: Any) -> None:
     told = getattr(node, "workeroutput", {}).get("crescent")
     if told:
         mine = node.config.stash[_KEY]
-        mine.tests, judged, spent = told
-        mine.judged += judged
+        mine.tests, checked, spent = told
+        mine.checked += checked
         mine.spent += spent
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     mine = config.stash[_KEY]
-    if not mine.judged:
+    if not mine.checked:
         return
     terminalreporter.write_line(
-        f"crescent: {mine.judged} samplers judged in {mine.tests} tests, which share alpha = {mine.alpha:g}: "
+        f"crescent: {mine.checked} samplers checked in {mine.tests} tests, which share alpha = {mine.alpha:g}: "
         f"a suite of right samplers like this one fails by chance at most once in {round(1 / mine.spent)} sessions"
     )

@@ -1,7 +1,7 @@
-"""Samplers in a test suite: `assert_sampler` fails where a sampler is not right; `mutants` tries the suite itself.
+"""Samplers in a test suite: `assert_sampler` fails if a sampler is not right; `mutants` tests the suite itself.
 
-Under pytest the plugin of this package (`crescent.pytest_plugin`, loaded by itself) shares one alpha over all tests of
-a session: a suite of right samplers fails by chance that often, however many samplers it has.
+Under pytest the plugin of this package (`crescent.pytest_plugin`, loaded automatically) shares one alpha over all tests
+of a session: a suite of correct samplers fails by chance with that probability, for any number of samplers.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import numpy as np
 from . import _arrays
 from ._check import _of_library, check
 from ._files import names_a_file, sampler_at
-from ._judgement import CheckResult
+from ._result import CheckResult
 from ._sampler import Sampler
 
-ALPHA = 1e-3  #: of a whole session
+ALPHA = 1e-3  #: for a whole session
 
 
 @dataclass
@@ -28,18 +28,18 @@ class Session:
 
     alpha: float = ALPHA
     tests: int = 1
-    judged: int = 0
-    spent: float = 0.0  #: of alpha, so far
+    checked: int = 0
+    spent: float = 0.0  #: share of alpha used so far
     calls: dict[str, int] = field(default_factory=dict)
     test: str = ""  #: that is running
-    root: Path | None = None  #: where files of samplers are looked for; None: the current folder
+    root: Path | None = None  #: where files of samplers are searched; None: the current folder
 
     def share(self) -> float:
-        """The alpha of the next call; the shares of all calls come to `alpha` at most (Sidak over tests)."""
+        """Returns the alpha of the next call; the shares of all calls sum to at most `alpha` (Sidak over tests)."""
         k = self.calls[self.test] = self.calls.get(self.test, 0) + 1
         of_test = -np.expm1(np.log1p(-self.alpha) / max(self.tests, 1))
         share = float(of_test * 6 / (np.pi * k) ** 2)
-        self.judged += 1
+        self.checked += 1
         self.spent += share
         return share
 
@@ -48,7 +48,7 @@ _session: Session | None = None
 
 
 def begin_session(session: Session | None) -> None:
-    """From here on assert_sampler takes its alpha from `session`; None: ALPHA a call."""
+    """From here on assert_sampler takes its alpha from `session`; None: ALPHA per call."""
     global _session
     _session = session
 
@@ -62,22 +62,22 @@ def assert_sampler(
     allow: Iterable[str] = (),
     **known: Any,
 ) -> CheckResult:
-    """Raises AssertionError unless the sampler is right; arguments as of :func:`crescent.check`.
+    """Raises AssertionError unless the sampler is right; the arguments are those of :func:`crescent.check`.
 
-    A file, "mine.py:sampler", is looked for from pytest's rootdir.
-    `allow`: names of verdicts that may be inconclusive, as ("tail", "mean") of a sampler known to be heavy-tailed.
+    A file, "mine.py:sampler", is searched from pytest's rootdir. `allow`: names of verdicts that may be inconclusive,
+    such as ("tail", "mean") for a sampler known to be heavy-tailed.
     """
     share = alpha if alpha is not None else _session.share() if _session else ALPHA
     if isinstance(sample, str) and names_a_file(sample):
         sample = sampler_at(sample, _session.root if _session else None)
-    judgement = check(sample, pdf, f, alpha=share, **known)
+    result = check(sample, pdf, f, alpha=share, **known)
     allowed = set(allow)
     bad = [
-        v for v in judgement if v.state in ("wrong", "error") or (v.state == "inconclusive" and v.name not in allowed)
+        v for v in result if v.state in ("wrong", "error") or (v.state == "inconclusive" and v.name not in allowed)
     ]
     if bad:
-        raise AssertionError(f"the sampler is not right\n{judgement}")
-    return judgement
+        raise AssertionError(f"the sampler is not right\n{result}")
+    return result
 
 
 @dataclass(frozen=True)
@@ -122,18 +122,18 @@ def _moved(parts: Any, move: Callable[[Any], Any]) -> Any:
 
 
 def _leant(wi: Any) -> Any:
-    """Turned by 5 degrees about x."""
+    """Rotated by 5 degrees about x."""
     c, s = np.cos(np.radians(5)), np.sin(np.radians(5))
     return wi @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
 
 
 def _with_nan(wi: Any) -> Any:
-    """Every hundredth row is no number."""
+    """Every hundredth row is NaN."""
     return np.where(np.arange(len(wi))[:, None] % 100, wi, np.nan)
 
 
 def mutants(sampler: Sampler) -> Iterator[Mutant]:
-    """The sampler with one fault planted at a time, as samplers are broken: what a suite of tests ought to notice."""
+    """Returns the sampler with one typical fault at a time, which a test suite should detect."""
     s = _of_library(sampler)
 
     def of(name: str, **bends: Any) -> Mutant:
@@ -167,13 +167,13 @@ def mutants(sampler: Sampler) -> Iterator[Mutant]:
 
 @dataclass(frozen=True)
 class Noticed:
-    """Which tests noticed which planted fault."""
+    """Which tests detected which planted fault."""
 
     tests: tuple[str, ...]
     by: dict[str, tuple[str, ...]]  #: fault -> the tests that failed
 
     def missed(self) -> tuple[str, ...]:
-        """The faults that no test noticed."""
+        """The faults that no test detected."""
         return tuple(fault for fault, tests in self.by.items() if not tests)
 
     def __str__(self) -> str:
@@ -182,8 +182,8 @@ class Noticed:
 
 
 def who_notices(sampler: Sampler, tests: Iterable[Callable[[Sampler], Any]]) -> Noticed:
-    """Runs tests that take a sampler on every mutant of it: a test notices a mutant by raising, or by
-    returning something that is false and not None."""
+    """Runs tests that take a sampler on every mutant of it: a test detects a mutant by raising, or by returning a false
+    value other than None."""
     tests = tuple(tests)
     names = tuple(getattr(t, "__name__", str(t)) for t in tests)
     for test, name in zip(tests, names):

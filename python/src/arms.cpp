@@ -1,4 +1,4 @@
-// The built-in arms and BRDFs as vectorised functions, and the tail of a set of weights, for crescent/arms.py.
+// The built-in samplers and BRDFs as vectorised functions, and the tail of a set of weights, for crescent/arms.py.
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -27,7 +27,7 @@ Vec3d row(const In& a, std::size_t i) { return {a(i, 0), a(i, 1), a(i, 2)}; }
 
 bool same(Vec3d a, Vec3d b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-/// An arm of the list on a surface under an even light; one that aims at lamps has nothing to aim at there.
+/// A built-in sampler on a surface under constant light; one that aims at area lights has no light to aim at.
 struct ListedArm {
     std::string name;
     SurfaceSetup surface;
@@ -53,13 +53,13 @@ ListedArm arm_of(const std::string& name, const std::string& lobe, double s, dou
     return out;
 }
 
-/// Calls ask(subject, i) row by row; an arm is aimed anew where w_o changes.
+/// Calls ask(sampler, i) row by row; a sampler is created again when w_o changes.
 template <class Ask> void each_row(const ListedArm& arm, const In& wo, Ask&& ask) {
-    std::shared_ptr<const SamplerAdapter> subject;
+    std::shared_ptr<const SamplerAdapter> adapter;
     Vec3d aimed{};
     for (std::size_t i = 0; i < wo.shape(0); ++i) {
-        if (const Vec3d w = row(wo, i); !subject || !same(w, aimed)) subject = arm.at(aimed = w);
-        ask(*subject, i);
+        if (const Vec3d w = row(wo, i); !adapter || !same(w, aimed)) adapter = arm.at(aimed = w);
+        ask(*adapter, i);
     }
 }
 
@@ -73,10 +73,10 @@ nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const 
     std::vector<double> wi(3 * n), pdf(n);
     {
         const Work here;
-        each_row(arm, wo, [&](const SamplerAdapter& subject, std::size_t i) {
+        each_row(arm, wo, [&](const SamplerAdapter& adapter, std::size_t i) {
             const PrimarySample numbers(u(i, 0), u(i, 1));
             Draw d;
-            subject.sample(0, row(wo, i), {&numbers, 1}, {&d, 1});
+            adapter.sample(0, row(wo, i), {&numbers, 1}, {&d, 1});
             wi[3 * i] = d.wi.x, wi[3 * i + 1] = d.wi.y, wi[3 * i + 2] = d.wi.z;
             pdf[i] = d.pdf;
         });
@@ -90,9 +90,9 @@ Out pdf(const ListedArm& arm, const In& wo, const In& wi) {
     std::vector<double> p(n);
     {
         const Work here;
-        each_row(arm, wo, [&](const SamplerAdapter& subject, std::size_t i) {
+        each_row(arm, wo, [&](const SamplerAdapter& adapter, std::size_t i) {
             const Pair at{row(wo, i), row(wi, i)};
-            subject.pdf(0, {&at, 1}, {&p[i], 1});
+            adapter.pdf(0, {&at, 1}, {&p[i], 1});
         });
     }
     return made(std::move(p), {n});
@@ -106,7 +106,7 @@ Out f(const ListedArm& arm, const In& wo, const In& wi) {
     return made(std::move(value), {n});
 }
 
-/// (k, se, exceedances) of the largest of `weights`.
+/// Returns (k, se, exceedances) of the largest of `weights`.
 std::optional<std::tuple<double, double, std::uint64_t>> tail_of(
     const nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>& weights) {
     std::vector<double> all(weights.shape(0));

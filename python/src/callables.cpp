@@ -1,5 +1,5 @@
-// A question is written into column-major arrays of doubles that Python owns, the callable is called under the lock,
-// and its answer is copied with the lock free. Where one number stands for three channels it is their luminance.
+// A query is written into column-major arrays of doubles that Python owns, the callable is called under the lock, and
+// its result is copied with the lock released. If one number represents three channels, it is their luminance.
 #include "callables.h"
 
 #include <nanobind/ndarray.h>
@@ -12,7 +12,7 @@ using Made = nb::ndarray<nb::numpy, double>;
 using Rows = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
 using Column = nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>;
 
-/// An array [n, k] that Python owns, filled column by column: fill(row, column).
+/// Returns an array [n, k] that Python owns, filled column by column: fill(row, column).
 template <class Fill> nb::object matrix(std::size_t n, std::size_t k, Fill&& fill) {
     auto* data = new double[n * k];
     const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
@@ -36,7 +36,7 @@ void must_be(std::size_t n, std::size_t wanted) {
 
 }  // namespace
 
-/// The callables are asked with the lock held; what they raise stops the judgement and is raised again at its end.
+/// The callables are called with the lock held; an exception stops the check and is raised again at its end.
 template <class Ask> void CallableSampler::ask(Ask&& ask) const {
     if (raised_) raised_->check();
     const Locked held;

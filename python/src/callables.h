@@ -1,12 +1,12 @@
-// Vectorised Python callables as a sampler on trial. They are asked in batches, by any thread, with the interpreter's
-// lock held for the call alone:
+// Vectorised Python callables as a sampler for the check. They are called in batches, by any thread, with the
+// interpreter's lock held only for the call:
+//
 //
 //   sample(wo[n,3], u[n,k]) -> (wi[n,3], pdf[n], weight[n,c] or None, delta[n] or None)
 //   pdf(wo[n,3], wi[n,3])   -> [n]
 //   f(wo[n,3], wi[n,3])     -> [n] or [n,3], without the cosine
 //
-// Arrays that go in are of doubles, their columns contiguous; those that come out have been brought to these shapes by
-// crescent/_arrays.py.
+// Input arrays are of doubles, their columns contiguous; crescent/_arrays.py brings output arrays to these shapes.
 #pragma once
 
 #include "watched.h"
@@ -17,9 +17,9 @@ struct Callables {
     std::string name;
     nb::object sample, pdf, f;  // pdf and f may be None
     Traits traits;
-    bool weighs = false;      // sample gives weights
-    bool upper_only = false;  // pdf and f are 0 under the surface, whatever the callables say there
-    bool serial = false;      // they want one thread
+    bool weighs = false;      // sample returns weights
+    bool upper_only = false;  // pdf and f are 0 below the surface, for any result of the callables there
+    bool serial = false;      // they require one thread
 };
 
 class CallableSampler : public InProcessAdapter {
@@ -35,9 +35,9 @@ public:
     void f(std::span<const Pair> at, std::span<double> out) const override;
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override;
 
-    /// Who hears of what the callables raise; only while a judgement is under way.
-    void tell(Raised* raised) const { raised_ = raised; }
-    /// Draws that the callables made since this object was.
+    /// Receives exceptions of the callables; only during a check.
+    void set_raised(Raised* raised) const { raised_ = raised; }
+    /// Returns the draws of the callables since this object was created.
     std::uint64_t draws() const { return draws_; }
 
 private:

@@ -5,7 +5,7 @@
 
 namespace crescent::python {
 
-void add_judging(nanobind::module_& m);      // judging.cpp
+void add_checking(nanobind::module_& m);     // checking.cpp
 void add_experiments(nanobind::module_& m);  // experiments.cpp
 void add_arms(nanobind::module_& m);         // arms.cpp
 

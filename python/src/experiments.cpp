@@ -1,5 +1,5 @@
-// Experiments and runs, for crescent/experiments.py: an experiment file or text in, films and numbers out, all in
-// memory.
+// Experiments and runs, for crescent/experiments.py: an experiment file or text as input, films and numbers as output,
+// all in memory.
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -50,7 +50,7 @@ void restore_plane(const nb::dict& planes, const char* name, std::vector<T> F::*
     (film.*values).assign(from.data(), from.data() + from.size());
 }
 
-/// What a run found, as plain data: texts, films and references.
+/// The results of a run, as plain data: texts, films and references.
 struct RunResult {
     double s = 0;  // the experiment's own
     bool holds = false;
@@ -65,7 +65,7 @@ RunResult result_of(Measured&& m) {
     const Provenance& p = m.provenance;
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
-            {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.instrument}},
+            {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
         {}, {}};
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
     for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
@@ -76,7 +76,7 @@ using Planes = nb::typed<nb::dict, std::string, nb::any>;
 using FilmList = nb::typed<nb::list, nb::typed<nb::tuple, std::string, int, double, int, Planes>>;
 using ReferenceList = nb::typed<nb::list, nb::typed<nb::tuple, double, Planes>>;
 
-/// Every film of the run with its key, (arm, n, s, seed, planes).
+/// Returns every film of the run with its key, (arm, n, s, seed, planes).
 FilmList films_of(nb::handle self) {
     nb::list out;
     for (const auto& [key, film] : nb::cast<const RunResult&>(self).films)
@@ -84,7 +84,7 @@ FilmList films_of(nb::handle self) {
     return out;
 }
 
-/// The references that the meters use, (s, planes).
+/// Returns the references that the metrics use, (s, planes).
 ReferenceList references_of(nb::handle self) {
     nb::list out;
     for (const ReferenceFilm& film : nb::cast<const RunResult&>(self).references)
@@ -129,7 +129,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     RunResult out;
     watched(monitor, raised, progress, false, [&] {
         const RunPlan what = plan(experiment, {first, last});
-        const Engine engine = settled({.threads = threads, .isa = isa, .instrument = nullptr});
+        const Engine engine = settled({.threads = threads, .isa = isa, .backend = nullptr});
         Prepared prepared = prepare(what, engine, monitor);
         std::vector<JobResult> results;
         for (const Job& job : what.jobs) {
@@ -145,7 +145,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     return out;
 }
 
-/// metrics.json, metrics.csv, junit.xml and films/*.exr appear as one; plates and report are the program's.
+/// Writes metrics.json, metrics.csv, junit.xml and films/*.exr, all at once; only the program writes plates and report.
 void write_folder(const RunResult& r, const std::string& folder) {
     ProgressMonitor monitor;
     const Work here(&monitor);
@@ -160,8 +160,8 @@ void write_folder(const RunResult& r, const std::string& folder) {
     staging.commit(monitor);
 }
 
-/// The meters whose values are whole numbers.
-std::vector<std::string> counting_meters() {
+/// Returns the metrics whose values are integers.
+std::vector<std::string> counting_metrics() {
     std::vector<std::string> out{"pixels", "tail_exceedances"};
     const auto add = [&](std::string_view name, const MetricInfo&, auto value) {
         if constexpr (std::is_same_v<decltype(value), std::uint64_t>) out.emplace_back(name);
@@ -171,8 +171,8 @@ std::vector<std::string> counting_meters() {
     return out;
 }
 
-/// With the figures that it names, and with paths that hold in any working folder: Python changes an experiment by
-/// reading its text again.
+/// Returns the experiment with the published values that it names, and with paths that are valid in any working folder:
+/// Python changes an experiment by reading its text again.
 Experiment settled_paths(Experiment e) {
     const auto absolute = [](std::optional<std::string>& path) {
         if (path) path = std::filesystem::absolute(*path).lexically_normal().string();
@@ -218,7 +218,7 @@ void add_experiments(nb::module_& m) {
         .def("write", &write_folder, "folder"_a)
         .def("__getstate__", [](nb::handle self) { return state_of(self); })
         .def("__setstate__", &restore);
-    m.def("counting_meters", &counting_meters, "The meters whose values are whole numbers.");
+    m.def("counting_metrics", &counting_metrics, "The metrics whose values are whole numbers.");
     m.def(
         "join",
         [](const std::vector<std::string>& parts) {

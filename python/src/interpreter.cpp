@@ -1,5 +1,5 @@
-// Two flags in order: `ending`, from which no work begins and what runs is asked to stop; `closed`, from which no
-// thread asks for the lock. Between them the threads that wait for the lock get it, since this one has released it.
+// Two flags in order: `ending`, after which no work begins and running work is asked to stop; `closed`, after which no
+// thread takes the lock. Between them waiting threads get the lock, since this one has released it.
 #include "interpreter.h"
 
 #include <unistd.h>
@@ -16,7 +16,7 @@ namespace crescent::python {
 
 namespace {
 
-/// Never destroyed: threads that sleep may outlive what is.
+/// Never destroyed, because sleeping threads may outlive static objects.
 struct Gate {
     std::mutex mutex;
     std::condition_variable changed;
@@ -45,7 +45,7 @@ template <class Take> void through_the_gate(Take&& take) {
     gate().changed.notify_all();
 }
 
-/// With the lock held: counts work that begins.
+/// With the lock held: counts the beginning of work.
 ProgressMonitor* registered(ProgressMonitor* monitor) {
     const std::lock_guard guard(gate().mutex);
     if (gate().ending) {
@@ -57,8 +57,8 @@ ProgressMonitor* registered(ProgressMonitor* monitor) {
     return monitor;
 }
 
-/// Waits until all work has ended, at most 5 s: work looks at its monitor several times a second. Work that is inside
-/// callables, which enter and leave none for 0.2 s, is not waited for: nothing can stop a callable.
+/// Waits until all work has ended, at most 5 s: work polls its monitor several times a second. Work inside callables
+/// that enter and leave none for 0.2 s is not waited for, because a callable cannot be stopped.
 void wait_for_work(std::unique_lock<std::mutex>& lock) {
     constexpr std::chrono::milliseconds step{20};
     constexpr int longest = 250, longest_in_callables = 10;
@@ -71,8 +71,8 @@ void wait_for_work(std::unique_lock<std::mutex>& lock) {
     }
 }
 
-/// Work that could not be stopped still runs when exit() destroys the static objects that it uses. Registered last,
-/// this runs first and leaves out the rest; Python has flushed its files by then.
+/// Work that could not be stopped still runs when exit() destroys the static objects that it uses. This function is
+/// registered last, so it runs first and skips the others; Python has flushed its files by then.
 void leave_beside_work() {
 #ifdef __GLIBC__
     const auto leave = [](int status, void*) {
@@ -87,7 +87,7 @@ void before_exit() {
     std::unique_lock lock(gate().mutex);
     gate().ending = true;
     for (ProgressMonitor* monitor : gate().monitors) monitor->stop = true;
-    if (getpid() == gate().process) {  // a child of fork() has none of the threads that are counted
+    if (getpid() == gate().process) {  // a child of fork() has none of the counted threads
         PyThreadState* const state = PyEval_SaveThread();
         wait_for_work(lock);
         if (gate().works > 0) leave_beside_work();

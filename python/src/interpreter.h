@@ -1,10 +1,10 @@
-// The interpreter's lock, for threads that may outlive the interpreter: a daemon thread in a call of ours, and the
-// threads that such a call works with.
+// The interpreter's lock, for threads that may outlive the interpreter: a daemon thread in one of our calls, and the
+// worker threads of such a call.
 //
-// Once Python finalizes, it ends a thread that asks for its lock by pthread_exit (3.11 to 3.13), which must not unwind
-// C++ frames, or lets it sleep (3.14). Here no thread gets that far: a function registered with atexit, which runs
-// before Python finalizes, asks all work to stop, waits for it and closes a gate in front of the lock. A thread that is
-// stopped by it sleeps until the process ends, as a daemon thread of Python does.
+// After finalization, Python ends a thread that takes its lock by pthread_exit (3.11 to 3.13), which must not unwind
+// C++ frames, or lets it sleep (3.14). Here no thread reaches that state: a function registered with atexit, which runs
+// before Python finalizes, asks all work to stop, waits for it and closes a gate before the lock. A thread stopped by
+// the gate sleeps until the process ends, as a daemon thread of Python does.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -44,8 +44,8 @@ private:
     PyThreadState* state_;
 };
 
-/// A call of ours from Python while it works without the lock. At exit it is asked to stop, where it has a monitor, and
-/// waited for; then it does not return. nb::python_error (RuntimeError) where the interpreter is ending already.
+/// A call from Python that works without the lock. At exit it is asked to stop, if it has a monitor, and waited for;
+/// then it does not return. Throws nb::python_error (RuntimeError) if the interpreter is already ending.
 class Work {
 public:
     explicit Work(ProgressMonitor* monitor = nullptr);
@@ -58,7 +58,7 @@ private:
     Unlocked free_;
 };
 
-/// How many threads are inside a callable of Python, and how often one was entered.
+/// The number of threads inside a Python callable, and the number of calls.
 struct Callbacks {
     std::atomic<unsigned> inside{0}, entered{0};
 };
@@ -67,7 +67,8 @@ Callbacks& callbacks();
 /// Sleeps until the process ends.
 [[noreturn]] void sleep_until_exit();
 
-/// callable(arguments...), with the lock held. Where Python ends this thread inside the callable, it sleeps instead.
+/// Calls callable(arguments...) with the lock held. If Python ends this thread inside the callable, the thread sleeps
+/// instead.
 template <class... Arguments> nb::object call_python(const nb::object& callable, Arguments&&... arguments) {
     ++callbacks().inside, ++callbacks().entered;
     try {
@@ -80,7 +81,7 @@ template <class... Arguments> nb::object call_python(const nb::object& callable,
     }
 }
 
-/// Registers what has to be done before Python finalizes.
+/// Registers the actions required before Python finalizes.
 void prepare_exit(nb::module_& m);
 
 }  // namespace crescent::python

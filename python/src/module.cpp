@@ -1,5 +1,5 @@
-// The module `crescent._crescent`: what the package `crescent` is made of. Errors keep their kind: InputError and
-// SamplerError become ValueError and RuntimeError, OutputError an OSError.
+// The module `crescent._crescent` of the package `crescent`. Errors keep their kind: InputError and SamplerError become
+// ValueError and RuntimeError, OutputError an OSError.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
@@ -24,7 +24,7 @@ NB_MODULE(_crescent, m) {
     m.attr("version") = crescent::version();
     m.attr("commit") = crescent::commit();
     crescent::python::prepare_exit(m);
-    crescent::python::add_judging(m);
+    crescent::python::add_checking(m);
     crescent::python::add_experiments(m);
     crescent::python::add_arms(m);
 }

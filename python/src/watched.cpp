@@ -1,5 +1,5 @@
-// The work runs in a std::thread, while every 50 ms this thread takes the interpreter's lock and looks for signals; or
-// on this thread, with the lock released, which looks once at the end. The first exception of either is thrown again.
+// The work runs in a std::thread, while every 50 ms this thread takes the interpreter's lock and checks for signals; or
+// on this thread, with the lock released, which checks once at the end. The first exception of either is thrown again.
 #include "watched.h"
 
 #include <nanobind/stl/string.h>
@@ -12,7 +12,7 @@ namespace crescent::python {
 
 namespace {
 
-/// With the lock held: a Ctrl-C, or what the progress callable raises, asks the work to stop.
+/// With the lock held: Ctrl-C, or an exception of the progress callable, requests a stop.
 void look_around(PolledMonitor& monitor, Raised& raised, const nb::object& progress) {
     try {
         if (PyErr_CheckSignals() != 0) throw nb::python_error();

@@ -1,4 +1,5 @@
-// Long work under Python: the interpreter's lock is free, Ctrl-C ends the work, and the caller hears how far it is.
+// Long work under Python: the interpreter's lock is released, Ctrl-C ends the work, and the caller receives the
+// progress.
 #pragma once
 
 #include <exception>
@@ -9,11 +10,11 @@
 
 namespace crescent::python {
 
-/// What a Python callable raised while C++ was asking it: the first one counts, and asks the work to stop.
+/// An exception raised by a Python callable that C++ called: the first one counts, and requests a stop.
 class Raised {
 public:
     explicit Raised(ProgressMonitor& monitor) : monitor_(monitor) {}
-    /// Inside a catch block.
+    /// Must be called inside a catch block.
     void keep() {
         const std::lock_guard guard(lock_);
         if (!first_) first_ = std::current_exception();
@@ -30,9 +31,8 @@ private:
     std::exception_ptr first_;
 };
 
-/// Calls `work` without the interpreter's lock. on_this_thread: for callables that want one thread, the caller's own;
-/// else in a thread of its own, and this one looks for Ctrl-C and calls progress(what, done, total) some times a
-/// second.
+/// Calls `work` without the interpreter's lock. on_this_thread: for callables that require the caller's thread; else in
+/// a thread of its own, while this one checks for Ctrl-C and calls progress(what, done, total) several times a second.
 void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress, bool on_this_thread,
     const std::function<void()>& work);
 

@@ -1,4 +1,4 @@
-"""What several tests share."""
+"""Shared by several tests."""
 
 import signal
 
@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture
 def interruptible():
-    """Ctrl-C raises KeyboardInterrupt, though the shell that started the tests may have told them to ignore it."""
+    """Makes Ctrl-C raise KeyboardInterrupt, even if the shell that started the tests made them ignore it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)

@@ -1,6 +1,6 @@
 #!/bin/bash
-# run.sh BUILD: the package's tests on the module in BUILD/python, by the interpreter that it was built for. 77 where
-# there is no module.
+# run.sh BUILD: runs the package's tests on the module in BUILD/python, with the interpreter that it was built for. 77
+# if there is no module.
 build=$1
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 ls "$build"/python/crescent/_crescent.*.so >/dev/null 2>&1 ||

@@ -1,4 +1,4 @@
-"""Samplers in NumPy that the tests judge."""
+"""Samplers in NumPy that the tests check."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def lambert(wo, wi):
 
 
 def sphere(u):
-    """The whole sphere evenly, without w_o, as an environment light."""
+    """The whole sphere uniformly, without w_o, like an environment light."""
     z, phi = 1 - 2 * u[:, 0], 2 * np.pi * u[:, 1]
     r = np.sqrt(np.maximum(0, 1 - z * z))
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), np.full(len(u), 1 / (4 * np.pi))
@@ -29,7 +29,7 @@ def sphere_pdf(wi):
 
 
 def mirror(wo, u):
-    """A mirror of 0.4 on one side of u, Lambert of 0.5 on the other: a delta part beside a density."""
+    """A mirror of 0.4 on one side of u, Lambert of 0.5 on the other: a delta part and a density."""
     wi, p = cosine(wo, u)
     chosen = u[:, 2] < 0.25
     wi = np.where(chosen[:, None], wo * [-1, -1, 1], wi)

@@ -15,7 +15,7 @@ WO = [(30.0, 0.0), (75.0, 310.0)]
 
 
 def triple(xp, pi=np.pi):
-    """Lambert of 0.5 as renderers have it, in any array library: eval holds the cosine."""
+    """Lambert of 0.5 in the form of renderers, in any array library: eval includes the cosine."""
 
     def sample(wo, u):
         r, phi = xp.sqrt(u[:, 0]), 2 * pi * u[:, 1]
@@ -103,7 +103,7 @@ def dr():
 
 
 def of_drjit(dr, form):
-    """Lambert of 0.5 in Dr.Jit, as one writes it for vectors, for their indices, or for tensors."""
+    """Lambert of 0.5 in Dr.Jit, written for vectors, for their indices, or for tensors."""
     vector = dr.auto.ad.Array3f
     parts = {
         "vectors": lambda v: [getattr(v, c) for c in "xyz"[: len(v)]],
@@ -275,5 +275,5 @@ def test_what_is_no_plugin_of_that_kind_is_told(mi):
     with pytest.raises(ValueError, match="no emitter in it"):
         adapters.mitsuba_emitter({"type": "sphere"})
     for light in ({"type": "point", "position": [0, 0, 1]}, {"type": "directional", "direction": [0, 0, 1]}):
-        with pytest.raises(ValueError, match="no density to judge"):
+        with pytest.raises(ValueError, match="no density to check"):
             adapters.mitsuba_emitter(light)

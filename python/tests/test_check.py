@@ -1,4 +1,4 @@
-"""check: right samplers are right, faults are found, and what does not fit is told with its first bad row."""
+"""check: correct samplers pass, faults are found, and errors name the first bad row."""
 
 import copy
 import dataclasses
@@ -218,7 +218,7 @@ def test_a_sampler_is_asked_as_often_as_is_told():
 
     counted = [counting(name, f) for name, f in (("sample", cosine), ("pdf", cosine_pdf), ("f", lambert))]
     j = crescent.check(*counted, wo_deg=[30, 85], serial=True)
-    assert 100_000 < j.questions <= sum(rows.values()) < j.questions + 1000  # a few rows show what arrays come back
+    assert 100_000 < j.questions <= sum(rows.values()) < j.questions + 1000  # some rows test the arrays returned
     assert j.questions <= 1_000_000 and json.loads(j.json())["questions"] == j.questions
 
 
@@ -243,7 +243,7 @@ def test_other_threads_run_while_the_bench_works():
     beside = threading.Thread(target=turning)
     beside.start()
     try:
-        crescent.check("ggx-vndf")  # without a callable: the interpreter's lock is free all the while
+        crescent.check("ggx-vndf")  # without a callable: the interpreter's lock is released for the whole call
         alone = len(turns)
         crescent.check(cosine, cosine_pdf, lambert)
     finally:
@@ -275,7 +275,7 @@ def test_a_sampler_that_draws_random_numbers_of_its_own_says_so():
     def own(wo, u):
         return cosine(wo, rng.random(u.shape))
 
-    known = {"wo_deg": 30, "serial": True}  # a generator of NumPy's is of one thread
+    known = {"wo_deg": 30, "serial": True}  # a NumPy generator belongs to one thread
     assert "identity" in crescent.check(own, cosine_pdf, lambert, **known).broken()
     assert crescent.check(own, cosine_pdf, lambert, own_random=True, **known).state == "right"
 

@@ -1,15 +1,18 @@
-"""The command of the wheel: what it judges, and its exit codes."""
+"""The program of the package with samplers in Python files: what it checks, and its exit codes."""
 
 import json
+import os
+import struct
+import subprocess
 import sys
 
 import pytest
 
-from crescent.__main__ import main
-
 MINE = """
 import numpy as np
 import crescent
+
+print("this goes to stderr")
 
 def sample(wo, u):
     r, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
@@ -20,42 +23,121 @@ def pdf(wo, wi):
     return np.maximum(wi[:, 2], 0) / np.pi
 
 off = crescent.Sampler(sample, lambda wo, wi: 1.1 * pdf(wo, wi))
+
+def raising(wo, wi):
+    if len(wi) > 8:
+        raise RuntimeError("no table here")
+    return pdf(wo, wi)
+
+late = crescent.Sampler(sample, raising)
+
+def mirrored(wo, u):
+    n = len(u)
+    chosen = u[:, 2] < 0.5
+    wi, p = sample(wo, u)
+    wi = np.where(chosen[:, None], wo * [-1, -1, 1], wi)
+    return wi, np.where(chosen, 0.5, 0.5 * p), np.ones((n, 3)), chosen
+
+coat = crescent.Sampler(
+    mirrored, lambda wo, wi: 0.5 * pdf(wo, wi), lambda wo, wi: np.full((len(wi), 3), 0.5 / np.pi), u=3,
+    domain="hemisphere",
+)
+glass = crescent.Sampler(sample, pdf, wo="both", eta=1.5, reciprocal=False, importance=True, own_random=True)
+sky = crescent.Sampler(
+    lambda u: (np.stack([*(np.sqrt(1 - (1 - 2 * u[:, 0]) ** 2) * t(2 * np.pi * u[:, 1]) for t in (np.cos, np.sin)),
+                         1 - 2 * u[:, 0]], -1), np.full(len(u), 0.25 / np.pi)),
+    lambda wi: np.full(len(wi), 0.25 / np.pi), wo="none",
+)
 """
 
 
 @pytest.fixture
-def mine(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", list(sys.path))
-    monkeypatch.delitem(sys.modules, "mine", raising=False)
+def run(tmp_path):
+    """run(WORD...): the program's end, in a folder with mine.py."""
     (tmp_path / "mine.py").write_text(MINE)
-    return tmp_path
+
+    def program(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "crescent", *words], cwd=tmp_path, capture_output=True, text=True, timeout=300
+        )
+
+    if program("--version").returncode == 3:
+        pytest.skip("the program is not built")
+    return program
 
 
-def test_a_file_or_a_sampler_in_it_is_judged(mine, capsys):
-    assert main(["check", "mine.py", "--wo", "30", "--junit", "j.xml", "--html", "j.html"]) == 0
-    assert main(["check", "mine.py:off", "--wo", "30", "--json", "j.json"]) == 1
-    assert "normalised" in capsys.readouterr().out
-    assert json.loads((mine / "j.json").read_text())["state"] == "wrong"
-    assert (mine / "j.xml").stat().st_size and (mine / "j.html").stat().st_size
-    assert main(["check", "cosine", "--wo", "30,120", "--json", "no such folder/j.json"]) == 3
+def test_a_file_or_a_sampler_in_it_is_checked(run, tmp_path):
+    assert run("check", "mine.py", "--wo", "30", "--junit", "j.xml", "--html", "j.html").returncode == 0
+    off = run("check", "mine.py:off", "--wo", "30", "--json", "j.json")
+    assert off.returncode == 1 and "normalised" in off.stdout and "this goes to stderr" in off.stderr
+    result = json.loads((tmp_path / "j.json").read_text())
+    assert result["state"] == "wrong" and "check mine.py:off" in result["command"]
+    assert (tmp_path / "j.xml").stat().st_size and (tmp_path / "j.html").stat().st_size
+
+
+@pytest.mark.parametrize("name", ["coat", "sky"])
+def test_what_a_sampler_declares_reaches_the_check(run, name):
+    done = run("check", f"mine.py:{name}", "--wo", "30") if name != "sky" else run("check", f"mine.py:{name}")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_two_samplers_are_compared(run):
+    assert run("check", "mine.py", "--wo", "30", "--against", "mine.py", "--expect", "same").returncode == 0
+
+
+def test_an_exception_is_an_error_of_the_sampler(run):
+    done = run("check", "mine.py:late", "--wo", "30")
+    assert done.returncode == 3 and "RuntimeError: no table here" in done.stdout
 
 
 @pytest.mark.parametrize(
     "words, said",
     [
         (["mine.py:nope"], "no 'nope'"),
+        (["mine.py:skyy"], "did you mean 'sky'"),
         (["nofile.py"], "no such file"),
+        (["nomodule:sampler"], "ModuleNotFoundError"),
         (["cosin"], "did you mean 'cosine'"),
-        (["phong", "--set", "s=x"], "--set s=x: expected a number"),
-        (["phong", "--set", "s"], "expected KEY=VALUE"),
-        (["--wo", "x"], "--wo x: expected a number"),
-        (["mine.py", "--set", "s=3"], "--set is of a built-in arm"),
-        (["mine.py", "--exec", "./mine"], "SAMPLER excludes --exec"),
-        (["mine.py", "--seed", "-1"], "seed is -1"),
+        (["mine.py", "--set", "s=3"], "is for built-in samplers"),
+        (["mine.py", "--exec", "./mine"], "excludes"),
         (["mine.py", "--wo", "120"], "under the surface"),
+        (["cosine", "--patience", "3"], "needs --exec or a sampler in a Python file"),
     ],
 )
-def test_bad_input_is_told_and_is_2(mine, capsys, words, said):
-    assert main(["check", *words]) == 2
-    assert said in capsys.readouterr().err
+def test_bad_input_is_2(run, words, said):
+    done = run("check", *words)
+    assert done.returncode == 2 and said in done.stderr, done.stderr
+
+
+def test_the_handshake_declares_the_sampler(tmp_path):
+    (tmp_path / "mine.py").write_text(MINE)
+
+    def serve(word, requests=b""):
+        done = subprocess.run(
+            [sys.executable, "-m", "crescent.serve", word],
+            cwd=tmp_path, input=b"hello 2\n" + requests, capture_output=True, timeout=60,
+        )
+        line, _, rest = done.stdout.partition(b"\n")
+        return line.decode(), rest
+
+    assert serve("mine.py:coat")[0].split()[3:] == [
+        "u=3", "domain=hemisphere", "wo=upper", "channels=3", "block=f64", "weight=yes", "delta=yes",
+    ]
+    line, answer = serve("mine.py:glass", b"f___" + struct.pack("<I6d", 1, 0, 0, 1, 0, 0, 1))
+    assert line.endswith(
+        "wo=both channels=1 block=f64 transport=importance reciprocal=no random=own eta=1.5"
+    )
+    count, f = struct.unpack("<Id", answer)
+    assert count == 1 and f != f
+    wi = struct.pack("<I5d", 1, 0, 0, 1, 0.25, 0.0)
+    count, *draw = struct.unpack("<I4d", serve("mine.py", b"smpl" + wi)[1])
+    assert count == 1 and draw == pytest.approx([0.5, 0, 0.75**0.5, 0.75**0.5 / 3.141592653589793])
+
+
+def test_an_interpreter_without_the_package_is_named(run, monkeypatch):
+    monkeypatch.setenv("CRESCENT_PYTHON", os.devnull)
+    done = run("check", "mine.py")
+    assert done.returncode == 3 and "pip install crescent-bench" in done.stderr
+    monkeypatch.setenv("CRESCENT_PYTHON", "no-such-python")
+    done = run("check", "mine.py")
+    assert done.returncode == 3 and "pip install crescent-bench" in done.stderr

@@ -1,4 +1,4 @@
-"""A daemon thread in a call of ours does not disturb the end of the interpreter, at any point of the call."""
+"""A daemon thread in one of our calls does not disturb the end of the interpreter, at any point of the call."""
 
 import subprocess
 import sys

@@ -99,7 +99,7 @@ def test_what_can_be_set_can_be_read_by_the_same_path():
     e = crescent.parse(TINY)
     values = {
         "title": "a ball beside 'it'",
-        "ball.radius": 0.6,  # begins at a name, as --set takes it
+        "ball.radius": 0.6,  # begins at a name, as --set accepts it
         "shapes.ball.center": [0, 0.7, 0.1],
         "ball.center[1]": 0.68,
         "camera.eye.2": 3.1,
@@ -181,7 +181,7 @@ def test_films_are_the_memory_of_the_run(measured):
     assert set(measured.films) == {("cosine", 4, 32.0), ("cosine", 16, 32.0), ("phong", 4, 32.0)}
     reference = measured.references[32.0]["y"]
     assert reference.shape == (32, 48)
-    box = np.s_[8:25, 16:33]  # both ends of a region's box are inside
+    box = np.s_[8:25, 16:33]  # both ends of a region's box are inclusive
     rmse = float(np.sqrt(np.mean((film.y[box].astype(float) - reference[box]) ** 2)))
     told = [r for r in measured.records() if (r["arm"], r["n"], r["seed"], r["meter"]) == ("cosine", 16, 7, "rmse")]
     assert told[0]["region"] == "ball" and told[0]["value"] == pytest.approx(rmse, rel=1e-5)

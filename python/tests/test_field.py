@@ -1,4 +1,4 @@
-"""Faults of public projects: each is caught by the verdicts that it is said to be caught by, and mended it is right."""
+"""Faults of public projects: each is detected by the stated verdicts, and its fixed version passes."""
 
 import os
 from pathlib import Path
@@ -20,9 +20,9 @@ def test_there_are_thirteen_at_least_each_with_its_source():
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)
 def test_a_fault_is_caught_and_mended_it_is_right(fault):
-    broken = fault.judged().broken()
+    broken = fault.checked().broken()
     assert set(fault.caught_by) <= set(broken), broken
-    assert fault.judged(mended=True).state == "right", str(fault.judged(mended=True))
+    assert fault.checked(fixed=True).state == "right", str(fault.checked(fixed=True))
 
 
 def test_every_bsdf_and_emitter_that_ships_is_judged_or_left_out_with_a_reason():
@@ -36,12 +36,12 @@ def test_every_bsdf_and_emitter_that_ships_is_judged_or_left_out_with_a_reason()
     manager = mi.PluginManager.instance()
     names = sorted(p.name.partition(".")[0] for p in (Path(mi.__file__).parent / "plugins").glob("*.so"))
     shipped = {n for n in names if manager.plugin_type(n) in (mi.ObjectType.BSDF, mi.ObjectType.Emitter)}
-    judged = {
+    checked = {
         part["type"] for it in bsdfs() + emitters() for part in (it.plugin, *it.plugin.values()) if type(part) is dict
     }
     left_out = {name for names in LEFT_OUT for name in names.split(", ")}
-    assert len(shipped) > 30 and shipped <= judged | left_out, shipped - judged - left_out
-    assert not left_out & judged
+    assert len(shipped) > 30 and shipped <= checked | left_out, shipped - checked - left_out
+    assert not left_out & checked
 
 
 def test_the_program_tells_before_the_work_what_it_cannot_do_and_judges_one_plugin(tmp_path, monkeypatch, capsys):

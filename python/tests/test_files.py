@@ -1,4 +1,4 @@
-"""Samplers in files: what such a file may import is what pytest's import mode "prepend" allows a test."""
+"""Samplers in files: such a file may import what pytest's import mode "prepend" allows a test."""
 
 import sys
 
@@ -32,7 +32,7 @@ class Off:
 
 @pytest.fixture
 def own_path(monkeypatch):
-    """The path and the modules as they were, once the test is over."""
+    """Restores the path and the modules after the test."""
     monkeypatch.setattr(sys, "path", list(sys.path))
     before = set(sys.modules)
     yield
@@ -88,7 +88,7 @@ def test_assert_sampler_looks_for_files_from_the_root_of_the_session(tmp_path, o
 
 
 def test_pytest_and_the_plugin_share_one_module_of_a_file(pytester):
-    """A conftest at the root, a sampler's folder that is no package, and a test elsewhere that imports it."""
+    """A conftest at the root, a sampler's folder that is not a package, and a test elsewhere that imports it."""
     pytester.makeconftest("import pytest\n\n@pytest.fixture\ndef directions():\n    return [30]\n")
     samplers = pytester.mkdir("samplers")
     (samplers / "beside.py").write_text(HELPER)

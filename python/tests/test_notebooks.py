@@ -11,12 +11,12 @@ FOLDER = Path(os.environ.get("CRESCENT_NOTEBOOKS", Path(__file__).resolve().pare
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
-def test_there_are_two():
-    assert {n.stem for n in NOTEBOOKS} == {"judge_a_numpy_sampler", "arms_at_equal_n"}
+def test_there_are_three():
+    assert {n.stem for n in NOTEBOOKS} == {"check_a_numpy_sampler", "arms_at_equal_n", "paper_figures"}
 
 
 def run_cell(source, names):
-    """As a notebook does: the value of a last expression is shown."""
+    """Runs a cell like a notebook: the value of a last expression is shown."""
     tree = ast.parse(source)
     last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, "cell", "exec"), names)

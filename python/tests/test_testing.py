@@ -9,7 +9,7 @@ from crescent import Sampler, check
 from crescent.testing import Session, assert_sampler, mutants, who_notices
 
 pytest_plugins = ["pytester"]
-#: An installed package's plugin is loaded by itself.
+#: An installed package's plugin is loaded automatically.
 LOAD = () if entry_points(group="pytest11", name="crescent") else ("-p", "crescent.pytest_plugin")
 MINE = Sampler(cosine, cosine_pdf, lambert, name="mine")
 
@@ -26,7 +26,7 @@ def test_the_shares_of_a_session_come_to_alpha_at_most():
     for test in range(50):
         session.test = str(test)
         shares += [session.share() for _ in range(20)]
-    assert 0.009 < sum(shares) <= 0.01 and session.judged == 1000
+    assert 0.009 < sum(shares) <= 0.01 and session.checked == 1000
     assert shares[0] > shares[1] and shares[0] == shares[20]
 
 
@@ -52,7 +52,7 @@ def test_the_plugin_shares_alpha_over_the_tests_of_a_session_and_says_so(pyteste
         """)
     result = pytester.runpytest_subprocess(*LOAD, "--crescent-alpha", "0.02")
     result.assert_outcomes(passed=2, failed=1)
-    result.stdout.fnmatch_lines(["*crescent: 2 samplers judged in 3 tests, which share alpha = 0.02*at most once in*"])
+    result.stdout.fnmatch_lines(["*crescent: 2 samplers checked in 3 tests, which share alpha = 0.02*at most once in*"])
 
 
 def test_every_mutant_is_caught_by_check_and_a_weak_test_misses_most():
@@ -65,12 +65,12 @@ def test_who_notices_says_which_tests_see_which_fault():
         import numpy as np
 
         wi, _ = sampler.sample(np.tile([0.0, 0.0, 1.0], (64, 1)), np.full((64, 2), 0.5))[:2]
-        return np.all(wi[:, 2] > 0)  # a bool of NumPy's own
+        return np.all(wi[:, 2] > 0)  # a NumPy bool
 
-    def judges(sampler):
+    def checks(sampler):
         return check(sampler, wo_deg=[(45, 130)]).state == "right"
 
-    noticed = who_notices(MINE, [looks_at_z, judges])
+    noticed = who_notices(MINE, [looks_at_z, checks])
     assert not noticed.missed() and "directions lean by 5 degrees" in noticed.by
     assert any("looks_at_z" not in tests for tests in noticed.by.values())
     assert "looks_at_z" in noticed.by["a direction in 100 is no number"]

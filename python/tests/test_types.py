@@ -1,4 +1,4 @@
-"""The package passes mypy --strict, and a caller's mistakes are seen by it."""
+"""The package passes mypy --strict, which also finds a caller's mistakes."""
 
 import subprocess
 import sys

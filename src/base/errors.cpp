@@ -1,5 +1,5 @@
-// A line a mistake, "file:line:column: message". nearest() takes the least edit distance (Levenshtein 1966, case
-// apart): at most 2 or a third of the word's letters, whichever is more, and always below its length.
+// One line per mistake, "file:line:column: message". nearest() takes the word with the least edit distance (Levenshtein
+// 1966, ignoring case): at most 2 or a third of the word's letters, whichever is more, and always below its length.
 #include "base/errors.h"
 
 #include "base/text.h"
@@ -24,7 +24,7 @@ std::string join(const std::vector<Diagnostic>& all) {
     return text;
 }
 
-/// Levenshtein 1966: fewest insertions, deletions and substitutions that turn a into b; case is free.
+/// Levenshtein 1966: fewest insertions, deletions and substitutions that turn a into b, ignoring case.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});

@@ -1,5 +1,5 @@
-// Two kinds of error. The reader's mistake points into the reader's file (InputError, exit code 2);
-// ours points into our source (Bug). A part that is missing or a place that cannot be written is an
+// Error types. A mistake in the input is an InputError, with its place in the user's file (exit code 2); a defect of
+// the program is a Bug, with its place in the source. A missing part or a place that cannot be written is an
 // OutputError (exit code 3).
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace crescent::inline base {
 
-/// Where a value stands: file, line and column, both counted from 1 (0: unknown).
+/// The place of a value: file, line and column, both counted from 1 (0: unknown).
 struct SourceLocation {
     std::string file;
     unsigned line = 0, column = 0;
 };
 
-/// "gallery.toml:14:9", or as much of it as is known.
+/// Returns "gallery.toml:14:9", or as much of it as is known.
 std::string to_string(const SourceLocation& at);
 
 /// One mistake in the input: where, and what was expected.
@@ -26,10 +26,10 @@ struct Diagnostic {
     std::string message;
 };
 
-/// The input is wrong. Carries every mistake that was found, in file order.
+/// The input is wrong. Contains every mistake found, in file order.
 class InputError : public std::invalid_argument {
 public:
-    /// what() has a line a mistake.
+    /// what() has one line per mistake.
     explicit InputError(std::vector<Diagnostic> all);
     InputError(const SourceLocation& at, const std::string& message)
         : InputError(std::vector<Diagnostic>{{at, message}}) {}
@@ -45,19 +45,19 @@ struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A claim of ours did not hold: file and line of our own source are in what().
+/// An invariant of the program does not hold; what() contains file and line of the source.
 class Bug : public std::logic_error {
 public:
     Bug(const std::source_location& at, std::string_view claim);
 };
 
-/// Stop here if a claim about our own code does not hold, in release builds too.
+/// Throws Bug if an invariant does not hold, in release builds too.
 inline void ensure(
     bool holds, std::string_view claim, const std::source_location& at = std::source_location::current()) {
     if (!holds) throw Bug(at, claim);
 }
 
-/// The word of `valid` nearest to `word` by edit distance, "" where none is near.
+/// Returns the word of `valid` nearest to `word` by edit distance, "" if none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& valid);
 
 }  // namespace crescent::inline base

@@ -1,6 +1,6 @@
-// Each step is one system call or can be repeated, and "moving" names the folder that is to become OUT by its inode:
-// where new/ is that folder it is not in its place yet, else it is what OUT was. So the next start can complete the
-// work from any step.
+// Each step is one system call or can be repeated. "moving" names the folder that will become OUT by its inode: if new/
+// is that folder, it is not in its place yet; else it is the former OUT. So the next start can complete the work from
+// any step.
 #include "base/files.h"
 
 #include <fcntl.h>
@@ -82,7 +82,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
     struct stat s{}, t{};
     return lstat(a.c_str(), &s) == 0 && lstat(b.c_str(), &t) == 0 && s.st_ino == t.st_ino && s.st_dev == t.st_dev;
 }
-/// Something is mounted there: it can neither be renamed nor removed.
+/// Returns whether something is mounted there, so that it can neither be renamed nor removed.
 bool is_mounted(const fs::path& path) {
 #ifdef STATX_ATTR_MOUNT_ROOT
     struct statx s{};
@@ -93,7 +93,7 @@ bool is_mounted(const fs::path& path) {
 #endif
 }
 
-/// File systems that cannot sync a folder say EINVAL; there is nothing more to be done there.
+/// File systems that cannot sync a folder return EINVAL, which is ignored.
 bool sync(const fs::path& path) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
     if (file < 0) return false;
@@ -116,7 +116,7 @@ bool put(const fs::path& path, std::string_view bytes) {
     return bool(out);
 }
 
-/// Names in this order; a folder's entries too.
+/// Names in this order, including the entries of folders.
 std::vector<std::string> entries(const fs::path& folder) {
     std::vector<std::string> out;
     std::error_code ignored;
@@ -139,7 +139,7 @@ bool stays_inside(const std::string& name) {
         framed.find("/../") == std::string::npos;
 }
 
-/// The names in a list of outputs; those that could lead out of the folder are left out.
+/// Returns the names in a list of outputs, without those that could lead out of the folder.
 std::vector<std::string> names_in(const fs::path& list) {
     std::vector<std::string> names;
     const std::string text = text_of(list);
@@ -154,7 +154,7 @@ std::vector<std::string> names_in(const fs::path& list) {
 
 std::string list_of(const std::string& kind) { return std::string(list_prefix) + kind; }
 
-/// What other kinds of work listed in a folder.
+/// Returns what other kinds of work listed in a folder.
 std::vector<std::string> others_lists(const fs::path& out, const std::string& list) {
     std::vector<std::string> all;
     for (const std::string& leaf : entries(out))
@@ -167,7 +167,7 @@ struct Moving {
     ino_t folder = 0;
     std::string kind;
 };
-/// Of no folder where nothing is moving.
+/// Names no folder if nothing is moving.
 Moving read_moving(const fs::path& work) {
     std::ifstream in(work / "moving");
     Moving out;
@@ -182,7 +182,8 @@ std::set<fs::path>& held_here() {
     return all;
 }
 
-/// This process works in `out`, or `by` cannot be given its owner and rights: another folder cannot take its place.
+/// Returns whether another folder cannot replace `out`: this process works in it, or `by` cannot get its owner and
+/// permissions.
 bool must_stay(const fs::path& out, const fs::path& by) {
     struct stat s{};
     std::error_code none;
@@ -198,7 +199,7 @@ bool must_stay(const fs::path& out, const fs::path& by) {
     return chown(by.c_str(), s.st_uid, s.st_gid) != 0 || chmod(by.c_str(), s.st_mode & 07777) != 0;
 }
 
-/// Whether there can be a folder beside `out` from which names can be moved into it.
+/// Returns whether a folder can exist next to `out` from which names can be moved into it.
 bool can_be_beside(const fs::path& out) {
     struct stat s{}, above{};
     const fs::path parent = out.parent_path();
@@ -208,7 +209,7 @@ bool can_be_beside(const fs::path& out) {
         access(parent.c_str(), W_OK) == 0;
 }
 
-/// Absolute, links followed as far as there is something.
+/// Returns the absolute path, with links followed as far as the path exists.
 fs::path resolved(const fs::path& path) {
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path), error);
@@ -238,7 +239,7 @@ Staging::Staging(const std::string& folder, std::string kind) : shown_(folder), 
         fail("cannot write in", folder, std::strerror(errno));
 }
 
-/// Takes this work folder, completes what a killed run began there and clears what it left.
+/// Takes this work folder, completes the work of a killed run there and removes its leftovers.
 void Staging::complete(const Path& work) {
     work_ = work;
     if (work_.parent_path() == out_) make_folders(out_);
@@ -251,7 +252,7 @@ void Staging::complete(const Path& work) {
     for (const char* name : {"new", "scratch", "moving", "one-by-one"}) remove_tree(work_ / name);
 }
 
-/// A lock of the process, which no child inherits, on a file that is still there once it is taken.
+/// Takes a lock of the process, which no child inherits, on a file that still exists afterwards.
 bool Staging::take_lock() {
     const fs::path path = work_ / "lock";
     const std::lock_guard one_at_a_time(held_mutex);
@@ -293,7 +294,7 @@ Staging::~Staging() {
     for (const char* name : {"new", "scratch", "one-by-one"}) remove_tree(work_ / name);
 }
 
-/// Why a file cannot be brought to that name; "" where it can.
+/// Returns why a file cannot be brought to that name; "" if it can.
 std::string Staging::obstacle(const std::string& name) const {
     fs::path folder = out_;
     for (const fs::path& step : fs::path(name).parent_path()) {
@@ -372,7 +373,7 @@ void Staging::commit(ProgressMonitor& monitor) {
     said_.clear();
 }
 
-/// A second name in new/ for each file of the user that is beside ours; what cannot be linked is moved along later.
+/// Makes a second name in new/ for each file of the user next to the outputs; what cannot be linked is moved later.
 void Staging::link_users_files(const Path& below, const Names& ours) const {
     for (const std::string& leaf : entries(out_ / below)) {
         const fs::path name = below / leaf, to = work_ / "new" / name;
@@ -387,7 +388,7 @@ void Staging::link_users_files(const Path& below, const Names& ours) const {
     }
 }
 
-/// From "moving" on; repeated where it was killed. Throws OutputError where it cannot be completed now.
+/// Continues from "moving"; repeated after a kill. Throws OutputError if it cannot be completed now.
 void Staging::finish() {
     const Moving moving = read_moving(work_);
     const fs::path made = work_ / "new", old = work_ / "old";
@@ -405,7 +406,7 @@ void Staging::finish() {
     else said_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
 }
 
-/// OUT becomes new/ by one rename or exchange, else by two; false where OUT is as it was.
+/// Makes new/ the folder OUT by one rename or exchange, else by two; returns false if OUT is unchanged.
 bool Staging::bring_whole() const {
     const fs::path made = work_ / "new", old = work_ / "old";
     if (work_.parent_path() == out_ || is_there(work_ / "one-by-one")) return false;
@@ -418,7 +419,7 @@ bool Staging::bring_whole() const {
 
 void Staging::bring_one_by_one(const std::string& kind) {
     const fs::path made = work_ / "new", list = list_of(kind);
-    if (!is_there(made / list)) return remove_tree(made);  // which came last
+    if (!is_there(made / list)) return remove_tree(made);  // which was moved last
     if (!put(work_ / "one-by-one", "")) fail("cannot write in", shown_, std::strerror(errno));
     const Names before = names_in(out_ / list), now = names_in(made / list), others = others_lists(out_, list);
     const auto bring = [&](const std::string& name) {
@@ -440,10 +441,10 @@ void Staging::bring_one_by_one(const std::string& kind) {
             for (fs::path up = fs::path(gone).parent_path(); !up.empty() && ::rmdir((out_ / up).c_str()) == 0;)
                 up = up.parent_path();
     bring(list);
-    remove_tree(made);  // what is left are second names of the user's files
+    remove_tree(made);  // only second names of the user's files are left
 }
 
-/// Removes what is ours from what OUT was and moves the rest into OUT. The list of what is ours stays until the end.
+/// Removes our outputs from the former OUT and moves the rest into OUT. The list of our outputs is kept until the end.
 void Staging::clear(const Path& old, const Path& below, const Names& ours, const Names& others) {
     for (const std::string& leaf : entries(old / below)) {
         const fs::path name = below / leaf, from = old / name, to = out_ / name;

@@ -1,17 +1,18 @@
-// Outputs appear as one: a whole folder is written beside OUT and exchanged with it by one system call.
+// Outputs appear all at once: a whole folder is written next to OUT and exchanged with it by one system call.
 //
-//   OUT                 the outputs, beside files of the user; .crescent-KIND lists which files are ours
-//   .OUT.crescent/      beside OUT while a run writes into it:
+//
+//   OUT                 the outputs, with files of the user; .crescent-KIND lists which files are ours
+//   .OUT.crescent/      next to OUT while a run writes into it:
 //     lock              held by that run; child processes do not inherit it
-//     new/  scratch/    the outputs in the making, and what is needed on the way
-//     moving            from here on the outputs are brought to their places: what the next start completes;
+//     new/  scratch/    the unfinished outputs, and temporary files
+//     moving            from here on the outputs are brought to their places; the next start completes this
 //     one-by-one        by renaming them one by one
-//     new/ or old/      what OUT was: ours goes, files of the user are moved along into OUT
+//     new/ or old/      the former OUT: our outputs are removed, files of the user are moved into OUT
 //
 // The user's files are in both folders when they are exchanged (hard links); whole folders of the user follow a moment
-// later. Where the file system has no exchange, two renames do it. Where OUT cannot be renamed at all (a mount point,
-// the current folder, another user's), files are renamed into it one by one, the list of them last: there alone a kill
-// can leave files of two runs, until the next start. Where nothing can be made beside OUT, the work is in
+// later. If the file system has no exchange, two renames are used. If OUT cannot be renamed (a mount point, the current
+// folder, another user's), files are renamed into it one by one, the list of them last; only in this case can a kill
+// leave files of two runs, until the next start. If nothing can be created next to OUT, the work is in
 // OUT/.crescent-work.
 #pragma once
 
@@ -28,28 +29,27 @@
 
 namespace crescent::inline base {
 
-/// A folder of outputs in the making. Nothing shows under a final name before commit(). Throws OutputError where
-/// something cannot be written, and where another process is writing into the same folder.
+/// A folder of unfinished outputs. Nothing appears under a final name before commit(). Throws OutputError if something
+/// cannot be written, or if another process is writing into the same folder.
 class Staging {
 public:
-    /// Resolves `folder` once: a later chdir does not move the outputs. Completes what a killed run began, or clears
-    /// what it left. Work of another kind may write into the same folder: it has outputs of its own.
+    /// Resolves `folder` once: a later chdir does not move the outputs. Completes or clears the work of a killed run.
+    /// Another kind may write into the same folder, because it has outputs of its own.
     explicit Staging(const std::string& folder, std::string kind = "outputs");
     ~Staging();
     Staging(const Staging&) = delete;
     Staging& operator=(const Staging&) = delete;
 
-    /// Throws where one of these outputs could not be brought to its place, before the work is done.
+    /// Throws if one of these outputs cannot be brought to its place, before the work is done.
     void expect(const std::vector<std::string>& names) const;
-    /// Where to write "plates/hero.png" for now.
+    /// Returns the temporary path for "plates/hero.png".
     std::string path(const std::string& name);
     void write(const std::string& name, std::span<const unsigned char> bytes);
     void write(const std::string& name, const std::string& text);
-    /// A folder for what is needed on the way; it goes with the stage.
+    /// Returns a folder for temporary files; it is removed with the stage.
     std::string scratch() const { return (work_ / "scratch").string(); }
-    /// Brings every output to its place and removes files of the earlier outputs that are not among them. What the
-    /// folder holds besides stays; a user's file under the name of an output is kept as NAME.~1~, and `monitor` logs
-    /// it.
+    /// Brings every output to its place and removes files of the earlier outputs that are not among them. Other files
+    /// in the folder stay; a user's file with the name of an output is kept as NAME.~1~, and `monitor` logs it.
     void commit(ProgressMonitor& monitor);
 
 private:
@@ -68,22 +68,22 @@ private:
 
     std::string shown_, kind_;    // shown_: OUT as it was given
     Path out_, work_;             // absolute, links followed
-    std::shared_ptr<void> lock_;  // its end takes an empty work folder away
-    bool moving_ = false;         // outputs are being brought to their places
+    std::shared_ptr<void> lock_;  // its destruction removes an empty work folder
+    bool moving_ = false;         // outputs are being moved to their places
     Names names_, said_;
 };
 
-/// For tests: what is called before each change that brings outputs to their places, and what the file system lacks.
+/// For tests: a function called before each change that moves outputs, and missing features of the file system.
 struct PublishingFaults {
     void (*before_change)() = nullptr;
     bool no_exchange = false, no_rename_of_folders = false;
 };
-/// Those of this process: none, where no test set some.
+/// Returns those of this process: none unless a test set some.
 PublishingFaults& publishing_faults();
 
-// ---- All of a file at once.
+// ---- Reads a whole file at once.
 
-/// The bytes of a file; "" where it cannot be read.
+/// Returns the bytes of a file; "" if it cannot be read.
 inline std::string contents_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream all;

@@ -1,5 +1,5 @@
-// Outputs appear as one: killed before any change, a reader finds one run whole, and the next run leaves what a run
-// that was never killed leaves, the user's files with it. In each way of bringing outputs to their places.
+// Outputs appear all at once: after a kill before any change, a reader finds one complete run, and the next run leaves
+// the same files, including the user's, as after a run that was never killed. Tested for each method of moving outputs.
 #include "base/files.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ void end_at_last_step() {
 
 class Publishing : public testing::TestWithParam<Way> {
 protected:
-    // In memory, where there is such a place: these tests sync some thousand times.
+    // In memory if possible: these tests sync some thousand times.
     fs::path top_ = fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
         ("publishing-" + std::to_string(getpid()));
     fs::path out_ = top_ / "out", before_ = fs::current_path();
@@ -72,7 +72,7 @@ protected:
         if (way() == Way::current_folder) fs::current_path(out_);
         publish(run);
     }
-    /// Every file and link below the folder that OUT is in, as they are.
+    /// Returns every file and link below the folder that contains OUT.
     Files all() const {
         Files out;
         for (const auto& entry : fs::recursive_directory_iterator(top_))
@@ -80,7 +80,7 @@ protected:
                 out[entry.path().lexically_relative(top_).string()] = entry.is_regular_file() ? text_of(entry) : "-";
         return out;
     }
-    /// What a reader finds in OUT under the names of both runs.
+    /// Returns what a reader finds in OUT under the names of both runs.
     Files seen() const {
         Files out;
         for (const Files& run : {old_run, new_run})
@@ -92,7 +92,7 @@ protected:
         return static_cast<std::size_t>(
             std::ranges::count_if(users, [&](const auto& file) { return text_of(out_ / file.first) == file.second; }));
     }
-    /// A process that does the work and ends before its `step`-th change. True where it came to its end.
+    /// Runs the work in a process that ends before its `step`-th change. Returns true if the work was completed.
     template <class Work> bool ends_before(int step, const Work& work) {
         const pid_t child = fork();
         if (child == 0) {
@@ -114,7 +114,7 @@ std::string name_of(const testing::TestParamInfo<Way>& info) {
 INSTANTIATE_TEST_SUITE_P(
     Each, Publishing, testing::Values(Way::exchange, Way::two_renames, Way::one_by_one, Way::current_folder), name_of);
 
-TEST_P(Publishing, KilledBeforeAnyChangeLosesNothingAndTheNextRunLeavesNothingBehind) {
+TEST_P(Publishing, KillBeforeAnyChangeLosesNothing) {
     start_over(new_run);
     const Files clean = all();
     ASSERT_EQ(users_files_seen(), users.size());
@@ -132,7 +132,7 @@ TEST_P(Publishing, KilledBeforeAnyChangeLosesNothingAndTheNextRunLeavesNothingBe
         if (way() == Way::exchange) {
             EXPECT_EQ(text_of(out_ / "notes.txt") + text_of(out_ / "plates/mine.png"), "minemine") << steps;
         }
-        { Staging next(out_); }  // a later run that is stopped as it begins
+        { Staging next(out_); }  // a later run that is stopped at its start
         ASSERT_TRUE(seen() == old_run || seen() == new_run) << "ended before change " << steps;
         ASSERT_EQ(users_files_seen(), users.size()) << "ended before change " << steps;
         ASSERT_FALSE(fs::exists(top_ / ".out.crescent")) << "ended before change " << steps;
@@ -196,7 +196,7 @@ TEST_F(Publishing, ForTheFirstTimeShowsAllOrNothing) {
     }
 }
 
-TEST_F(Publishing, KeepsTheFoldersRightsAndWorksThroughALink) {
+TEST_F(Publishing, KeepsPermissionsAndFollowsALink) {
     fs::create_directories(top_ / "real/out");
     fs::permissions(top_ / "real/out", fs::perms(0750));
     fs::create_directory_symlink("real/out", out_);

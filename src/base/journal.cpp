@@ -1,5 +1,5 @@
-// A record is its size, its XXH3-64 seeded with the key's, and its bytes, written together; the first one is the key
-// itself. Reading ends at the first that is not whole and cuts the file there. flock() keeps other processes out.
+// A record is its size, its XXH3-64 seeded with the key's, and its bytes, written together; the first record is the key
+// itself. Reading ends at the first incomplete record and truncates the file there. flock() keeps other processes out.
 #include "base/journal.h"
 
 #include <utility>
@@ -37,8 +37,8 @@ Journal::Journal(Journal&& other) noexcept
 
 namespace {
 
-/// What stands before the bytes of a record. The hash begins from the key's, so that a record that was copied here from
-/// the journal of other work is not taken.
+/// The head of a record. The hash is seeded with the key's, so that a record copied from the journal of other work is
+/// rejected.
 struct Head {
     std::uint64_t size, hash;
 };
@@ -58,7 +58,7 @@ std::uint64_t hash_of(const std::string& key, const std::byte* record, std::size
     return XXH3_64bits_withSeed(record, size, XXH3_64bits(key.data(), key.size()));
 }
 
-/// The next record, if it is whole.
+/// Reads the next record, if it is complete.
 bool next_record(int file, std::uint64_t left, const std::string& key, std::vector<std::byte>& record) {
     Head head;
     if (left < sizeof head || !read_all(file, &head, sizeof head) || head.size > left - sizeof head) return false;
@@ -99,7 +99,7 @@ void Journal::append(const std::vector<Bytes>& parts) {
     if (off_) return;
     bool written = file_ >= 0;
     if (!written) {
-        std::error_code ignored;  // open() will say what is wrong
+        std::error_code ignored;  // open() will report the error
         std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), ignored);
         written = open(O_CREAT);
         if (off_) return;
@@ -132,7 +132,7 @@ void Journal::remove() {
     if (file_ >= 0) close(std::exchange(file_, -1));
 }
 
-#else  // where there are no files, nothing is kept
+#else  // without files, nothing is kept
 
 Journal::~Journal() = default;
 void Journal::read(const std::function<void(Bytes)>&) {}

@@ -1,6 +1,6 @@
-// A file of records that grows while long work goes on, so that a run which was stopped can be resumed. A record
-// counts once it is whole: it carries its length and its XXH3, and what a kill tore off is not read back. A journal
-// that cannot be written never ends the work: it says so and keeps nothing more.
+// A file of records that grows during long work, so that a stopped run can be resumed. Each record has its length and
+// its XXH3, so that a record cut off by a kill is not read. If a journal cannot be written, the work continues: the
+// journal logs it and keeps nothing more.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,17 @@ class Journal {
 public:
     using Bytes = std::span<const std::byte>;
 
-    /// `key` names the work: the records of other work count as none. Nothing is read or written yet.
+    /// `key` names the work: records of other work are ignored. Nothing is read or written yet.
     Journal(std::string path, std::string key, ProgressMonitor& monitor);
     ~Journal();
     Journal(Journal&& other) noexcept;
     Journal& operator=(Journal&&) = delete;
 
-    /// Hands over each whole record that is there, in order. None where another process has the file open.
+    /// Passes on each complete record, in order; none if another process has the file open.
     void read(const std::function<void(Bytes)>& take);
-    /// Appends one record made of these parts; the first one makes the file.
+    /// Appends one record made of these parts; the first call creates the file.
     void append(const std::vector<Bytes>& parts);
-    /// Takes the file away; a later append() makes it anew.
+    /// Removes the file; a later append() creates it again.
     void remove();
 
 private:

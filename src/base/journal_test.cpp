@@ -1,4 +1,4 @@
-// Journals: what was written whole is read back, whatever a kill or a worn disk did to the rest.
+// Journals: complete records are read back after a kill or disk errors in the rest.
 #include "base/journal.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 using Texts = std::vector<std::string>;
 
 struct Listener : ProgressMonitor {
-    int said = 0;
-    void log(std::string_view) override { ++said; }
+    int message = 0;
+    void log(std::string_view) override { ++message; }
 };
 
 class Journals : public testing::Test {
@@ -53,7 +53,7 @@ TEST_F(Journals, GiveRecordsBackInOrder) {
     EXPECT_EQ(read(), (Texts{"first", "second", ""}));
 }
 
-TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
+TEST_F(Journals, TornRecordIsDroppedAndWritingContinues) {
     write({{"one"}, {"two"}, {"three"}});
     std::ifstream whole(path_, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
@@ -66,7 +66,7 @@ TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
         EXPECT_TRUE(std::equal(kept.begin(), kept.end(), all.begin())) << length;
         append(journal, {"new"});
         kept.push_back("new");
-        Journal elsewhere = std::move(journal);  // lets go of the file at the end of this turn
+        Journal elsewhere = std::move(journal);  // releases the file at the end of this iteration
         EXPECT_TRUE(read().empty()) << "another reader, while the file is in use";
         fs::copy_file(path_, path_ + "-copy", fs::copy_options::overwrite_existing);
         Journal copy(path_ + "-copy", "work", monitor_);
@@ -115,14 +115,14 @@ TEST_F(Journals, AreNotLedElsewhereByALink) {
     write({{"one"}});
     std::ifstream victim(folder_ / "victim");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(victim), {}), "victim");
-    EXPECT_EQ(monitor_.said, 1);
+    EXPECT_EQ(monitor_.message, 1);
 }
 
 TEST_F(Journals, ThatCannotBeWrittenSaySo) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "deep") << "a file where the folder should be";
     write({{"one"}, {"two"}});
-    EXPECT_EQ(monitor_.said, 1) << "once, and the work goes on";
+    EXPECT_EQ(monitor_.message, 1) << "once, and the work goes on";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Processors: sched_getaffinity(), cpu.max or cpu.cfs_quota_us. Memory in bytes: MemAvailable; memory.max or
-// memory.limit_in_bytes less what is used and not just cached; RLIMIT_AS less VmSize. The least of the process's group,
-// of all groups around it and of the machine counts.
+// memory.limit_in_bytes minus the memory used except caches; RLIMIT_AS minus VmSize. The smallest value of the
+// process's group, its parent groups and the machine counts.
 #include "base/machine.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <thread>
@@ -26,7 +27,7 @@ namespace {
 
 constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
 
-/// The folders of the process's group in one hierarchy and of all groups around it, the innermost first.
+/// Returns the folders of the process's group in one hierarchy and of its parent groups, the innermost first.
 std::vector<std::string> groups(const std::string& root, const std::string& own, const std::string& controller) {
     std::istringstream lines(contents_of(own));
     std::vector<std::string> out;
@@ -46,7 +47,7 @@ std::vector<std::string> groups(const std::string& root, const std::string& own,
     return out;
 }
 
-/// The first number of a file; nothing where it has none ("max", or no such file).
+/// Reads the first number of a file; returns false if there is none ("max", or no such file).
 bool number_in(const std::string& path, double& value) {
     const std::string text = contents_of(path);
     char* end = nullptr;
@@ -65,7 +66,7 @@ double field(const std::string& text, const std::string& name) {
     return 0;
 }
 
-/// What a group may still allocate: its limit less what it uses; files that are only cached are given back when needed.
+/// Returns what a group may still allocate: its limit minus its use; cached files are freed when needed.
 std::uint64_t left_in(const std::string& group, const char* limit_file, const char* used_file, const char* cached) {
     double limit = 0, used = 0;
     if (!number_in(group + limit_file, limit) || limit >= 9e18) return no_limit;
@@ -109,7 +110,7 @@ std::uint64_t granted_memory(const std::string& root, const std::string& own) {
 }
 
 int usable_threads() {
-    int count = static_cast<int>(std::thread::hardware_concurrency());  // 0 where it is not known
+    int count = static_cast<int>(std::thread::hardware_concurrency());  // 0 if unknown
 #ifdef __linux__
     cpu_set_t mine;
     if (sched_getaffinity(0, sizeof mine, &mine) == 0) count = CPU_COUNT(&mine);
@@ -143,6 +144,13 @@ std::string program_file() {
 #else
     return "";
 #endif
+}
+
+std::string shared_file(const std::string& name) {
+    std::error_code none;
+    const std::filesystem::path program = std::filesystem::canonical(program_file(), none),
+                                file = program.parent_path().parent_path() / "share" / "crescent" / name;
+    return !program.empty() && std::filesystem::exists(file, none) ? file.string() : "";
 }
 
 Usage usage() {

@@ -1,4 +1,4 @@
-// What a process may use is read from its control groups, v1 and v2, the tightest of all that it is in.
+// The limits of a process are read from its control groups, v1 and v2; the smallest applies.
 #include "base/machine.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ protected:
     }
 };
 
-TEST_F(Machines, WithGroupsOfVersion2GrantTheTightestOfThem) {
+TEST_F(Machines, CgroupV2GrantsTheSmallestLimit) {
     put("own", "0::/jobs/mine\n");
     EXPECT_EQ(granted_processors(root_, own_), 0);
     EXPECT_EQ(granted_memory(root_, own_), ~std::uint64_t{0});

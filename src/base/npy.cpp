@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view magic("\x93NUMPY", 6);
 
-/// The header's dictionary, a Python literal, read off from the front of a value.
+/// The header's dictionary, a Python literal, read from the start of a value.
 class Dictionary {
 public:
     Dictionary(const std::string& path, std::string_view text) : path_(path), text_(text) {}
@@ -25,7 +25,7 @@ public:
     [[noreturn]] void fail(const std::string& expected) const {
         throw InputError({path_, 0, 0}, fmt::format("NPY header: expected {} in {}", expected, printable(text_, 200)));
     }
-    /// What is behind 'key':.
+    /// Returns the text after 'key':.
     std::string_view value(std::string_view key) const {
         for (const char quote : {'\'', '"'}) {
             const std::size_t at = text_.find(fmt::format("{}{}{}", quote, key, quote));

@@ -10,22 +10,22 @@
 
 namespace crescent::inline base {
 
-/// No header that this reads is longer.
+/// The longest header that is read.
 inline constexpr std::size_t longest_npy_header = 65536 + 12;
 
 struct NpyHeader {
     std::size_t bytes = 0;  // of a float: 2, 4 or 8
-    bool swapped = false;   // the file's order of bytes is not this machine's
+    bool swapped = false;   // the file's byte order is not this machine's
     bool by_column = false;
     std::vector<std::uint64_t> shape;
     std::size_t end = 0;  // the byte after the header
 };
 
-/// Reads the header in a file's first bytes: all, or longest_npy_header of them. Throws InputError with what was
-/// expected, of floats of any size and an array of any shape.
+/// Reads the header in a file's first bytes: all of them, or longest_npy_header. Accepts floats of any size and an
+/// array of any shape; else throws InputError with what was expected.
 NpyHeader read_npy_header(const std::string& path, std::string_view first_bytes);
 
-/// The float in the file's bytes.
+/// Returns the float in the file's bytes.
 double npy_number(const NpyHeader& header, const char* at);
 
 }  // namespace crescent::inline base

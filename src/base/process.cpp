@@ -1,4 +1,4 @@
-// fork() and exec(). Between them the child makes async-signal-safe calls alone (POSIX.1-2017, 2.4.3), and reports over
+// fork() and exec(). Between them the child makes only async-signal-safe calls (POSIX.1-2017, 2.4.3), and reports over
 // a pipe why exec failed. The leader of a group is reaped after the group was killed, so that its number cannot belong
 // to another group by then.
 #include "base/process.h"
@@ -31,11 +31,10 @@ namespace crescent::inline base {
 
 namespace {
 
-/// A program whose output stays in one line is passed on in pieces of so many bytes.
+/// Output of a program without line ends is passed on in pieces of this many bytes.
 constexpr std::size_t longest_line = 4096;
 
-/// The process groups that live, for kill_all(): 0 is a free place. A process beyond these is killed by its object
-/// alone.
+/// The live process groups, for kill_all(): 0 is a free entry. A process beyond these is killed only by its object.
 std::array<std::atomic<pid_t>, 4096> live_groups{};
 
 std::size_t registered(pid_t group) {
@@ -64,7 +63,8 @@ struct Stream {
         theirs = ::open(file.c_str(), (they_read ? O_RDONLY : O_WRONLY | O_CREAT | O_TRUNC) | O_CLOEXEC, 0666);
         if (theirs < 0) throw OutputError(fmt::format("cannot open {}: {}", file, std::strerror(errno)));
     }
-    /// No other program inherits an end; elsewhere than on Linux another thread's may, in between.
+    /// No other program inherits an end; on systems other than Linux a program started by another thread at that moment
+    /// may.
     void make_pipe(bool they_read) {
         int ends[2];
 #ifdef __linux__
@@ -97,7 +97,7 @@ private:
 
 std::atomic<bool> adopting{false};
 
-/// Kills the children of the main thread, which are those that were adopted there. Async-signal-safe.
+/// Kills the children of the main thread, including adopted ones. Async-signal-safe.
 void kill_children() {
     char path[64] = "/proc/self/task/", digits[24], text[4096];
     std::size_t at = std::strlen(path), count = 0;
@@ -152,9 +152,9 @@ struct Start {
 };
 
 [[noreturn]] void become(Start start) {
-    ::setpgid(0, 0);  // a Ctrl-C of the terminal is for us to pass on
+    ::setpgid(0, 0);  // Ctrl-C of the terminal is passed on by this process
 #ifdef __linux__
-    // The signal comes with the end of the thread that forked: only the main thread lives as long as the process.
+    // The signal is sent when the thread that forked ends: only the main thread lives as long as the process.
     if (start.dies_with_thread) {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (::getppid() != start.parent) ::_exit(127);
@@ -176,7 +176,7 @@ void make_nonblocking(int fd) {
     if (fd >= 0) ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
 }
 
-/// How much of a line is passed on at once: whole characters of UTF-8.
+/// Returns how much of a line is passed on at once: whole characters of UTF-8.
 std::size_t piece_of(std::string_view line) {
     std::size_t size = std::min(line.size(), longest_line);
     for (int k = 0; k < 3 && size < line.size() && (static_cast<unsigned char>(line[size]) & 0xC0) == 0x80; ++k) --size;
@@ -192,7 +192,7 @@ void print_piece(const std::string& label, std::string piece) {
     for (std::size_t at = 0; at < text.size();) {
         const ssize_t n = ::write(STDERR_FILENO, text.data() + at, text.size() - at);
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return;  // nothing can be reported any more
+        if (n <= 0) return;  // reporting is no longer possible
         at += static_cast<std::size_t>(n);
     }
 }
@@ -226,7 +226,7 @@ Process::Process(const ProcessPlan& plan) : label_(printable(plan.label, 60)), o
         if (pid_ == 0) become(start);
         why = pid_ < 0 ? errno : 0;
         if (pid_ > 0) {
-            ::setpgid(pid_, pid_);  // whichever of the two comes first
+            ::setpgid(pid_, pid_);  // whichever of the two processes is first
             slot_ = registered(pid_);
         }
     }
@@ -270,7 +270,7 @@ std::optional<ProcessEnd> Process::ended(int milliseconds) {
     while (!ended_ && pid_ > 0) {
         siginfo_t about{};
         const int waited = ::waitid(P_PID, static_cast<id_t>(pid_), &about, WEXITED | WNOHANG | WNOWAIT);
-        if (waited != 0 && errno != EINTR) ended_ = ProcessEnd{};  // reaped by somebody else: how is not known
+        if (waited != 0 && errno != EINTR) ended_ = ProcessEnd{};  // reaped elsewhere: the exit status is unknown
         if (waited == 0 && about.si_pid == pid_)
             ended_ = about.si_code == CLD_EXITED ? ProcessEnd{about.si_status, 0} : ProcessEnd{0, about.si_status};
         if (ended_ || std::chrono::steady_clock::now() >= until) break;
@@ -322,7 +322,7 @@ void Process::adopt_orphans() noexcept {
 #endif
 }
 
-/// What is there now, at most what a pipe holds.
+/// Reads what is available, at most the contents of a pipe.
 void Process::pass_on_stderr() {
     char buffer[1 << 14];
     for (int round = 0; round < 4 && err_ >= 0; ++round) {

@@ -1,4 +1,4 @@
-// How other programs are started, ended and listened to, tried on shell commands.
+// Starting, ending and reading other programs, tested with shell commands.
 #include "base/process.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// What a shell command prints to stdout, and how it ended.
+/// Returns what a shell command prints to stdout, and how it ended.
 std::pair<std::string, std::string> run(const std::string& command) {
     Process process({.argv = {"/bin/sh", "-c", command}, .stdin_file = "/dev/null", .label = "sh"});
     std::string out;
@@ -54,7 +54,7 @@ TEST(Processes, InheritNoSignalMaskHandlerOrDescriptor) {
     EXPECT_EQ(files, "0\n1\n2\n3\n");  // 3: the folder that ls reads
 }
 
-/// Whether a process runs; one that was killed and waits to be reaped does not.
+/// Returns whether a process runs; a killed process that waits to be reaped does not.
 bool runs(const std::string& id) {
     std::ifstream file("/proc/" + id + "/stat");
     std::string text;
@@ -86,14 +86,14 @@ TEST(Processes, OfAThreadLiveOnWithoutIt) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
-TEST(Processes, ThatLeaveAChildWithTheirPipesEndAllTheSame) {
+TEST(Processes, EndWhileAChildHoldsTheirPipes) {
     Process process({.argv = {"/bin/sh", "-c", "sleep 300 & exit 4"}, .stdin_file = "/dev/null"});
     const std::optional<ProcessEnd> end = process.ended(5000);
     ASSERT_TRUE(end);
     EXPECT_EQ(end->code, 4);
 }
 
-/// What arrives on our own stderr of what a command prints to it.
+/// Returns what arrives on our own stderr of a command's stderr.
 std::string passed_on(const std::string& command) {
     ::testing::internal::CaptureStderr();
     {
@@ -110,7 +110,7 @@ TEST(Processes, HaveTheirStderrPassedOnInLines) {
     EXPECT_EQ(passed_on("true"), "");
 }
 
-TEST(Processes, HaveLongLinesPassedOnInPiecesOfWholeCharacters) {
+TEST(Processes, LongLinesAreSplitBetweenCharacters) {
     const std::string text = passed_on("for k in $(seq 5001); do printf '\\342\\202\\254'; done >&2");  // €
     std::istringstream lines(text);
     std::string all;

@@ -1,4 +1,4 @@
-// Long work tells how far it is and asks whether to go on.
+// Long work reports its progress and checks whether to continue.
 #pragma once
 
 #include <atomic>
@@ -12,55 +12,55 @@
 
 namespace crescent::inline base {
 
-/// The work was asked to stop (Ctrl-C, SIGTERM): exit code 130, nothing half-written.
+/// A stop was requested (Ctrl-C, SIGTERM): exit code 130, nothing half-written.
 struct Interrupted : std::exception {
     const char* what() const noexcept override { return "interrupted"; }
 };
 
-/// What stands under the final names of a run's outputs: what was there before; one or the other, all of one run; its
-/// own.
+/// The state of the files under the final names of a run's outputs: unchanged; those of either run, complete; the new
+/// ones.
 enum class Outputs { untouched, moving, stand };
 
-/// How far long work is, and whether it is to go on. Called from many threads at once; every call is cheap.
+/// The progress of long work, and whether it should continue. Called from many threads at once; every call is cheap.
 class ProgressMonitor {
 public:
     virtual ~ProgressMonitor() = default;
-    /// A new stretch of work begins: `total` units, named for the reader ("seed 3 of 16").
+    /// A new stage of work begins: `total` units, with a name for the user ("seed 3 of 16").
     virtual void begin(std::string_view /*what*/, double /*total*/) {}
     /// `units` more are done.
     virtual void advance(double /*units*/) {}
     /// `units` of the total were done by an earlier run.
     virtual void skip(double /*units*/) {}
-    /// A line worth keeping in a log.
+    /// A line for the log.
     virtual void log(std::string_view /*line*/) {}
 
-    /// The flag kernels poll; set from a signal handler.
+    /// Polled by kernels; set from a signal handler.
     std::atomic<bool> stop{false};
-    /// Which outputs stand at the moment: what the signal handler tells the user.
+    /// The state of the outputs, which the signal handler reports to the user.
     std::atomic<Outputs> outputs{Outputs::untouched};
     void check() const {
         if (stop.load(std::memory_order_relaxed)) throw Interrupted{};
     }
 };
 
-// ---- A ProgressMonitor for hosts that poll how far the work is: a Python thread, a page, a C program. Its flag `stop`
-// may be set from any thread; a stop is returned as a value, not thrown, see run/execute.h.
+// ---- A ProgressMonitor for hosts that poll the progress (a Python thread, a page, a C program); its flag `stop` may
+// be set from any thread, and a stop is returned as a value, see run/execute.h.
 
-/// Keeps what the work says until it is asked for. All members may be called from any thread.
+/// Keeps what the work reports until it is queried. All members may be called from any thread.
 class PolledMonitor : public ProgressMonitor {
 public:
-    /// What is under way ("seed 3 of 16"), and how much of it is done: `done` of `total` units of its own.
+    /// The current stage ("seed 3 of 16"), and its progress: `done` of `total` units of its own.
     struct State {
         std::string what;
         double done = 0, total = 0;
     };
 
-    /// Of this moment; any thread may ask.
+    /// Returns the current state; from any thread.
     State state() const {
         const Guard guard(lock_);
         return state_;
     }
-    /// The lines that the work said since they were last taken; any thread may ask.
+    /// Returns the lines logged since the last call; from any thread.
     std::vector<std::string> take_lines() {
         const Guard guard(lock_);
         return std::exchange(lines_, {});
@@ -89,12 +89,12 @@ private:
     std::vector<std::string> lines_;
 };
 
-// ---- How long something took, in wall-clock seconds.
+// ---- Elapsed wall-clock time, in seconds.
 
-/// Runs from when it is made.
+/// Starts when it is constructed.
 class Stopwatch {
 public:
-    /// Since it was made.
+    /// Returns the seconds since its construction.
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 private:

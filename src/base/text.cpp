@@ -1,5 +1,5 @@
-// UTF-8 as RFC 3629, section 4, has it: no overlong forms, no surrogates; U+FFFE and U+FFFF count as broken too. Each
-// character is then passed on, replaced or shown by its number. Shell words stand in single quotes.
+// UTF-8 as in RFC 3629, section 4: no overlong forms, no surrogates; U+FFFE and U+FFFF also count as invalid. Each
+// character is passed on, replaced or shown by its number. Shell words are in single quotes.
 #include "base/text.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Bytes of the UTF-8 sequence that begins at `at`, 0 where it is broken (RFC 3629, section 4).
+/// Returns the bytes of the UTF-8 sequence that begins at `at`, 0 if it is invalid (RFC 3629, section 4).
 std::size_t sequence_length(std::string_view text, std::size_t at) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned first = byte(at);
@@ -104,7 +104,7 @@ std::string shell_word(std::string_view word) {
     return out + "'";
 }
 
-// ---- The nearest word is that of nearest(); a word of more than 64 characters is near to none.
+// ---- Formats the suggestion of nearest(); words of more than 64 characters get none.
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& valid) {
     const std::string near = word.size() > 64 ? "" : nearest(word, valid);

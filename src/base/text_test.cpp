@@ -1,6 +1,5 @@
-// Text for terminals against escapes written out by hand, and 20 000 random texts that must come out without control
-// characters; shell words against sh, which reads them back; nearest() of base/errors.h and base/hint.h on near and far
-// words.
+// Text for terminals against escapes written out by hand, and 20 000 random texts whose output must have no control
+// characters; shell words against sh, which reads them back; nearest() of base/errors.h on near and far words.
 #include "base/text.h"
 
 #include <gtest/gtest.h>

@@ -43,22 +43,22 @@ using Vec3f = Vec3<float>;
 
 using Vec2d = Vec2<double>;
 
-// ---- Vectors from one number type to another, component by component, as static_cast rounds.
+// ---- Converts vectors from one number type to another, component by component, with the rounding of static_cast.
 
-/// `v` in doubles (exact for floats).
+/// Returns `v` in doubles (exact for floats).
 template <class F> constexpr Vec3d widen(Vec3<F> v) {
     return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
-/// `v` rounded to F.
+/// Returns `v` rounded to F.
 template <class F> constexpr Vec3<F> as(Vec3d v) {
     return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)};
 }
 
 }  // namespace crescent::inline base
 
-// ---- A colour: three numbers of linear Rec.709, and what it is worth to the eye.
+// ---- A colour: three numbers of linear Rec.709, and its luminance.
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 using Rgb = std::array<double, 3>;  // linear Rec.709
 
@@ -69,4 +69,4 @@ template <class C> double luminance(const C& rgb) {
     return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
 }
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

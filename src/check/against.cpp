@@ -33,7 +33,7 @@ struct Differences {
 };
 
 auto questions_to(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b) {
-    return [&](const std::function<void(const AgainstAnswer&)>& visit) { ask_against(ground, a, b, visit); };
+    return [&](const std::function<void(const AgainstAnswer&)>& visit) { test_against(ground, a, b, visit); };
 }
 
 /// What the comparison of one w_o is made with.
@@ -62,14 +62,15 @@ class Comparison {
 public:
     Comparison(const Side& one, const Side& other, const AgainstPlan& plan)
         : plan_(plan),
-          a_{one.trial, *other.trial.subject, key_of(one)},
-          b_{other.trial, *one.trial.subject, key_of(other)} {}
+          a_{one.check_case, *other.check_case.adapter, key_of(one)},
+          b_{other.check_case, *one.check_case.adapter, key_of(other)} {}
 
     std::vector<Verdict> run() {
         std::vector<Verdict> out;
         for (const char* name : compared_by) {
             Verdict v;
-            v.arm = a_.trial.arm + " against " + b_.trial.arm, v.trial = a_.trial.text(), v.name = name;
+            v.arm = a_.check_case.arm + " against " + b_.check_case.arm, v.check_case = a_.check_case.text(),
+            v.name = name;
             out.push_back(std::move(v));
         }
         ground_.emplace(common_ground(a_, b_, plan_.budget));
@@ -100,8 +101,8 @@ private:
     }
 
     CheckAt own(const AgainstSide& side) const {
-        return check_sampler_at(*side.trial.subject, 0, side.trial.wo, {side.trial.light, side.key.place, plan_.levels},
-            plan_.own, plan_.seed);
+        return check_sampler_at(*side.check_case.adapter, 0, side.check_case.wo,
+            {side.check_case.light, side.key.place, plan_.levels}, plan_.own, plan_.seed);
     }
 
     Differences differences() {
@@ -141,9 +142,9 @@ private:
     void note_unusable(Verdict& v) const {
         const bool of_a = draws_a_.invalid > 0;
         v.state = State::inconclusive;
-        v.say = fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
+        v.message = fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
             of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B");
-        v.settle = "A sampler that is valid: `crescent check` of it alone says more.";
+        v.next_step = "A sampler that is valid: `crescent check` of it alone says more.";
     }
 
     std::string sentence_of(const AgainstAnswer& r) const {
@@ -187,29 +188,29 @@ private:
         if (differ) {
             const auto clearest = std::ranges::min_element(
                 d.found, {}, [](const auto& f) { return std::fabs(f.second.sd / f.second.difference); });
-            v.say = "They draw from different distributions. " + sentence_of(clearest->second);
+            v.message = "They draw from different distributions. " + sentence_of(clearest->second);
             return;
         }
         const AgainstSizes sizes = sizes_against(*ground_, draws_a_, draws_b_, plan_.levels.first);
-        v.say = "No difference between their distributions is seen.";
+        v.message = "No difference between their distributions is seen.";
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;
-        v.say +=
+        v.message +=
             fmt::format(" A part of {:.2g} of the draws that one of them lacks would have been found", *sizes.part);
         if (sizes.distance) {
             v.evidence["would_have_found"]["distance"] = *sizes.distance;
-            v.say += fmt::format(", and mean directions {:.2g} apart", *sizes.distance);
+            v.message += fmt::format(", and mean directions {:.2g} apart", *sizes.distance);
         }
-        v.say += ".";
+        v.message += ".";
     }
 };
 
 /// CheckCases of the same w_o one after the other.
-std::vector<std::size_t> by_direction(std::span<const CheckCase> trials) {
-    std::vector<std::size_t> order(trials.size());
+std::vector<std::size_t> by_direction(std::span<const CheckCase> check_cases) {
+    std::vector<std::size_t> order(check_cases.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
-        const CheckCase &x = trials[i], &y = trials[k];
+        const CheckCase &x = check_cases[i], &y = check_cases[k];
         return std::tuple(x.theta_deg, x.azimuth_deg, i) < std::tuple(y.theta_deg, y.azimuth_deg, k);
     });
     return order;
@@ -221,9 +222,9 @@ std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const Sa
     std::vector<Verdict> out;
     for (const char* name : compared_by) {
         Verdict v;
-        v.arm = a.arm + " against " + b.arm, v.trial = a.text(), v.name = name;
+        v.arm = a.arm + " against " + b.arm, v.check_case = a.text(), v.name = name;
         v.state = slow ? State::inconclusive : State::error;
-        v.say = slow                                     ? std::string(fault.what())
+        v.message = slow                                 ? std::string(fault.what())
             : dynamic_cast<const SamplerExited*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
                                                          : fmt::format("The sampler broke off: {}.", fault.what());
         if (slow) v.next.kind = NextStep::Kind::more_time;
@@ -232,14 +233,14 @@ std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const Sa
     return out;
 }
 
-/// What breaks off says which side it was. A subject stays one for all of its trials.
-std::vector<CheckCase> named_trials(std::span<const CheckCase> trials, const std::string& side) {
-    std::vector<CheckCase> out(trials.begin(), trials.end());
+/// What breaks off says which side it was. A sampler stays one for all of its cases.
+std::vector<CheckCase> named_cases(std::span<const CheckCase> check_cases, const std::string& side) {
+    std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     std::map<std::shared_ptr<const SamplerAdapter>, std::shared_ptr<const SamplerAdapter>> named;
     for (CheckCase& t : out) {
-        std::shared_ptr<const SamplerAdapter>& one = named[t.subject];
-        if (!one) one = named_side(t.subject, side);
-        t.subject = one;
+        std::shared_ptr<const SamplerAdapter>& one = named[t.adapter];
+        if (!one) one = named_side(t.adapter, side);
+        t.adapter = one;
     }
     return out;
 }
@@ -257,17 +258,17 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     bool expect_same, ProgressMonitor& monitor) {
     monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
-    const std::vector<CheckCase> of_a = named_trials(a, "A"), of_b = named_trials(b, "B");
+    const std::vector<CheckCase> of_a = named_cases(a, "A"), of_b = named_cases(b, "B");
     const auto either = [&](auto is) { return std::ranges::any_of(a, is) || std::ranges::any_of(b, is); };
-    const bool serial = either([](const CheckCase& t) { return t.subject->serial(); });
-    const bool limited = either([](const CheckCase& t) { return t.subject->limited(); });
+    const bool serial = either([](const CheckCase& t) { return t.adapter->serial(); });
+    const bool limited = either([](const CheckCase& t) { return t.adapter->limited(); });
     const AgainstPlan plan = plan_of(settings, limited, expect_same, a.size());
-    PerDirectionCache asked_a, asked_b;  // kept by one thread, where either is serial
+    PerDirectionCache cache_a, cache_b;  // kept by one thread, where either is serial
     const auto one = [&](std::size_t i) {
         monitor.check();
         try {
             const auto stream = static_cast<std::uint32_t>(i);
-            const Side side_a = asked_a.of(of_a[i], stream), side_b = asked_b.of(of_b[i], stream + places_of_b);
+            const Side side_a = cache_a.of(of_a[i], stream), side_b = cache_b.of(of_b[i], stream + places_of_b);
             all[i] = Comparison(side_a, side_b, plan).run();
         } catch (const SamplerError& fault) { all[i] = broken_off(a[i], b[i], fault); }
         monitor.advance(1);
@@ -279,7 +280,7 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     out.alpha = settings.alpha;
     for (std::size_t i = 0; i < a.size(); ++i) {
         out.questions = std::max(out.questions,
-            a[i].subject->spending().answers + (a[i].subject == b[i].subject ? 0 : b[i].subject->spending().answers));
+            a[i].adapter->spending().answers + (a[i].adapter == b[i].adapter ? 0 : b[i].adapter->spending().answers));
         for (Verdict& v : all[i]) out.verdicts.push_back(std::move(v));
     }
     out.state = worst_state(out.verdicts);
@@ -290,9 +291,9 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
 std::string against_text(const CheckResult& j) {
     std::string out, last;
     for (const Verdict& v : j.verdicts) {
-        if (v.trial != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.trial);
-        last = v.trial;
-        out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.say,
+        if (v.check_case != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.check_case);
+        last = v.check_case;
+        out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.message,
             settling(v).empty() ? "" : " What would settle it: " + settling(v));
     }
     return out +

@@ -21,7 +21,7 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     bool expect_same, ProgressMonitor& monitor);
 
 /// A w_o a line: both states, the ratio and its interval.
-std::string against_text(const CheckResult& judgement);
+std::string against_text(const CheckResult& result);
 
 }  // namespace crescent::check
 

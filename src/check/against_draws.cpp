@@ -22,8 +22,8 @@ constexpr std::size_t drawn_kept = 256;
 class Sorter {
 public:
     Sorter(const AgainstSide& side, int technique)
-        : source_(*side.trial.subject, technique, side.trial.wo, side.trial.light),
-          other_(side.other, 0, side.trial.wo, side.trial.light) {}
+        : source_(*side.check_case.adapter, technique, side.check_case.wo, side.check_case.light),
+          other_(side.other, 0, side.check_case.wo, side.check_case.light) {}
     Source& source() { return source_; }
 
     static bool usable(const Draw& d) {
@@ -55,7 +55,7 @@ std::uint32_t draw_pilots(
     const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<DeltaPart>& parts) {
     std::uint32_t of = 0;
     DeltaParts delta;
-    for (int t = 0; t < side.trial.subject->techniques(); ++t) {
+    for (int t = 0; t < side.check_case.adapter->techniques(); ++t) {
         Sorter sorter(side, t);
         StreamKey key = side.key;
         key.purpose = Purpose::pilot, key.technique = static_cast<std::uint8_t>(t);
@@ -95,7 +95,7 @@ CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const Che
             if (i < drawn_kept) drawn.push_back(w);
         }
     }
-    Source source(*a.trial.subject, 0, a.trial.wo, a.trial.light);
+    Source source(*a.check_case.adapter, 0, a.check_case.wo, a.check_case.light);
     source.by_draws = true;
     StreamKey key = a.key;
     key.purpose = Purpose::tree;
@@ -130,7 +130,7 @@ public:
         }
     }
     void scrambled(StreamKey key, std::uint32_t first, std::uint32_t last) {
-        if (source_.traits.own_random || !source_.subject.can_draw()) return;
+        if (source_.traits.own_random || !source_.adapter.can_draw()) return;
         key.purpose = Purpose::scrambles, key.technique = static_cast<std::uint8_t>(source_.technique);
         for (int set = 0; set < replicate_sets; ++set) {
             key.part = static_cast<std::uint16_t>(set);
@@ -198,7 +198,7 @@ private:
 }  // namespace
 
 void draw_on(const AgainstSide& side, const CommonGround& ground, const Look& to, std::uint32_t of_f, AgainstDraws& d) {
-    const auto techniques = static_cast<std::uint32_t>(side.trial.subject->techniques());
+    const auto techniques = static_cast<std::uint32_t>(side.check_case.adapter->techniques());
     const auto before = static_cast<std::uint32_t>(d.independent) / techniques,
                set_before = static_cast<std::uint32_t>(d.scrambled) / replicate_sets / techniques;
     d.leaves.resize(ground.tree.leaves().size()), d.node_by_set.resize(ground.tree.rows());
@@ -267,7 +267,7 @@ AgainstAnswer by_sets(AgainstAnswer::Family family, int member, const ReplicateM
     return out;
 }
 
-void ask_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::function<void(const AgainstAnswer&)>& visit) {
+void test_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::function<void(const AgainstAnswer&)>& visit) {
     for (std::size_t k = 0; k < a.kinds.size(); ++k) {
         if (a.kinds[k] + b.kinds[k] == 0) continue;
         const TwoShares s(a.kinds[k], a.independent, b.kinds[k], b.independent);
@@ -276,7 +276,7 @@ void ask_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::function
     }
 }
 
-void ask_sums_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
+void test_sums_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit) {
     double low = 1e300, high = -1e300;  // of ln q
     for (const Leaf& leaf : g.tree.leaves()) low = std::min(low, leaf.q), high = std::max(high, leaf.q);
@@ -304,10 +304,10 @@ void ask_sums_against(const CommonGround& g, const AgainstDraws& a, const Agains
 
 }  // namespace
 
-void ask_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
+void test_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit) {
-    ask_kinds(a, b, visit);
-    ask_sums_against(g, a, b, visit);
+    test_kinds(a, b, visit);
+    test_sums_against(g, a, b, visit);
     const std::vector<NodeCounts> counts = counts_of(g.tree, a, b);
     const bool both = a.scrambled > 0 && b.scrambled > 0;
     const std::vector<Replicates> sets_a = both ? replicates_by_row(g.tree, a.node_by_set) : std::vector<Replicates>(),
@@ -342,7 +342,7 @@ void ask_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraw
 AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b, double level) {
     AgainstSizes out;
     double tests = 0;
-    ask_against(g, a, b, [&](const AgainstAnswer& r) {
+    test_against(g, a, b, [&](const AgainstAnswer& r) {
         tests += r.family == AgainstAnswer::nodes;
         if (r.family == AgainstAnswer::sums_by_sets ||
             (b.scrambled * a.scrambled == 0 && r.family == AgainstAnswer::sums)) {

@@ -16,7 +16,7 @@ namespace crescent::check {
 
 /// One of the two samplers at its w_o, with streams of its own. `other` may know p where this one does not.
 struct AgainstSide {
-    const CheckCase& trial;
+    const CheckCase& check_case;
     const SamplerAdapter& other;
     StreamKey key;
 };
@@ -59,7 +59,7 @@ struct AgainstAnswer {
     double difference = 0, sd = 0, floor = 0, p = 1;  // share of A less that of B, or mean
 };
 std::string_view name_of(AgainstAnswer::Family family);
-void ask_against(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b,
+void test_against(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit);
 
 /// What would have been found with the stated power: a part of the draws of one that the other never draws, wherever it

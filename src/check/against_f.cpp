@@ -23,9 +23,9 @@ struct SharedF {
     std::vector<double> a, b;
 };
 
-std::vector<double> f_at(const SamplerAdapter& subject, std::span<const Pair> at) {
+std::vector<double> f_at(const SamplerAdapter& adapter, std::span<const Pair> at) {
     std::vector<double> out(at.size());
-    subject.f(at, out);
+    adapter.f(at, out);
     return out;
 }
 
@@ -33,9 +33,9 @@ bool only_at_draws(const SamplerAdapter& s) { return !s.has_f() && s.has_drawn_f
 
 SharedF f_of_both(const AgainstCase& c) {
     SharedF out;
-    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
     if (only_at_draws(a)) {
-        Source source(a, 0, c.a.trial.wo, c.a.trial.light);
+        Source source(a, 0, c.a.check_case.wo, c.a.check_case.light);
         StreamKey key = c.a.key;
         key.purpose = Purpose::draws;
         std::vector<PrimarySample> u(source.available(key, c.of_f));
@@ -55,7 +55,7 @@ SharedF f_of_both(const AgainstCase& c) {
         out.wi.insert(out.wi.end(), c.ground.drawn.begin(), c.ground.drawn.end());
     }
     std::vector<Pair> at;
-    for (Vec3d w : out.wi) at.push_back({c.a.trial.wo, w});
+    for (Vec3d w : out.wi) at.push_back({c.a.check_case.wo, w});
     if (out.a.empty()) out.a = f_at(a, at);
     out.b = f_at(b, at);
     return out;
@@ -76,7 +76,7 @@ double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
 }
 
 void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
-    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
     std::size_t count = 0, worst = 0;
     double most = 0, sum_a = 0, sum_b = 0;
     for (std::size_t i = 0; i < both.wi.size(); ++i) {
@@ -85,8 +85,8 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
         sum_a += fa, sum_b += fb;
         if (off <= same_number * size + 1e-30) continue;
         const double of_file = only_at_draws(a) ? 4 * ulp * size / std::max(std::fabs(both.wi[i].z), 1e-9)
-                                                : moved_f(a, c.a.trial.wo, both.wi[i], fa);
-        if (off <= same_number * size + of_file + moved_f(b, c.b.trial.wo, both.wi[i], fb)) continue;
+                                                : moved_f(a, c.a.check_case.wo, both.wi[i], fa);
+        if (off <= same_number * size + of_file + moved_f(b, c.b.check_case.wo, both.wi[i], fb)) continue;
         ++count;
         if (off / size > most) most = off / size, worst = i;
     }
@@ -94,7 +94,7 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     v.evidence["directions"] = both.wi.size();
     v.evidence["differ"] = count;
     if (count == 0) {
-        v.say = fmt::format(
+        v.message = fmt::format(
             "f is the same at {} directions{}.", both.wi.size(), only_at_draws(a) ? ", the draws of A" : "");
         return;
     }
@@ -102,9 +102,9 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     v.evidence["largest_relative"] = most;
     v.evidence["worst_wi"] = {w.x, w.y, w.z};
     v.evidence["f"] = {both.a[worst], both.b[worst]};
-    v.say = fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}", count, both.wi.size(),
+    v.message = fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}", count, both.wi.size(),
         direction_text(w), both.a[worst], both.b[worst]);
-    v.say += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
+    v.message += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
 }
 
 /// The first delta part whose q times weight differs. A part that is drawn less than once in a pilot may be missing.
@@ -127,25 +127,25 @@ std::string differing_delta(const AgainstCase& c) {
 }  // namespace
 
 void compare_f(const AgainstCase& c, Verdict& v) {
-    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
     const auto is_estimate = [](const AgainstSide& side) {
-        Source source(*side.trial.subject, 0, side.trial.wo, side.trial.light);
-        return look_for_scatter(source, side.key).f();
+        Source source(*side.check_case.adapter, 0, side.check_case.wo, side.check_case.light);
+        return look_for_noise(source, side.key).f();
     };
     if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
         v.state = State::skipped;
-        v.say = only_at_draws(a) ? "f of A is known at its draws alone, and B has no f to compare with it."
-            : a.can_draw()       ? "There is no f to compare."
-                                 : "The file of A has no column f: there is nothing to compare.";
+        v.message = only_at_draws(a) ? "f of A is known at its draws alone, and B has no f to compare with it."
+            : a.can_draw()           ? "There is no f to compare."
+                                     : "The file of A has no column f: there is nothing to compare.";
     } else if (is_estimate(c.a) || is_estimate(c.b)) {
         v.state = State::skipped;
-        v.say = "f is a random estimate: only its mean could be the same.";
+        v.message = "f is a random estimate: only its mean could be the same.";
     } else {
         note_difference(c, f_of_both(c), v);
     }
     if (const std::string delta = differing_delta(c); !delta.empty()) {
         v.evidence["same"] = false;
-        v.say += (v.say.empty() ? "" : " ") + delta;
+        v.message += (v.message.empty() ? "" : " ") + delta;
         v.state = State::right;
     }
     if (c.expect_same && v.evidence.contains("same") && !v.evidence["same"].get<bool>()) v.state = State::wrong;
@@ -161,7 +161,7 @@ struct WeightMoments {
     double n = 0, mean = 0, variance = 0, variance_se = 0;
     bool heavy = false;
     explicit WeightMoments(std::span<const double> x) {
-        const stats::Spread s = stats::spread(x);
+        const statistics::Spread s = statistics::spread(x);
         n = s.n, mean = s.mean, variance = sqr(s.sd);
         double m4 = 0;
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
@@ -174,7 +174,7 @@ struct WeightMoments {
     bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
 };
 
-void skip(Verdict& v, std::string say) { v.state = State::skipped, v.say = std::move(say); }
+void skip(Verdict& v, std::string message) { v.state = State::skipped, v.message = std::move(message); }
 
 /// The ratio with its interval, and which is smaller where both stages say so.
 void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
@@ -184,7 +184,7 @@ void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
     const bool alike = low > 1 - alike_variances && high < 1 + alike_variances;
     const bool ranked = differ && !alike && std::fabs(ratio - 1) > alike_variances;
     v.evidence["better"] = !ranked ? "none" : ratio > 1 ? "B" : "A";
-    v.say = fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
+    v.message = fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
         alike           ? "The variances are alike to 1 %"
             : !ranked   ? "Neither is shown to be better here"
             : ratio > 1 ? "B is better here"
@@ -223,10 +223,10 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
     const bool none_a = a.none(1), none_b = b.none(1);
     if (a.none(2) && b.none(2)) {
         v.evidence["better"] = "none";
-        v.say = "Neither has a variance: the weights of each are all alike.";
+        v.message = "Neither has a variance: the weights of each are all alike.";
     } else if (none_a || none_b) {
         v.evidence["better"] = none_a ? "A" : "B";
-        v.say = fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
+        v.message = fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
             none_a ? "A" : "B", none_a ? "B" : "A", none_a ? b.variance : a.variance);
     } else {
         note_ratio(v, a.variance / b.variance, math::hypot(a.variance_se / a.variance, b.variance_se / b.variance),
@@ -253,8 +253,8 @@ struct ReweighedDraws {
     double lost = 0;  // draws with light at which p of B is 0
 
     ReweighedDraws(const AgainstCase& c, int stage) {
-        Source a(*c.a.trial.subject, 0, c.a.trial.wo, c.a.trial.light),
-            b(*c.b.trial.subject, 0, c.b.trial.wo, c.b.trial.light);
+        Source a(*c.a.check_case.adapter, 0, c.a.check_case.wo, c.a.check_case.light),
+            b(*c.b.check_case.adapter, 0, c.b.check_case.wo, c.b.check_case.light);
         StreamKey key = c.a.key;
         key.purpose = Purpose::draws, key.stage = static_cast<std::uint8_t>(stage);
         std::vector<PrimarySample> u(a.available(key, c.of_f));
@@ -263,7 +263,7 @@ struct ReweighedDraws {
         for (std::size_t i = 0; i < draws.size(); ++i) {
             const Draw& d = draws[i];
             const bool drawn = d.pdf > 0 && d.f && d.wi.z > 0;
-            x.push_back(drawn ? *d.f * d.wi.z / d.pdf * c.a.trial.light(d.wi) : 0);
+            x.push_back(drawn ? *d.f * d.wi.z / d.pdf * c.a.check_case.light(d.wi) : 0);
             const double p = x[i] > 0 ? b.density(d.wi) : 0;
             lost += x[i] > 0 && !(p > 0);
             others.push_back(p > 0 ? sqr(x[i]) * d.pdf / p : 0);
@@ -286,7 +286,7 @@ struct ReweighedDraws {
 };
 
 void over_draws_of_a(const AgainstCase& c, Verdict& v) {
-    const SamplerAdapter& b = *c.b.trial.subject;
+    const SamplerAdapter& b = *c.b.check_case.adapter;
     if (!b.traits().has_pdf)
         return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
     if (b.techniques() > 1)
@@ -294,7 +294,7 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     const ReweighedDraws first(c, 1);
     if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.others).heavy) {
         v.state = State::inconclusive;
-        v.say = first.lost > 0
+        v.message = first.lost > 0
             ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A that carry light: B never finds that.",
                   first.lost, first.x.size())
             : "A or B has a heavy tail: the variance is not known.";
@@ -304,13 +304,13 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     v.evidence["variance_a"] = first.all.variance();
     v.evidence["variance_b"] = first.all.of_other();
     if (!first.all.varies()) {
-        v.say = fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.all.variance(), 0.0),
+        v.message = fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.all.variance(), 0.0),
             std::max(first.all.of_other(), 0.0));
         return;
     }
     note_ratio(v, math::exp(first.all.log_ratio()), first.log_se(),
         first.p() < c.levels.first && ReweighedDraws(c, 2).p() < c.levels.second);
-    v.say += " B's follows from the draws of A by p_A / p_B.";
+    v.message += " B's follows from the draws of A by p_A / p_B.";
 }
 
 /// What each sampler's own check says against a ratio of its variance.
@@ -333,7 +333,7 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
 }  // namespace
 
 void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
-    const SamplerAdapter &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
     if (of_f.evidence.contains("same") && !of_f.evidence["same"].get<bool>())
         return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
@@ -341,8 +341,8 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
             a.can_draw() ? "There is no f, so f L cos / p has no variance."
                          : "The file of A has no column f, so there are no weights f L cos / p.");
     if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, so its f L cos / p has no variance.");
-    for (const auto& [draws, subject, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
-        if (subject->has_drawn_f() && !draws->weighs)
+    for (const auto& [draws, adapter, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
+        if (adapter->has_drawn_f() && !draws->weighs)
             return skip(v,
                 fmt::format(
                     "{} has neither a pdf(w) nor a weight with its draws (weight=yes), so it has no variance.", who));
@@ -354,7 +354,8 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
     for (const auto& [m, who] : {std::pair(&of_a, "A"), {&of_b, "B"}})
         if (m->heavy) {
             v.state = State::inconclusive;
-            v.say += fmt::format("{}{} has a heavy tail: its variance is not known.", v.say.empty() ? "" : " ", who);
+            v.message +=
+                fmt::format("{}{} has a heavy tail: its variance is not known.", v.message.empty() ? "" : " ", who);
             v.next.kind = NextStep::Kind::heavier_pdf;
         }
     if (v.state == State::right) rank(c, of_a, of_b, v);

@@ -1,4 +1,4 @@
-// The engine's outcomes as one judgement: verdicts in order, what is expected of each, what there was no time for.
+// The engine's outcomes as one result: verdicts in order, what is expected of each, what there was no time for.
 #include "check/check.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ using check::CheckBudget;
 using check::CheckOutcome;
 using check::Cut;
 
-/// Verdicts of each trial, in the order of the list.
-using ByTrial = std::vector<std::vector<Verdict>>;
+/// Verdicts of each case, in the order of the list.
+using VerdictsByCase = std::vector<std::vector<Verdict>>;
 
 /// A heavy tail or an equal rank is no fault of a sampler.
 bool may_stay_open(const Verdict& v) {
@@ -32,67 +32,67 @@ bool may_stay_open(const Verdict& v) {
 }
 
 /// Whether it is what is expected of a right sampler, or of a built-in arm here.
-void expect(const CheckCase& trial, bool reaches_all, Verdict& v) {
-    const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= check::heavy_index;
-    if (trial.theory.wrong && *trial.theory.wrong == v.name) {
+void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
+    const bool infinite = check_case.theory.tail_k && *check_case.theory.tail_k >= check::heavy_index;
+    if (check_case.theory.wrong && *check_case.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
-        v.why_expected = trial.theory.why;
+        v.why_expected = check_case.theory.why;
     } else if (infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
         // Where p is 0, the light that makes the tail is not among the weights.
         v.expected = v.state == State::inconclusive || !reaches_all;
-        v.why_expected = trial.theory.why;
-    } else if (!trial.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
+        v.why_expected = check_case.theory.why;
+    } else if (!check_case.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
         v.expected = true;
-        v.why_expected = trial.theory.underflows;
+        v.why_expected = check_case.theory.underflows;
     } else {
         v.expected = v.state == State::right || v.state == State::skipped ||
             (v.state == State::inconclusive && may_stay_open(v));
     }
 }
 
-/// What the verdicts of a trial that ended early say: the first of them, and the others.
-struct Said {
+/// What the verdicts of a case that ended early say: the first of them, and the others.
+struct AbortText {
     State state = State::error;
     std::string first, rest;
 };
 
-Said said_of(const Cut& cut, const CheckCase& trial, const TestSettings& settings) {
+AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSettings& settings) {
     const std::string rest = "It could not be evaluated: the sampler broke off before.";
     switch (cut.why) {
         case Cut::Why::fault: return {State::error, fmt::format("The sampler broke off: {}.", cut.what), rest};
         case Cut::Why::gone: return {State::error, rest, rest};
         case Cut::Why::too_slow: break;
     }
-    const std::string say =
+    const std::string message =
         fmt::format("Not examined: {:g} s are too short for this program to be examined at every w_o.",
-            trial.subject->spending().allowed);
-    return {settings.accept_few ? State::skipped : State::inconclusive, say, say};
+            check_case.adapter->spending().allowed);
+    return {settings.accept_few ? State::skipped : State::inconclusive, message, message};
 }
 
-/// Every verdict of a trial that ended early, but for `valid` where the first draws were seen. Notes what there was no
+/// Every verdict of a case that ended early, but for `valid` where the first draws were seen. Notes what there was no
 /// time for.
-void cut_short(const CheckCase& trial, const Cut& cut, const TestSettings& settings, std::vector<Verdict>& verdicts,
-    CheckResult& j) {
-    const Said said = said_of(cut, trial, settings);
-    SkippedCase left{trial.arm, trial.text(), {}, said.first};
+void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
+    std::vector<Verdict>& verdicts, CheckResult& j) {
+    const AbortText text = abort_text(cut, check_case, settings);
+    SkippedCase left{check_case.arm, check_case.text(), {}, text.first};
     for (Verdict& v : verdicts) {
         if (cut.first_draws && v.name == verdict_names[0]) continue;
         const bool first = left.verdicts.empty();
-        v.state = said.state;
-        v.say = first ? said.first : said.rest;
+        v.state = text.state;
+        v.message = first ? text.first : text.rest;
         v.evidence = nlohmann::ordered_json::object();
         if (first && cut.why == Cut::Why::fault) v.evidence["first_fault"] = cut.what;
         if (v.state == State::inconclusive) v.next.kind = NextStep::Kind::more_time;
         left.verdicts.push_back(v.name);
     }
-    if (said.state != State::error) j.left_out.push_back(std::move(left));
+    if (text.state != State::error) j.left_out.push_back(std::move(left));
 }
 
 /// The tests of the sampler as a whole ended early: said where they would be, at its first w_o.
-void cut_whole(const Cut& cut, const CheckCase& trial, const TestSettings& settings, Verdict& valid) {
+void cut_whole(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
     if (valid.state != State::right) return;
-    const Said said = said_of(cut, trial, settings);
-    valid.state = said.state, valid.say = said.first;
+    const AbortText text = abort_text(cut, check_case, settings);
+    valid.state = text.state, valid.message = text.first;
     if (cut.why == Cut::Why::fault) valid.evidence["first_fault"] = cut.what;
 }
 
@@ -101,42 +101,43 @@ void cut_whole(const Cut& cut, const CheckCase& trial, const TestSettings& setti
 constexpr std::size_t evaluations_beside = 16000, evaluations_for_all = 8000;
 
 /// CheckCases whose programs may be asked what is left of what they may be asked in all, less what follows.
-std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> trials, const TestSettings& settings) {
-    std::vector<CheckCase> out(trials.begin(), trials.end());
+std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> check_cases, const TestSettings& settings) {
+    std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     const auto w_o =
         static_cast<std::size_t>(std::ranges::count_if(out, [](const CheckCase& t) { return !t.baseline; }));
     const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
     for (CheckCase& t : out)
-        if (t.subject->limited())
-            t.subject =
-                std::make_shared<LimitedAdapter>(t.subject, in_all - std::min(in_all, w_o * evaluations_beside));
+        if (t.adapter->limited())
+            t.adapter =
+                std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_beside));
     return out;
 }
 
 /// What is wrong, as far as the evaluations that are left tell.
 std::optional<check::Cause> cause_of(
-    std::span<const CheckCase> trials, const CheckOutcome& outcome, const TestSettings& settings) {
+    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings) {
     if (!outcome.wrong()) return {};
-    const std::vector<CheckCase> capped = with_what_is_left(trials, settings);
+    const std::vector<CheckCase> capped = with_what_is_left(check_cases, settings);
     try {
         return check::cause_of(capped, outcome);
     } catch (const SamplerError&) { return {}; }  // they did not suffice, or it ended meanwhile
 }
 
-/// Verdicts of one sampler, handed to its trials.
-void distribute(std::span<const CheckCase> trials, const CheckOutcome& outcome, const TestSettings& settings,
-    ByTrial& to, CheckResult& j) {
-    const std::optional<check::Cause> cause = cause_of(trials, outcome, settings);
-    std::vector<Verdict> all = check::verdicts_of(trials, outcome, cause);
+/// Verdicts of one sampler, handed to its cases.
+void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings,
+    VerdictsByCase& to, CheckResult& j) {
+    const std::optional<check::Cause> cause = cause_of(check_cases, outcome, settings);
+    std::vector<Verdict> all = check::verdicts_of(check_cases, outcome, cause);
     auto next = all.begin();
-    for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
-        const std::size_t i = outcome.trials[k];
+    for (std::size_t k = 0; k < outcome.check_cases.size(); ++k) {
+        const std::size_t i = outcome.check_cases[k];
         std::vector<Verdict>& mine = to[i];
         std::move(next, next + verdict_names.size(), std::back_inserter(mine));
         next += verdict_names.size();
-        if (outcome.cut[k]) cut_short(trials[i], *outcome.cut[k], settings, mine, j);
+        if (outcome.cut[k]) cut_short(check_cases[i], *outcome.cut[k], settings, mine, j);
     }
-    if (outcome.whole_cut) cut_whole(*outcome.whole_cut, trials[outcome.trials[0]], settings, to[outcome.trials[0]][0]);
+    if (outcome.whole_cut)
+        cut_whole(*outcome.whole_cut, check_cases[outcome.check_cases[0]], settings, to[outcome.check_cases[0]][0]);
 }
 
 /// Few w_o may be accepted, none may not.
@@ -147,7 +148,7 @@ void refuse_none(std::span<const CheckOutcome> outcomes, CheckResult& j) {
     if (std::ranges::any_of(outcomes, whole)) return;
     for (const SkippedCase& left : j.left_out)
         for (Verdict& v : j.verdicts)
-            if (v.trial == left.trial && v.arm == left.arm && v.state == State::skipped)
+            if (v.check_case == left.check_case && v.arm == left.arm && v.state == State::skipped)
                 v.state = State::inconclusive, v.next.kind = NextStep::Kind::more_time;
 }
 
@@ -162,15 +163,15 @@ void count(const CheckOutcome& outcome, CheckResult& j) {
 }
 
 /// CheckCases beside each other; the call does nothing else while it takes times. What ended early stays so.
-void rank(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
-    const check::CheckSettings& settings, const ProgressMonitor& monitor, ByTrial& verdicts) {
-    std::vector<check::Efficiency> all = check::variances_of(trials, outcomes, settings, monitor);
-    check::measure_costs(trials, settings.seed, all, monitor);
-    std::vector<Verdict> ranked = check::judge_efficiency(trials, all);
+void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
+    const check::CheckSettings& settings, const ProgressMonitor& monitor, VerdictsByCase& verdicts) {
+    std::vector<check::Efficiency> all = check::variances_of(check_cases, outcomes, settings, monitor);
+    check::measure_costs(check_cases, settings.seed, all, monitor);
+    std::vector<Verdict> ranked = check::test_efficiency(check_cases, all);
     for (const CheckOutcome& o : outcomes)
-        for (std::size_t k = 0; k < o.trials.size(); ++k) {
+        for (std::size_t k = 0; k < o.check_cases.size(); ++k) {
             if (o.cut[k]) continue;
-            const std::size_t i = o.trials[k];
+            const std::size_t i = o.check_cases[k];
             const auto v = std::ranges::find(verdicts[i], "efficiency", &Verdict::name);
             if (v == verdicts[i].end()) continue;
             ranked[i].wo = v->wo, ranked[i].seconds = v->seconds;
@@ -178,26 +179,27 @@ void rank(std::span<const CheckCase> trials, std::span<const CheckOutcome> outco
         }
 }
 
-/// Maps and weights by trial. A program is asked for them in any case: what it is asked does not depend on what is
+/// Maps and weights by case. A program is asked for them in any case: what it is asked does not depend on what is
 /// written.
-void draw_pictures(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
+void draw_pictures(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const TestSettings& settings, CheckResult& j) {
-    std::vector<std::vector<BinHistogram>> maps(trials.size());
-    std::vector<std::optional<WeightHistogram>> weights(trials.size());
+    std::vector<std::vector<BinHistogram>> maps(check_cases.size());
+    std::vector<std::optional<WeightHistogram>> weights(check_cases.size());
     for (const CheckOutcome& o : outcomes)
-        for (std::size_t k = 0; k < o.trials.size(); ++k) {
-            const std::size_t i = o.trials[k];
-            if (o.cut[k] || !(settings.pictures || trials[i].subject->limited())) continue;
+        for (std::size_t k = 0; k < o.check_cases.size(); ++k) {
+            const std::size_t i = o.check_cases[k];
+            if (o.cut[k] || !(settings.pictures || check_cases[i].adapter->limited())) continue;
             for (const CheckAt& c : o.at[k])
-                if (std::optional<BinHistogram> map = check::bin_map(trials[i], c)) maps[i].push_back(std::move(*map));
+                if (std::optional<BinHistogram> map = check::bin_map(check_cases[i], c))
+                    maps[i].push_back(std::move(*map));
             if (!o.tails[k].weighed) continue;
-            weights[i] = check::weight_picture(trials[i], check::weights_of(o.at[k]), o.tails[k]);
+            weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.at[k]), o.tails[k]);
             try {
-                check::add_rose(trials[i], *weights[i]);
+                check::add_rose(check_cases[i], *weights[i]);
             } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // it ended meanwhile
         }
     if (!settings.pictures) return;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
+    for (std::size_t i = 0; i < check_cases.size(); ++i) {
         std::ranges::move(maps[i], std::back_inserter(j.maps));
         if (weights[i]) j.weights.push_back(std::move(*weights[i]));
     }
@@ -220,38 +222,38 @@ CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }
 
-CheckResult judge(std::span<const CheckCase> trials, const TestSettings& settings, ProgressMonitor& monitor) {
-    const auto judged =
-        static_cast<std::size_t>(std::ranges::count_if(trials, [](const CheckCase& t) { return !t.baseline; }));
+CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSettings& settings, ProgressMonitor& monitor) {
+    const auto checked =
+        static_cast<std::size_t>(std::ranges::count_if(check_cases, [](const CheckCase& t) { return !t.baseline; }));
     check::CheckSettings of_engine;
-    of_engine.budget = budget_of(settings, false, judged);
-    of_engine.limited = budget_of(settings, true, judged);
+    of_engine.budget = budget_of(settings, false, checked);
+    of_engine.limited = budget_of(settings, true, checked);
     of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_evidence = settings.pictures;
-    monitor.begin("verdicts", static_cast<double>(judged));
+    monitor.begin("verdicts", static_cast<double>(checked));
     CheckResult out;
     out.alpha = settings.alpha;
-    const std::vector<CheckOutcome> outcomes = check::check_samplers(trials, of_engine, monitor);
-    ByTrial verdicts(trials.size());
-    std::vector<std::size_t> trial_of;
-    std::vector<bool> reaches_all(trials.size());
+    const std::vector<CheckOutcome> outcomes = check::check_samplers(check_cases, of_engine, monitor);
+    VerdictsByCase verdicts(check_cases.size());
+    std::vector<std::size_t> case_of;
+    std::vector<bool> reaches_all(check_cases.size());
     for (const CheckOutcome& outcome : outcomes) {
-        distribute(trials, outcome, settings, verdicts, out);
+        distribute(check_cases, outcome, settings, verdicts, out);
         count(outcome, out);
     }
-    rank(trials, outcomes, of_engine, monitor, verdicts);
-    draw_pictures(trials, outcomes, settings, out);
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-        if (trials[i].baseline) continue;
-        out.questions = std::max(out.questions, trials[i].subject->spending().answers);
+    rank(check_cases, outcomes, of_engine, monitor, verdicts);
+    draw_pictures(check_cases, outcomes, settings, out);
+    for (std::size_t i = 0; i < check_cases.size(); ++i) {
+        if (check_cases[i].baseline) continue;
+        out.questions = std::max(out.questions, check_cases[i].adapter->spending().answers);
         reaches_all[i] = std::ranges::none_of(
             verdicts[i], [](const Verdict& v) { return v.name == "support" && v.state == State::wrong; });
         std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));
-        trial_of.resize(out.verdicts.size(), i);
+        case_of.resize(out.verdicts.size(), i);
     }
     if (settings.accept_few) refuse_none(outcomes, out);
     for (std::size_t v = 0; v < out.verdicts.size(); ++v)
-        expect(trials[trial_of[v]], reaches_all[trial_of[v]], out.verdicts[v]);
-    settle(out);
+        expect(check_cases[case_of[v]], reaches_all[case_of[v]], out.verdicts[v]);
+    next_step(out);
     return out;
 }
 

@@ -1,4 +1,4 @@
-// judge(): order of its verdicts, what is left of a sampler that breaks off or is too slow, budgets and levels.
+// run_checks(): order of its verdicts, what is left of a sampler that breaks off or is too slow, budgets and levels.
 #include "check/check.h"
 
 #include <cmath>
@@ -49,33 +49,33 @@ private:
     }
 };
 
-std::vector<CheckCase> trials_of_program(const std::shared_ptr<const Program>& program) {
+std::vector<CheckCase> cases_of_program(const std::shared_ptr<const Program>& program) {
     return make_user_cases(program, false, {{0, 0}, {45, 90}, {85, 0}, {20, 10}});
 }
 
-CheckResult judged(const std::shared_ptr<const Program>& program, bool accept_few = false) {
+CheckResult checked(const std::shared_ptr<const Program>& program, bool accept_few = false) {
     TestSettings settings;
     settings.accept_few = accept_few;
     ProgressMonitor monitor;
-    return judge(trials_of_program(program), settings, monitor);
+    return run_checks(cases_of_program(program), settings, monitor);
 }
 
-const Verdict& verdict_at(const CheckResult& j, std::size_t trial, std::string_view name) {
+const Verdict& verdict_at(const CheckResult& j, std::size_t check_case, std::string_view name) {
     for (std::size_t k = 0; k < verdict_names.size(); ++k)
-        if (verdict_names[k] == name) return j.verdicts[trial * verdict_names.size() + k];
+        if (verdict_names[k] == name) return j.verdicts[check_case * verdict_names.size() + k];
     throw std::out_of_range("no such verdict");
 }
 
 TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
     const auto program = std::make_shared<Program>();
-    std::vector<CheckCase> trials = trials_of_program(program);
+    std::vector<CheckCase> check_cases = cases_of_program(program);
     ProgressMonitor monitor;
-    const CheckResult j = judge(trials, TestSettings::quick(), monitor);
-    std::erase_if(trials, [](const CheckCase& t) { return t.baseline; });
+    const CheckResult j = run_checks(check_cases, TestSettings::quick(), monitor);
+    std::erase_if(check_cases, [](const CheckCase& t) { return t.baseline; });
     ASSERT_EQ(j.verdicts.size(), 4 * verdict_names.size());
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);
-        EXPECT_EQ(j.verdicts[i].trial, trials[i / verdict_names.size()].text());
+        EXPECT_EQ(j.verdicts[i].check_case, check_cases[i / verdict_names.size()].text());
     }
     EXPECT_EQ(j.state, State::right);
     EXPECT_EQ(j.questions, program->spending().answers);
@@ -87,7 +87,7 @@ TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
 TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
     const auto program = std::make_shared<Program>();
     program->allowed = 10.5;  // 1,050,000 answers, two w_o
-    const CheckResult j = judged(program);
+    const CheckResult j = checked(program);
     for (std::size_t examined : {std::size_t{1}, std::size_t{2}})
         EXPECT_EQ(verdict_at(j, examined, "density").state, State::right);
     for (std::size_t left : {std::size_t{0}, std::size_t{3}}) {
@@ -103,24 +103,24 @@ TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
 TEST(Judge, AcceptsFewButNotNone) {
     const auto some = std::make_shared<Program>(), none = std::make_shared<Program>();
     some->allowed = 10.5, none->allowed = 0.5;
-    const CheckResult j = judged(some, true);
+    const CheckResult j = checked(some, true);
     EXPECT_EQ(j.state, State::right);
     EXPECT_EQ(j.left_out.size(), 2u);
     EXPECT_EQ(verdict_at(j, 0, "density").state, State::skipped);
-    EXPECT_EQ(judged(none, true).state, State::inconclusive);
+    EXPECT_EQ(checked(none, true).state, State::inconclusive);
 }
 
 /// The w_o that were examined before stay; the first error says what happened.
 TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
     const auto program = std::make_shared<Program>();
     program->breaks_at = 500000;
-    const CheckResult j = judged(program);
+    const CheckResult j = checked(program);
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
     EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // of its first draws
-    EXPECT_EQ(verdict_at(j, 2, "support").say, "The sampler broke off: it fell silent.");
+    EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler broke off: it fell silent.");
     EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "it fell silent");
-    EXPECT_EQ(verdict_at(j, 0, "density").say, "It could not be evaluated: the sampler broke off before.");
+    EXPECT_EQ(verdict_at(j, 0, "density").message, "It could not be evaluated: the sampler broke off before.");
     EXPECT_TRUE(j.left_out.empty());
 }
 

@@ -30,7 +30,7 @@ public:
 namespace crescent {
 
 /// Checks a sampler. EXPECT_THAT matches first and, where that fails, matches again to explain: the second time, of the
-/// same argument, has the judgement of the first. No match is decided by a judgement that was kept.
+/// same argument, has the result of the first. No match is decided by a result that was kept.
 template <class Argument> class SamplerMatcher : public testing::MatcherInterface<Argument> {
 public:
     /// settings: of each check; open: whether inconclusive verdicts match.
@@ -38,7 +38,7 @@ public:
 
     /// Whether the sampler is right. Explains in at most 8 lines where it is not.
     bool MatchAndExplain(Argument arg, testing::MatchResultListener* listener) const override {
-        const CheckResult j = judgement_of(arg, listener->IsInterested());
+        const CheckResult j = result_of(arg, listener->IsInterested());
         const bool matches = j.state == State::right || (open_ && j.state == State::inconclusive);
         if (!matches && listener->IsInterested()) *listener << "\n" << what_is_wrong(j);
         return matches;
@@ -54,8 +54,8 @@ public:
 
 private:
     /// Matchers of several elements (Each, ElementsAre) match some before they explain the first: only an explanation
-    /// that follows a single match can take its judgement.
-    CheckResult judgement_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
+    /// that follows a single match can take its result.
+    CheckResult result_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
         if (explains && since_explained_ == 1 && of_ == &arg && kept_) {
             since_explained_ = 0;
             return *std::exchange(kept_, std::nullopt);

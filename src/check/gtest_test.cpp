@@ -56,9 +56,9 @@ TEST(Matchers, OfSeveralElementsDecideEachByItsOwnCheck) {
     const auto matcher = testing::Each(testing::ResultOf(made, IsARightSamplerBy(one_wo())));
     EXPECT_TRUE(testing::Value(std::vector<double>{1.0, 1.0}, matcher));
     EXPECT_FALSE(testing::Value(std::vector<double>{1.0, 1.1}, matcher));
-    testing::StringMatchResultListener said;
-    EXPECT_FALSE(testing::ExplainMatchResult(matcher, std::vector<double>{1.0, 1.1}, &said));
-    EXPECT_NE(said.str().find("element #1"), std::string::npos) << said.str();
+    testing::StringMatchResultListener message;
+    EXPECT_FALSE(testing::ExplainMatchResult(matcher, std::vector<double>{1.0, 1.1}, &message));
+    EXPECT_NE(message.str().find("element #1"), std::string::npos) << message.str();
     const testing::Matcher<const Counted&> kept = IsARightSamplerBy(one_wo());
     Counted sampler;
     EXPECT_TRUE(kept.Matches(sampler));
@@ -70,9 +70,10 @@ TEST(Matchers, OfSeveralElementsDecideEachByItsOwnCheck) {
 
 TEST(Matchers, AreDescribedAndNegated) {
     const testing::Matcher<Counted> right = IsARightSamplerBy(one_wo()), open = IsNotAWrongSampler();
-    std::ostringstream said;
-    right.DescribeTo(&said), said << "; ", right.DescribeNegationTo(&said), said << "; ", open.DescribeTo(&said);
-    EXPECT_EQ(said.str(), "is a right sampler; is not a right sampler; is not a wrong sampler");
+    std::ostringstream message;
+    right.DescribeTo(&message), message << "; ", right.DescribeNegationTo(&message), message << "; ",
+        open.DescribeTo(&message);
+    EXPECT_EQ(message.str(), "is a right sampler; is not a right sampler; is not a wrong sampler");
     EXPECT_THAT(Counted{1.1}, testing::Not(IsARightSamplerBy(one_wo())));
     EXPECT_EQ(testing::PrintToString(Counted{}), "a sampler");
 }

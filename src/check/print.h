@@ -1,4 +1,4 @@
-// What writes a judgement, for those who include the verdicts alone.
+// What writes a result, for those who include the verdicts alone.
 #pragma once
 
 #include "check/report/print.h"

@@ -20,7 +20,7 @@ struct TestSettings {
     std::size_t questions = 500000;               // of a sampler behind a pipe, plugin or Python at one w_o, at most
     std::size_t questions_in_all = 3600000;       // and at the w_o of the grid together
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees in place of the grid; empty: the grid
-    bool accept_few = false;  // a program too slow for every w_o is judged by those that were examined
+    bool accept_few = false;  // a program too slow for every w_o is checked by those that were examined
     std::optional<check::CheckBudget> budget{};  // of each w_o; empty: that of the mode, or of the questions
 
     static TestSettings quick() { return {}; }

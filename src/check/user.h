@@ -4,7 +4,7 @@
 //   probability with
 //                      which a delta part was chosen, for a draw of one, whose .pdf is that probability and whose
 //                      .weight is there)
-//   pdf(wo, wi)     -> a number, 1/sr; left out: the sampler is judged by what is left
+//   pdf(wo, wi)     -> a number, 1/sr; left out: the sampler is checked by what is left
 //   f(wo, wi)       -> a number, 1/sr, or three, without the cosine; optional
 //   traits()        -> crescent::Traits: w_o on both sides, the index, random numbers of its own; optional
 //
@@ -14,7 +14,7 @@
 //
 //   crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
 //
-// A pointer to one is judged as what it points to; sampler_of(sample, pdf, f) makes one of lambdas.
+// A pointer to one is checked as what it points to; sampler_of(sample, pdf, f) makes one of lambdas.
 //
 // Members that are const are called from many threads at once, others by one. What a sampler throws is an error, not a
 // fault of it; a std::optional that is empty, and false where wi and pdf are written through, is nothing drawn.
@@ -157,7 +157,7 @@ template <class S> consteval bool all_const() {
     if constexpr (HasF<S>) out = out && OfF<S>::is_const;
     return out;
 }
-template <class S> consteval bool says_weights() {
+template <class S> consteval bool returns_weights() {
     if constexpr (written_of<SampleParameters<S>>() > 0) return written_of<SampleParameters<S>>() > 2;
     else return TellsWeight<Result<S>>;
 }
@@ -170,7 +170,7 @@ template <class S> Traits traits_of(const S& s) {
     t.numbers = numbers<S>();
     t.channels = channels<S>();
     t.has_pdf = HasPdf<S>;
-    if constexpr (without_wo<S>()) t.wo = Traits::Asked::none;
+    if constexpr (without_wo<S>()) t.wo = Traits::WoDomain::none;
     if constexpr (written_of<SampleParameters<S>>() == 0) t.delta = TellsDelta<Result<S>>;
     return t;
 }
@@ -209,7 +209,7 @@ public:
             for (double& p : out) p = 1;
     }
     bool has_f() const override { return user::HasF<S>; }
-    bool has_drawn_f() const override { return user::HasF<S> || user::says_weights<S>(); }
+    bool has_drawn_f() const override { return user::HasF<S> || user::returns_weights<S>(); }
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
         if constexpr (user::HasF<S>) count(at.size());
         if constexpr (user::HasF<S>)
@@ -254,9 +254,9 @@ private:
 template <class S> CheckResult check_sampler(std::string name, S sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
     if constexpr (user::must_be_judgeable<user::SamplerOf<S>>()) {
-        const auto subject = std::make_shared<UserSampler<S>>(std::move(name), std::move(sampler));
+        const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), std::move(sampler));
         ProgressMonitor alone;
-        return judge(make_user_cases(subject, settings.full, settings.wo), settings, monitor ? *monitor : alone);
+        return run_checks(make_user_cases(adapter, settings.full, settings.wo), settings, monitor ? *monitor : alone);
     } else {
         return {};
     }

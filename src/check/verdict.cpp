@@ -1,7 +1,7 @@
 // The words of states, and what all verdicts of a call come to: wrong before error, error before doubt.
 #include "check/verdict.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 std::string_view word(State state) {
     switch (state) {
@@ -14,7 +14,7 @@ std::string_view word(State state) {
     return "";
 }
 
-void settle(CheckResult& j) {
+void next_step(CheckResult& j) {
     bool wrong = !j.unmet.empty(), error = false, doubt = false;
     j.as_expected = j.unmet.empty();
     for (const Verdict& v : j.verdicts) {
@@ -27,4 +27,4 @@ void settle(CheckResult& j) {
     j.state = wrong ? State::wrong : error ? State::error : doubt ? State::inconclusive : State::right;
 }
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

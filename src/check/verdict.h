@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 /// error: the sampler could not be asked; it crashed, threw, spoke another language or fell silent.
 enum class State { right, wrong, inconclusive, skipped, error };
@@ -24,12 +24,12 @@ struct NextStep {
 
 struct Verdict {
     std::string arm;
-    std::string trial;  // w_o and parameters
-    std::string name;   // one of verdict_names
+    std::string check_case;  // w_o and parameters
+    std::string name;        // one of verdict_names
     State state = State::right;
-    std::string say;       // what was found, how large with its interval, and where
-    std::string cause{};   // what explains it; "" where nothing does
-    std::string settle{};  // what would settle it, where it is inconclusive and no front end has a call for it
+    std::string message;      // what was found, how large with its interval, and where
+    std::string cause{};      // what explains it; "" where nothing does
+    std::string next_step{};  // what would settle it, where it is inconclusive and no front end has a call for it
     NextStep next{};
     std::optional<std::pair<double, double>> wo{};  // theta and azimuth in degrees; none for a sampler without w_o
     double size = 0;                         // of what is wrong, in its standard errors: orders verdicts of one name
@@ -38,7 +38,7 @@ struct Verdict {
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
     // What varies from run to run, kept apart so that equal calls give equal verdicts.
     double seconds = 0;
-    std::string say_timed;
+    std::string timed_message;
     nlohmann::ordered_json timing = nlohmann::ordered_json::object();
     bool expected = true;      // of a right sampler, or of this built-in arm here
     std::string why_expected;  // said where a wrong one is expected
@@ -48,7 +48,7 @@ struct Verdict {
 /// Bins of one density test, for the maps of the HTML page: draws and what is due, or, where nothing is claimed that
 /// could be due (`expected` is empty), the density that the draws imply.
 struct BinHistogram {
-    std::string arm, trial, coordinates;
+    std::string arm, check_case, coordinates;
     int rings = 0, sectors = 0;
     std::vector<double> observed, expected;  // ring-major; draws, or 1/sr
     std::vector<double> sd{};                // of observed less expected; empty: the root of what is expected
@@ -59,7 +59,7 @@ struct BinHistogram {
 
 /// The largest weights, a histogram of all, and p against f L cos along a grid of directions.
 struct WeightHistogram {
-    std::string arm, trial;
+    std::string arm, check_case;
     std::vector<double> log10_edges, counts;  // histogram of log10 X
     double zeros = 0, k = 0, exceedances = 0;
     double threshold = 0, sigma = 0;     // of the generalised Pareto law with that k; sigma from the median exceedance
@@ -68,7 +68,7 @@ struct WeightHistogram {
 
 /// What a call did not look at for want of time.
 struct SkippedCase {
-    std::string arm, trial;
+    std::string arm, check_case;
     std::vector<std::string> verdicts;
     std::string why;
 };
@@ -88,6 +88,6 @@ struct CheckResult {
 };
 
 /// The state of the whole: everything that the caller does not expect, and expectations that nothing meets.
-void settle(CheckResult& judgement);
+void next_step(CheckResult& result);
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

@@ -19,7 +19,7 @@
     verdict(efficiency, "how large is variance times cost, against uniform and cosine sampling?")
 // clang-format on
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 #define CRESCENT_NAME(verdict, question) std::string_view(#verdict),
 inline constexpr std::array verdict_names = {CRESCENT_VERDICTS(CRESCENT_NAME)};
@@ -28,4 +28,4 @@ inline constexpr std::array verdict_names = {CRESCENT_VERDICTS(CRESCENT_NAME)};
 inline constexpr std::array verdict_questions = {CRESCENT_VERDICTS(CRESCENT_QUESTION)};
 #undef CRESCENT_QUESTION
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

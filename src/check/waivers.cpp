@@ -1,5 +1,5 @@
 // A line is cut at its first '=' and at the ':' after it. Words are checked against the verdicts there are, arms
-// against those that are judged.
+// against those that are checked.
 #include "check/waivers.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "check/verdict.h"
 #include "check/verdict_names.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 namespace {
 
@@ -34,7 +34,7 @@ struct Origin {
 };
 
 Waiver read_one(const std::string& text, const Origin& at) {
-    const auto fault = [&](const std::string& say) { throw InputError({at.file, at.line, 0}, say); };
+    const auto fault = [&](const std::string& message) { throw InputError({at.file, at.line, 0}, message); };
     const std::size_t equals = text.find('='), colon = text.find(':', equals == text.npos ? 0 : equals);
     if (equals == text.npos) fault(fmt::format("expected [ARM ]VERDICT=STATE: REASON, got '{}'", printable(text)));
     const std::string left = trimmed(text.substr(0, equals));
@@ -108,7 +108,7 @@ void waive(CheckResult& j, std::span<const Waiver> waivers) {
             j.unmet.push_back(fmt::format("{}: {}{} is expected to be {} and is so nowhere: the expectation can go",
                 w.place, w.arm.empty() ? "" : w.arm + " ", w.verdict, word(w.state)));
     }
-    settle(j);
+    next_step(j);
 }
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

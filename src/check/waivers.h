@@ -1,4 +1,4 @@
-// What a caller expects of a judgement beside "right": "phong support=wrong: it never reaches the horizon". A verdict
+// What a caller expects of a result beside "right": "phong support=wrong: it never reaches the horizon". A verdict
 // that is as expected does not count; an expectation that nothing meets any more does.
 //
 //   [ARM ]VERDICT=STATE: REASON      STATE is wrong or inconclusive; without ARM, or with *, of every arm
@@ -10,7 +10,7 @@
 
 #include "check/verdict.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 /// One expectation, and where it was said.
 struct Waiver {
@@ -25,6 +25,6 @@ std::vector<Waiver> read_waivers(std::span<const std::string> texts);
 /// Throws InputError where a waiver names none of these arms.
 void check_waivers(std::span<const Waiver> waivers, std::span<const std::string> arms);
 /// Takes what is waived out of the state of the whole, and tells of waivers that nothing needs.
-void waive(CheckResult& judgement, std::span<const Waiver> waivers);
+void waive(CheckResult& result, std::span<const Waiver> waivers);
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

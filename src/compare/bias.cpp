@@ -17,7 +17,7 @@
 #include "compare/wording.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -327,12 +327,12 @@ std::size_t BiasResult::shown() const {
 
 std::string reference_error_from(const ArmStats& reference) {
     if (reference.files.size() > 1) return fmt::format("over its {} files", reference.files.size());
-    if (!reference.film.told_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
+    if (!reference.film.stated_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
     return "one file that does not say it: taken from how its difference from the arms varies between neighbouring "
            "pixels";
 }
 
-BiasResult judge_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
+BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
     std::size_t b, double alpha, ProgressMonitor& monitor) {
     const BiasPair sides(plan, all, measured, a, b);
     BiasResult out;
@@ -489,7 +489,7 @@ double pixel_level(const BiasPair& s, double alpha) {
 
 void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out) {
     const BiasPair& s = sides[0];
-    if (s.lone_reference() && s.b.film.told_variance.empty()) return;
+    if (s.lone_reference() && s.b.film.stated_variance.empty()) return;
     const std::size_t count = s.all.regions.back().pixels.size();
     const double level = pixel_level(s, alpha);
     const Bins table(count > table_from ? most_degrees(s) : 0);
@@ -519,4 +519,4 @@ void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out)
     std::sort(out.different_pixels.begin(), out.different_pixels.end());
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

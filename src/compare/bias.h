@@ -3,7 +3,7 @@
 
 #include "compare/wording.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Fills what the result says of pixels; `sides` are of the same renders, one for each quantity. Nothing where the
 /// reference is one file that does not say its error at each pixel.
@@ -12,4 +12,4 @@ void test_pixels(std::span<const BiasPair> sides, double alpha, BiasResult& out)
 /// The level of BiasPair::unseen that test_pixels takes.
 double pixel_level(const BiasPair& sides, double alpha);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

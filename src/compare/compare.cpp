@@ -11,14 +11,15 @@
 #include "output/format.h"
 #include "report/plates/canvas.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
-// ---- Every meter, every test, and what they amount to.
+// ---- Every metric, every test, and what they amount to.
 
 namespace {
 
 /// What the plan says, else what all files of the arm say alike.
-template <class Read> std::optional<double> told(const std::optional<double>& plan, const ArmStats& arm, Read read) {
+template <class Read>
+std::optional<double> describe(const std::optional<double>& plan, const ArmStats& arm, Read read) {
     if (plan) return plan;
     double sum = 0;
     for (const RenderFile& file : arm.files) {
@@ -32,8 +33,8 @@ ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size
     ArmResult out;
     const ArmStats& arm = all.arms[a];
     out.name = plan.arms[a].name, out.renders = arm.files.size();
-    out.spp = told(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
-    out.seconds = told(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
+    out.spp = describe(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
+    out.seconds = describe(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
     const std::vector<Flips> flip = measure_flip(plan, all, a, monitor);
     for (std::size_t r = 0; r < all.regions.size(); ++r)
         out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
@@ -43,8 +44,8 @@ ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size
 double value_of(const ParsedQuantity& side, const CompareResult& result, std::string& why) {
     if (side.number) return *side.number;
     for (const ArmResult& arm : result.arms) {
-        if (arm.name != side.subject) continue;
-        const MeterValue& value = arm.region(side.region).meter(side.word);
+        if (arm.name != side.adapter) continue;
+        const MetricValue& value = arm.region(side.region).metric(side.word);
         if (value.value) return *value.value;
         why = fmt::format("{} has no value: {}", to_string(side), value.why);
     }
@@ -129,7 +130,7 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
 
 }  // namespace
 
-CompareResult judge(const ComparePlan& plan, const RenderStats& all, ProgressMonitor& monitor) {
+CompareResult test_differences(const ComparePlan& plan, const RenderStats& all, ProgressMonitor& monitor) {
     CompareResult out;
     out.warnings = all.warnings;
     const std::size_t arms = all.arms.size();
@@ -140,11 +141,11 @@ CompareResult judge(const ComparePlan& plan, const RenderStats& all, ProgressMon
     const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
     const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
     for (std::size_t a = 0; a < arms; ++a) {
-        if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, alpha, monitor));
+        if (all.reference) out.bias.push_back(test_bias(plan, all, out, a, arms, alpha, monitor));
         for (std::size_t b = 0; b < a; ++b) {
-            out.bias.push_back(judge_bias(plan, all, out, a, b, alpha, monitor));
+            out.bias.push_back(test_bias(plan, all, out, a, b, alpha, monitor));
             if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1)
-                out.noise.push_back(judge_noise(plan, all, a, b, alpha));
+                out.noise.push_back(compare_noise(plan, all, a, b, alpha));
         }
     }
     out.rankings = rank(out), out.ladders = ladders_of(out);
@@ -153,12 +154,12 @@ CompareResult judge(const ComparePlan& plan, const RenderStats& all, ProgressMon
     return out;
 }
 
-CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
+CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary) {
     const plates::Canvas probe(1, 1, {});  // a missing font is found before the work, and a folder that is in use
     Staging staging(options.out);
     const RenderStats all = read_all(plan, monitor);
-    const CompareResult result = judge(plan, all, monitor);
+    const CompareResult result = test_differences(plan, all, monitor);
     std::map<std::string, std::vector<unsigned char>> pictures;
     for (const auto& [name, picture] : compare_plates(plan, all, result))
         pictures[name] = encode_png(picture,
@@ -175,4 +176,4 @@ CompareResult compare(const ComparePlan& plan, const CompareOptions& options, co
     return result;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -8,7 +8,7 @@
 #include "compare/plan.h"
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::ElementsAre;
@@ -117,7 +117,7 @@ TEST(NonFinite, ASideWithoutAnyFinitePixelDiffers) {
     EXPECT_EQ(r.state, State::fails);
     EXPECT_EQ(r.bias[0].non_finite.a.pixels.size(), 256u);
     EXPECT_EQ(r.arms[0].region(whole_frame).pixels, 0u);
-    EXPECT_FALSE(r.arms[0].region(whole_frame).meter("y_mean").value);
+    EXPECT_FALSE(r.arms[0].region(whole_frame).metric("y_mean").value);
 }
 
 TEST(NonFinite, AStatisticThatIsNoNumberIsNoAgreement) {
@@ -277,4 +277,4 @@ TEST(Identical, OneFileASideSaysHowItDiffersAndNotWhetherThatIsNoise) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -136,7 +136,7 @@ ExrFile::~ExrFile() { exr_finish(&context_); }
 
 namespace {
 
-thread_local std::string said;
+thread_local std::string last_message;
 
 /// The most that a byte of a chunk can hold. RLE: two bytes are 128. zlib: 1032 (its authors' bound); PXR24 leaves out
 /// a byte of four before it. PIZ: a run of 255 half words is no shorter than 9 bits. B44: three bytes are 32. DWA: a
@@ -169,20 +169,20 @@ struct Decoder {
 
 }  // namespace
 
-void keep_message(exr_const_context_t, exr_result_t, const char* message) { said = message ? message : ""; }
+void keep_message(exr_const_context_t, exr_result_t, const char* message) { last_message = message ? message : ""; }
 
-void forget_messages() { said.clear(); }
+void forget_messages() { last_message.clear(); }
 
 void expect_success(const OpenFile& file, exr_result_t result) {
     if (result == EXR_ERR_SUCCESS) return;
-    if (said.empty()) said = exr_get_default_error_message(result);
+    if (last_message.empty()) last_message = exr_get_default_error_message(result);
     expect_silence(file);
 }
 
 void expect_silence(const OpenFile& file) {
-    if (said.empty()) return;
-    const std::string why = std::move(said);
-    said.clear();
+    if (last_message.empty()) return;
+    const std::string why = std::move(last_message);
+    last_message.clear();
     file.fail("expected an OpenEXR file that can be read: " + why);
 }
 
@@ -278,4 +278,4 @@ void ExrChunks::each(const std::function<void(const PixelWindow&, std::span<cons
     });
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -15,7 +15,7 @@
 #include "compare/open_file.h"
 #include "compare/primaries.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 struct ExrChannel {
     std::string name;
@@ -107,4 +107,4 @@ private:
     std::int64_t across_ = 1, count_ = 0;
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

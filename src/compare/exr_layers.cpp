@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 // ---- By the names that renderers give: pbrt-v4's RelativeVariance layer, Mitsuba's m2_ moments, layers that end in
 // variance, error or stddev, channels that count samples. Three deviations of one pixel are added, not squared and
@@ -173,7 +173,7 @@ std::string joined(const std::string& part, const std::string& layer) {
     return part.empty() || layer.empty() ? part + layer : part + "/" + layer;
 }
 
-/// What an instrument or a mask wrote, by its name: no radiance.
+/// What an back end or a mask wrote, by its name: no radiance.
 bool is_data(const std::string& layer) {
     static constexpr const char* words[] = {"crypto", "normal", "depth", "position", "variance", "motion", "vector",
         "uv", "albedo", "error", "second_moment", "largest", "horizon", "hits", "stddev", "samplecount", "denois"};
@@ -308,4 +308,4 @@ ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::s
     return {};
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

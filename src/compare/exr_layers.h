@@ -10,7 +10,7 @@
 #include "compare/exr_file.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 // ---- What OpenEXR files say beside radiance: variances, samples, times.
 
@@ -64,4 +64,4 @@ struct ExrLayer {
 /// cannot be known which.
 ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& wanted);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

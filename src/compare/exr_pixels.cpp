@@ -14,7 +14,7 @@
 #include "compare/exr_file.h"
 #include "compare/exr_layers.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -227,4 +227,4 @@ Render read_exr(const OpenFile& file, const std::string& wanted) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

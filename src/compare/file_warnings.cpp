@@ -9,7 +9,7 @@
 #include "math/hypotheses.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 void FileWarnings::add(
     const std::string& file, const std::string& text, std::uint64_t pixels, const std::string& kind) {
@@ -209,4 +209,4 @@ std::string places_of(const FailingPixels& failing, int width) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 class FileWarnings {
 public:
@@ -65,4 +65,4 @@ NonFinite compare_non_finite(const RenderStats& all, const ArmStats& a, const Ar
 /// "(3, 4), (5, 4), ... within x 3–9 y 4–7".
 std::string places_of(const FailingPixels& failing, int width);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -11,7 +11,7 @@
 #include "math/functions.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -279,4 +279,4 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

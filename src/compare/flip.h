@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// A picture of linear Rec.709, row after row; which way up is the same for both.
 struct FlipImage {
@@ -29,4 +29,4 @@ struct FlipExposures {
 /// Where HDR-FLIP begins and ends, in stops, from the reference (Andersson et al. 2021, section 3.2).
 FlipExposures flip_exposures(const FlipImage& reference);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

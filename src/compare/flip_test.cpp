@@ -6,7 +6,7 @@
 
 #include "compare/flip.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 /// A test picture by formula, so that another program can make the same.
@@ -45,4 +45,4 @@ TEST(Flip, IsZeroForEqualPictures) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -1,6 +1,6 @@
-// RenderStats -> meters with their doubt. Intervals are t intervals over renders, 95 %, cut at 0 where the meter cannot
-// be below it; of the squared bias by the jackknife, of counts by count_interval(). docs/compare.md has the coverage
-// that was measured.
+// RenderStats -> metrics with their doubt. Intervals are t intervals over renders, 95 %, cut at 0 where the metric
+// cannot be below it; of the squared bias by the jackknife, of counts by count_interval(). docs/compare.md has the
+// coverage that was measured.
 #include "compare/metrics.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include "math/tail.h"
 #include "output/tone_map.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -31,15 +31,15 @@ template <class Read> Values over_renders(const ArmStats& arm, std::size_t regio
 }
 
 /// What is said of a mean over renders; `transform` rises (sqrt for RMSE).
-template <class Transform> MeterValue value_of(const MeanInterval& m, bool heavy, Transform transform) {
-    MeterValue out{transform(m.mean), {}, ""};
+template <class Transform> MetricValue value_of(const MeanInterval& m, bool heavy, Transform transform) {
+    MetricValue out{transform(m.mean), {}, ""};
     if (m.n < 2) out.why = "one render has no interval";
     else if (heavy) out.why = "heavy tail";
     else out.interval = {transform(m.low), transform(m.high)};
     return out;
 }
 
-template <class Transform> MeterValue mean_of(const Values& values, bool heavy, Transform transform) {
+template <class Transform> MetricValue mean_of(const Values& values, bool heavy, Transform transform) {
     return value_of(mean_interval(values, confidence), heavy, transform);
 }
 
@@ -47,7 +47,7 @@ double same(double v) { return v; }
 double at_least_0(double v) { return std::max(0.0, v); }
 double root_of(double v) { return std::sqrt(at_least_0(v)); }
 
-MeterValue missing(std::string why) { return {{}, {}, std::move(why)}; }
+MetricValue missing(std::string why) { return {{}, {}, std::move(why)}; }
 
 double mean_variance(const MeanFilm& film, const PixelSet& set) {
     double sum = 0;
@@ -55,29 +55,29 @@ double mean_variance(const MeanFilm& film, const PixelSet& set) {
     return sum / static_cast<double>(set.pixels.size());
 }
 
-MeterValue variance(const ArmStats& arm, const PixelSet& set, std::size_t region, bool heavy) {
+MetricValue variance(const ArmStats& arm, const PixelSet& set, std::size_t region, bool heavy) {
     const double k = static_cast<double>(arm.files.size());
     if (arm.files.size() >= 2) {
         Values each = over_renders(arm, region, [&](const RegionStats& r) { return r.spread * k / (k - 1); });
-        MeterValue out = mean_of(each, heavy, at_least_0);
+        MetricValue out = mean_of(each, heavy, at_least_0);
         if (arm.files.size() == 2) out.interval.reset(), out.why = "two renders spread alike: no interval";
         return out;
     }
-    const double told = mean_variance(arm.film, set);
-    if (std::isnan(told)) return missing("one render without a variance channel has no variance");
-    return {told, {}, "as the renderer wrote it; one render has no interval"};
+    const double describe = mean_variance(arm.film, set);
+    if (std::isnan(describe)) return missing("one render without a variance channel has no variance");
+    return {describe, {}, "as the renderer wrote it; one render has no interval"};
 }
 
 /// Squared bias without the variance: the mean of e_k e_l over pairs of renders, less the reference's own error. Two
 /// renders that both err greatly in one pixel may be rare, and their absence looks like certainty: the standard error
 /// is never taken to be less than that of independent pixels of equal variance, sqrt(2 / (K (K - 1) pixels)) variance.
-MeterValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t region, double reference, bool heavy) {
+MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t region, double reference, bool heavy) {
     const double k = static_cast<double>(arm.files.size());
     if (arm.files.size() < 2) return missing("bias and variance part from two renders on");
     double sum = 0, squares = 0;
     for (const auto& render : arm.regions) sum += render[region].with_sum, squares += render[region].mse;
     const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - reference; };
-    MeterValue out{statistic(sum, squares, k), {}, ""};
+    MetricValue out{statistic(sum, squares, k), {}, ""};
     if (heavy) out.why = "heavy tail";
     else if (arm.files.size() < 3) out.why = "three renders or more have an interval";
     if (!out.why.empty()) return out;
@@ -95,26 +95,26 @@ MeterValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t re
     return out;
 }
 
-/// `transform` of a meter by a known factor: rising, or falling (1/x).
-template <class Transform> MeterValue made_of(const MeterValue& from, const Transform& transform) {
+/// `transform` of a metric by a known factor: rising, or falling (1/x).
+template <class Transform> MetricValue made_of(const MetricValue& from, const Transform& transform) {
     if (!from.value) return missing(from.why);
     if (!(*from.value > 0)) return missing("the variance is 0");
-    MeterValue out{transform(*from.value), {}, from.why};
+    MetricValue out{transform(*from.value), {}, from.why};
     if (!from.interval || !(from.interval->first > 0)) return out;
     const double a = transform(from.interval->first), b = transform(from.interval->second);
     out.interval = {std::min(a, b), std::max(a, b)};
     return out;
 }
 
-void costs(const MeterValue& var, const Cost& cost, RegionResult& out) {
+void costs(const MetricValue& var, const Cost& cost, RegionResult& out) {
     const auto by = [&](const std::optional<double>& each, const char* why) {
         return each ? made_of(var, [&](double v) { return v * *each; }) : missing(why);
     };
     const char* no_time = "no render time: give --seconds";
-    out.meters.emplace_back("efficiency",
+    out.metrics.emplace_back("efficiency",
         cost.seconds ? made_of(var, [&](double v) { return 1 / (v * *cost.seconds); }) : missing(no_time));
-    out.meters.emplace_back("unit_time", by(cost.seconds, no_time));
-    out.meters.emplace_back("sample_var", by(cost.spp, "no samples a pixel: give --spp"));
+    out.metrics.emplace_back("unit_time", by(cost.seconds, no_time));
+    out.metrics.emplace_back("sample_var", by(cost.spp, "no samples a pixel: give --spp"));
 }
 
 /// Renders from which the largest error would be a twentieth of the sum: the largest of n grows as n^k, their sum as n.
@@ -135,16 +135,16 @@ void tail_of(const ArmStats& arm, std::size_t region, RegionResult& out) {
 }
 
 /// What the renderer says of its own variance beside what its renders spread.
-std::optional<double> told_over_measured(const ArmStats& arm, const PixelSet& set) {
-    if (arm.film.told_variance.empty() || arm.film.count < 2) return {};
-    double told = 0, measured = 0;
+std::optional<double> stated_over_measured(const ArmStats& arm, const PixelSet& set) {
+    if (arm.film.stated_variance.empty() || arm.film.count < 2) return {};
+    double describe = 0, measured = 0;
     for (const std::uint32_t i : set.pixels)
-        told += static_cast<double>(arm.film.told_variance[i]), measured += arm.film.variance(i);
-    return measured > 0 ? std::optional(told / static_cast<double>(arm.film.count) / measured) : std::nullopt;
+        describe += static_cast<double>(arm.film.stated_variance[i]), measured += arm.film.variance(i);
+    return measured > 0 ? std::optional(describe / static_cast<double>(arm.film.count) / measured) : std::nullopt;
 }
 
 /// A value that is not finite is none: nothing compares with it.
-void keep_finite(MeterValue& m) {
+void keep_finite(MetricValue& m) {
     if (m.value && !std::isfinite(*m.value)) m = missing(fmt::format("it is {}, not a finite number", *m.value));
     if (m.interval && !(std::isfinite(m.interval->first) && std::isfinite(m.interval->second)))
         m.interval.reset(), m.why = "its interval is not finite";
@@ -154,15 +154,15 @@ RegionResult without_pixels(const PixelSet& set, const std::vector<QuantityWord>
     RegionResult out;
     out.region = set.name;
     for (const QuantityWord& word : words)
-        out.meters.emplace_back(std::string(word.word), missing("no pixel is finite in every render"));
+        out.metrics.emplace_back(std::string(word.word), missing("no pixel is finite in every render"));
     return out;
 }
 
 }  // namespace
 
-const MeterValue& RegionResult::meter(const std::string& name) const {
-    static const MeterValue none;
-    for (const auto& [key, value] : meters)
+const MetricValue& RegionResult::metric(const std::string& name) const {
+    static const MetricValue none;
+    for (const auto& [key, value] : metrics)
         if (key == name) return value;
     return none;
 }
@@ -180,11 +180,12 @@ const RegionResult& ArmResult::region(const std::string& wanted) const {
 
 double reference_variance(const RenderStats& all, std::size_t region) {
     const ArmStats& reference = *all.reference;
-    const double told = mean_variance(reference.film, all.regions[region]) / static_cast<double>(reference.film.count);
-    if (!std::isnan(told)) return told;
+    const double describe =
+        mean_variance(reference.film, all.regions[region]) / static_cast<double>(reference.film.count);
+    if (!std::isnan(describe)) return describe;
     double least = HUGE_VAL;  // a bias adds to what an arm's roughness says: the least of them is nearest
     for (const ArmStats& arm : all.arms)
-        if (arm.film.count > 1 || !arm.film.told_variance.empty())
+        if (arm.film.count > 1 || !arm.film.stated_variance.empty())
             least = std::min(least, roughness(all, arm, all.regions[region]));
     return std::isfinite(least) ? least : 0;
 }
@@ -198,32 +199,33 @@ RegionResult measure_region(
     tail_of(arm, region, out);
     const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = all.reference.has_value();
     const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
-        out.meters.emplace_back(name,
+        out.metrics.emplace_back(name,
             referred ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
     };
     against("rmse", [](const RegionStats& r) { return r.mse; }, root_of, heavy);
-    const MeterValue var = variance(arm, set, region, heavy);
-    out.meters.emplace_back("var", var);
-    out.meters.emplace_back("bias2",
+    const MetricValue var = variance(arm, set, region, heavy);
+    out.metrics.emplace_back("var", var);
+    out.metrics.emplace_back("bias2",
         referred ? squared_bias(arm, set, region, reference_variance(all, region), heavy) : missing("no reference"));
     against("relmse", [](const RegionStats& r) { return r.relmse; }, at_least_0, heavy);
     against("mape", [](const RegionStats& r) { return r.mape; }, at_least_0, mean_heavy);
     const Values fireflies = over_renders(arm, region, [](const RegionStats& r) { return r.fireflies; });
-    out.meters.emplace_back("fireflies",
+    out.metrics.emplace_back("fireflies",
         referred ? value_of(count_interval(fireflies, static_cast<double>(out.pixels), confidence), false, same)
                  : missing("no reference"));
-    out.meters.emplace_back(
+    out.metrics.emplace_back(
         "y_mean", mean_of(over_renders(arm, region, [](const RegionStats& r) { return r.y; }), mean_heavy, same));
     const auto picture = [&](const char* name, const std::optional<double>& flip) {
-        out.meters.emplace_back(name,
-            flip ? MeterValue{*flip, {}, "of the first render"} : missing(referred ? "not asked for" : "no reference"));
+        out.metrics.emplace_back(name,
+            flip ? MetricValue{*flip, {}, "of the first render"}
+                 : missing(referred ? "not asked for" : "no reference"));
     };
     picture("flip", flips.hdr), picture("flip_ldr", flips.ldr);
     costs(var, cost, out);
     out.power = arm.power[region];
     out.colour = noise_colour(out.power);
-    out.told_ratio = told_over_measured(arm, set);
-    for (auto& [name, value] : out.meters) keep_finite(value);
+    out.stated_ratio = stated_over_measured(arm, set);
+    for (auto& [name, value] : out.metrics) keep_finite(value);
     return out;
 }
 
@@ -300,11 +302,11 @@ void MeanFilm::add(const Render& render, double variance_scale) {
     if (count == 0) {
         const std::vector<double> zero(render.size());
         planes.assign(1, {zero, zero});
-        told_variance.assign(render.variance.size(), 0);
+        stated_variance.assign(render.variance.size(), 0);
     }
     if (planes.size() == 1 && !is_grey(render)) planes.resize(colour_quantities, MeanPlane(planes[0]));
-    if (render.variance.size() != told_variance.size() || variance_scale == 0)
-        told_variance.clear();  // not every file has one
+    if (render.variance.size() != stated_variance.size() || variance_scale == 0)
+        stated_variance.clear();  // not every file has one
     ++count;
     rounding = std::max(rounding, render.rounding);
     const double n = static_cast<double>(count);
@@ -314,7 +316,7 @@ void MeanFilm::add(const Render& render, double variance_scale) {
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
             add_value(planes[0], i, render.y(i), n);
             for (std::size_t q = 1; q < planes.size(); ++q) add_value(planes[q], i, (*channels[q - 1])[i], n);
-            if (!told_variance.empty()) told_variance[i] += render.variance[i] * static_cast<float>(variance_scale);
+            if (!stated_variance.empty()) stated_variance[i] += render.variance[i] * static_cast<float>(variance_scale);
         }
     });
 }
@@ -328,8 +330,8 @@ std::vector<float> MeanFilm::radiance(std::size_t channel) const {
 
 double MeanFilm::variance(std::size_t i, std::size_t quantity) const {
     if (count >= 2) return of(quantity).m2[i] / static_cast<double>(count - 1);
-    const bool known = !told_variance.empty() && (quantity == 0 || planes.size() == 1);
-    return known ? static_cast<double>(told_variance[i]) / static_cast<double>(count) : std::nan("");
+    const bool known = !stated_variance.empty() && (quantity == 0 || planes.size() == 1);
+    return known ? static_cast<double>(stated_variance[i]) / static_cast<double>(count) : std::nan("");
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 inline constexpr std::size_t colour_quantities = 4;
 inline constexpr const char* quantity_names[colour_quantities] = {"Y", "R", "G", "B"};
@@ -34,4 +34,4 @@ inline JointP joint_p(std::span<const double> each) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

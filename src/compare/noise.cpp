@@ -16,7 +16,7 @@
 #include "math/hypotheses.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -48,7 +48,7 @@ NoiseResult::Histogram histogram(const RenderStats& all, const PixelSet& set, co
         if (std::isnan(noise.log2_ratio[t])) continue;
         const double at = (noise.log2_ratio[t] + noise_range) / (2 * noise_range) * noise_bins;
         const auto bin = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, noise_bins - 1.0));
-        ++(noise.told_apart[t] ? out.told : out.rest)[bin];
+        ++(noise.distinguished[t] ? out.describe : out.rest)[bin];
     }
     return out;
 }
@@ -59,7 +59,7 @@ std::string sentence(const NoiseResult& n, std::size_t tested) {
             "Where the noise of {} and {} differs could not be told: three renders of each are needed.", n.a, n.b);
     std::size_t less = 0, more = 0;
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
-        if (n.told_apart[t]) ++(n.log2_ratio[t] < 0 ? less : more);
+        if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? less : more);
     if (less + more == 0)
         return fmt::format("The variances of {} and {} are told apart in none of {} tiles.", n.a, n.b, tested);
     return fmt::format(
@@ -69,7 +69,7 @@ std::string sentence(const NoiseResult& n, std::size_t tested) {
 
 }  // namespace
 
-NoiseResult judge_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha) {
+NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha) {
     NoiseResult out;
     out.a = plan.arms[a].name, out.b = plan.arms[b].name;
     std::vector<double> p;
@@ -79,7 +79,7 @@ NoiseResult judge_noise(const ComparePlan& plan, const RenderStats& all, std::si
         out.log2_ratio.push_back(both ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
         p.push_back(both && va.n > 2 && vb.n > 2 ? welch_test(va, vb).p : std::nan(""));
     }
-    out.told_apart = discoveries(p, alpha, false);
+    out.distinguished = discoveries(p, alpha, false);
     for (const PixelSet& set : all.regions) out.regions.push_back(histogram(all, set, out));
     out.sentence = sentence(
         out, static_cast<std::size_t>(std::count_if(p.begin(), p.end(), [](double x) { return !std::isnan(x); })));
@@ -174,13 +174,13 @@ PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, st
     return out;
 }
 
-// ---- Who is better, where: arms in the order of a meter, and which neighbours in that order are told apart by their
+// ---- Who is better, where: arms in the order of a metric, and which neighbours in that order are told apart by their
 // intervals. Ladders: one arm at several samples a pixel.
 
 namespace {
 
 struct Measure {
-    const char* meter;
+    const char* metric;
     const char* words;
 };
 /// The first that every arm of a region has is what it is ranked by.
@@ -189,17 +189,17 @@ constexpr Measure at_equal_samples[] = {{"sample_var", "at equal samples"}, {"va
 
 struct Ranked {
     std::string arm;
-    MeterValue value;
+    MetricValue value;
 };
 
-bool apart(const MeterValue& better, const MeterValue& worse) {
+bool apart(const MetricValue& better, const MetricValue& worse) {
     return better.interval && worse.interval && better.interval->second < worse.interval->first;
 }
 
-std::string told(const std::vector<Ranked>& order) {
+std::string describe(const std::vector<Ranked>& order) {
     std::vector<std::string> out;
     for (std::size_t k = 0; k + 1 < order.size(); ++k) {
-        const MeterValue &better = order[k].value, &worse = order[k + 1].value;
+        const MetricValue &better = order[k].value, &worse = order[k + 1].value;
         if (apart(better, worse))
             out.push_back(fmt::format("{} before {} ({} times the variance)", order[k].arm, order[k + 1].arm,
                 figures(*worse.value / *better.value, 3)));
@@ -211,7 +211,7 @@ std::string told(const std::vector<Ranked>& order) {
 std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, const Measure& by) {
     std::vector<Ranked> order;
     for (const ArmResult& arm : result.arms) {
-        const MeterValue& value = arm.regions[region].meter(by.meter);
+        const MetricValue& value = arm.regions[region].metric(by.metric);
         if (!value.value) return {};
         order.push_back({arm.name, value});
     }
@@ -221,7 +221,7 @@ std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, 
     Ranking out;
     out.region = result.arms[0].regions[region].region, out.measure = by.words;
     for (const Ranked& r : order) out.order.push_back(r.arm);
-    out.sentence = fmt::format("In {}, {}: {}.", out.region, by.words, told(order));
+    out.sentence = fmt::format("In {}, {}: {}.", out.region, by.words, describe(order));
     return out;
 }
 
@@ -246,7 +246,7 @@ std::vector<Ranking> rank(const CompareResult& result) {
 
 namespace {
 
-/// "path-64" at 64 samples a pixel is a rung of "path"; "" where a name does not end with its spp.
+/// "path-64" at 64 samples a pixel is a sample count of "path"; "" where a name does not end with its spp.
 std::string ladder_name(const ArmResult& arm) {
     const std::string spp = arm.spp ? fmt::format("{:.0f}", *arm.spp) : "";
     if (spp.empty() || !arm.name.ends_with(spp)) return {};
@@ -256,18 +256,18 @@ std::string ladder_name(const ArmResult& arm) {
     return apart ? rest.substr(0, end + 1) : "";
 }
 
-/// Least squares of the logarithms, each rung's interval carried along: the slope of the line is a sum of weights times
-/// logarithms, whose half-widths add in squares.
-MeterValue slope_of(const CompareResult& result, const SppLadder& ladder, std::size_t region) {
+/// Least squares of the logarithms, each sample count's interval carried along: the slope of the line is a sum of
+/// weights times logarithms, whose half-widths add in squares.
+MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::size_t region) {
     std::vector<double> x, y, half;
     for (const std::size_t a : ladder.arms) {
         const RegionResult& r = result.arms[a].regions[region];
-        const MeterValue &rmse = r.meter("rmse"), &var = r.meter("var"), &meter = rmse.value ? rmse : var;
-        if (!meter.value || !(*meter.value > 0)) return {{}, {}, "a rung has no value"};
+        const MetricValue &rmse = r.metric("rmse"), &var = r.metric("var"), &metric = rmse.value ? rmse : var;
+        if (!metric.value || !(*metric.value > 0)) return {{}, {}, "a rung has no value"};
         const double root = rmse.value ? 1 : 0.5;
-        x.push_back(math::log(*result.arms[a].spp)), y.push_back(root * math::log(*meter.value));
-        const bool known = meter.interval && meter.interval->first > 0;
-        half.push_back(known ? root * math::log(meter.interval->second / meter.interval->first) / 2 : std::nan(""));
+        x.push_back(math::log(*result.arms[a].spp)), y.push_back(root * math::log(*metric.value));
+        const bool known = metric.interval && metric.interval->first > 0;
+        half.push_back(known ? root * math::log(metric.interval->second / metric.interval->first) / 2 : std::nan(""));
     }
     const double n = static_cast<double>(x.size());
     const double middle = std::accumulate(x.begin(), x.end(), 0.0) / n;
@@ -278,25 +278,25 @@ MeterValue slope_of(const CompareResult& result, const SppLadder& ladder, std::s
         const double weight = (x[k] - middle) / squares;
         slope += weight * y[k], doubt += weight * weight * half[k] * half[k];
     }
-    MeterValue out{slope, {}, std::isnan(doubt) ? "a rung has no interval" : ""};
+    MetricValue out{slope, {}, std::isnan(doubt) ? "a rung has no interval" : ""};
     if (out.why.empty()) out.interval = {slope - std::sqrt(doubt), slope + std::sqrt(doubt)};
     return out;
 }
 
 }  // namespace
 
-MeterValue rung_of(const RegionResult& region) {
-    const MeterValue& rmse = region.meter("rmse");
+MetricValue sample_count_of(const RegionResult& region) {
+    const MetricValue& rmse = region.metric("rmse");
     if (rmse.value) return rmse;
-    MeterValue out = region.meter("var");
+    MetricValue out = region.metric("var");
     const auto root = [](double v) { return std::sqrt(std::max(0.0, v)); };
     if (out.value) out.value = root(*out.value);
     if (out.interval) out.interval = {root(out.interval->first), root(out.interval->second)};
     return out;
 }
 
-const char* rung_words(const RegionResult& region) {
-    return region.meter("rmse").value ? "RMSE" : "standard deviation";
+const char* sample_count_text(const RegionResult& region) {
+    return region.metric("rmse").value ? "RMSE" : "standard deviation";
 }
 
 std::vector<SppLadder> ladders_of(const CompareResult& result) {
@@ -320,4 +320,4 @@ std::vector<SppLadder> ladders_of(const CompareResult& result) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

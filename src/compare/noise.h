@@ -6,7 +6,7 @@
 #include "compare/renders.h"
 #include "compare/shared_seeds.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Pairs of renders of two arms with the same number in their names: indices into their files. Throws InputError where
 /// a render has no partner.
@@ -23,4 +23,4 @@ bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, co
 PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b,
     std::vector<RenderPair> pairs, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 // ---- Rectangles of pixels as files have them: both ends inside, y from the top down (OpenEXR's windows).
 
@@ -98,4 +98,4 @@ template <class T> bool parse_number(std::string_view text, T& to) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -13,13 +13,13 @@
 #include "output/format.h"
 #include "output/junit.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
 Json or_null(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
 
-Json measured_json(const MeterValue& m) {
+Json measured_json(const MetricValue& m) {
     Json out = {{"value", or_null(m.value)}, {"interval", nullptr}};
     if (m.interval) out["interval"] = Json::array({number(m.interval->first), number(m.interval->second)});
     if (!m.why.empty()) out["why"] = m.why;
@@ -28,13 +28,13 @@ Json measured_json(const MeterValue& m) {
 
 Json region_json(const RegionResult& r) {
     Json out = {{"pixels", r.pixels}};
-    for (const auto& [name, value] : r.meters) out["meters"][name] = measured_json(value);
+    for (const auto& [name, value] : r.metrics) out["meters"][name] = measured_json(value);
     out["tail"] = r.tail
         ? Json{{"k", number(r.tail->k)}, {"se", number(r.tail->se)}, {"exceedances", r.tail->exceedances}}
         : Json(nullptr);
     out["largest_share"] = number(r.largest_share);
     if (r.heavy()) out["heavy_tail"] = {{"renders_needed", or_null(r.renders_needed)}};
-    if (r.told_ratio) out["told_variance_ratio"] = number(*r.told_ratio);
+    if (r.stated_ratio) out["told_variance_ratio"] = number(*r.stated_ratio);
     out["spectrum"] = {{"power", numbers(r.power)}, {"noise", to_string(r.colour)}};
     return out;
 }
@@ -154,11 +154,11 @@ Json bias_json(const BiasResult& b, int width) {
 Json noise_json(const NoiseResult& n) {
     std::size_t less = 0, more = 0;
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
-        if (n.told_apart[t]) ++(n.log2_ratio[t] < 0 ? less : more);
+        if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? less : more);
     Json out = {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", less}, {"more_noise", more},
         {"say", n.sentence}, {"regions", Json::object()}};
     for (const NoiseResult::Histogram& h : n.regions)
-        out["regions"][h.region] = {{"told_apart", h.told}, {"not_told_apart", h.rest}};
+        out["regions"][h.region] = {{"told_apart", h.describe}, {"not_told_apart", h.rest}};
     return out;
 }
 
@@ -215,7 +215,7 @@ std::string compare_csv(const CompareResult& result) {
     std::string out = "arm,renders,region,meter,value,low,high,why\r\n";
     for (const ArmResult& arm : result.arms)
         for (const RegionResult& r : arm.regions)
-            for (const auto& [name, m] : r.meters)
+            for (const auto& [name, m] : r.metrics)
                 out += fmt::format("{},{},{},{},{},{},{},{}\r\n", csv_field(arm.name), arm.renders, csv_field(r.region),
                     name, m.value ? shortest(*m.value) : "", m.interval ? shortest(m.interval->first) : "",
                     m.interval ? shortest(m.interval->second) : "", csv_field(m.why));
@@ -249,7 +249,7 @@ std::string compare_summary(
             right("renders", 8), right("RMSE", 32), right("variance", 12), right("mean Y", 12));
         for (const ArmResult& arm : result.arms) {
             const RegionResult& r = arm.region(set.name);
-            const MeterValue &rmse = r.meter("rmse"), &var = r.meter("var"), &y = r.meter("y_mean");
+            const MetricValue &rmse = r.metric("rmse"), &var = r.metric("var"), &y = r.metric("y_mean");
             std::string spread = rmse.value ? figures(*rmse.value) : "-";
             if (rmse.interval)
                 spread += fmt::format(" ({}..{})", figures(rmse.interval->first, 3), figures(rmse.interval->second, 3));
@@ -267,4 +267,4 @@ std::string compare_summary(
     return out + "\n" + out_dir + "/report.html tells the rest.\n";
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -4,12 +4,12 @@
 #include "compare/results.h"
 #include "report/report.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// docs/compare.schema.json says what stands in it; equal inputs give equal bytes.
 std::string compare_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& provenance);
-/// One meter a row, RFC 4180.
+/// One metric a row, RFC 4180.
 std::string compare_csv(const CompareResult& result);
 std::string compare_junit(const ComparePlan& plan, const CompareResult& result);
 std::string compare_summary(
@@ -18,4 +18,4 @@ std::string compare_summary(
 std::string compare_html(const ComparePlan& plan, const RenderStats& all, const CompareResult& result,
     const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

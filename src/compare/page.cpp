@@ -14,7 +14,7 @@
 #include "output/format.h"
 #include "output/html.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -202,14 +202,14 @@ std::string noise_section(const CompareResult& result) {
     for (const NoiseResult& n : result.noise) {
         out += html::p(escape(n.sentence));
         for (const NoiseResult::Histogram& h : n.regions) {
-            const double tiles = sum_of(h.told) + sum_of(h.rest);
+            const double tiles = sum_of(h.describe) + sum_of(h.rest);
             if (tiles == 0) continue;
             const Axis x{-noise_range, noise_range, false,
                 fmt::format("log2 of the variance of {} over that of {}", n.a, n.b), {-4, -2, 0, 2, 4}};
             out += fmt::format(
                 "<figure class=\"narrow\">{}<figcaption>Tiles of {}: coloured where the ratio is told apart from 1, "
                 "grey where not; the ends hold what lies beyond.</figcaption></figure>\n",
-                histogram(percents(h.told, tiles), percents(h.rest, tiles), x, "% of tiles",
+                histogram(percents(h.describe, tiles), percents(h.rest, tiles), x, "% of tiles",
                     "Histogram of the variance ratio"),
                 escape(h.region));
         }
@@ -227,7 +227,7 @@ std::string spectra_section(const RenderStats& all, const CompareResult& result)
         if (values.empty()) continue;
         Axis x{1, static_cast<double>(spectrum_bins), false, "frequency, cycles in 32 pixels", {1, 4, 8, 12, 16}};
         Chart chart(520, 240, x, log_axis("power of the error of Y", values), "Error spectrum");
-        std::vector<std::string> said;
+        std::vector<std::string> message;
         for (std::size_t a = 0; a < result.arms.size(); ++a) {
             const RegionResult& r = result.arms[a].region(set.name);
             std::vector<Point> line;
@@ -235,23 +235,23 @@ std::string spectra_section(const RenderStats& all, const CompareResult& result)
             if (line.empty()) continue;
             const std::string colour = fmt::format("c{}", a % 6);
             chart.line(line, colour), chart.name(line.back(), result.arms[a].name, colour);
-            said.push_back(fmt::format("{}: {} noise", escape(result.arms[a].name), to_string(r.colour)));
+            message.push_back(fmt::format("{}: {} noise", escape(result.arms[a].name), to_string(r.colour)));
         }
         out += fmt::format(
             "<figure>{}<figcaption>Region {}. {}. White noise is level; blue noise rises to the right; filtered noise "
             "falls.</figcaption></figure>\n",
-            chart.str(), escape(set.name), html::join(said));
+            chart.str(), escape(set.name), html::join(message));
     }
     return out;
 }
 
-// ---- The sections of a comparison's page that hold numbers: meters with their doubt, who is better, ladders, files.
+// ---- The sections of a comparison's page that hold numbers: metrics with their doubt, who is better, ladders, files.
 
 namespace {
 
 using html::words;
 
-std::string cell(const MeterValue& m) {
+std::string cell(const MetricValue& m) {
     if (!m.value) return html::element("span", fmt::format("title=\"{}\"", escape(m.why)), "–");
     std::string out = html::value(figures(*m.value));
     if (m.interval)
@@ -261,22 +261,22 @@ std::string cell(const MeterValue& m) {
     return out;
 }
 
-const char* title_of(const std::string& meter) {
+const char* title_of(const std::string& metric) {
     static const std::map<std::string, const char*> titles = {{"rmse", "RMSE"}, {"var", "variance"}, {"bias2", "bias²"},
         {"relmse", "relMSE"}, {"mape", "MAPE"}, {"fireflies", "fireflies"}, {"y_mean", "mean <i>Y</i>"},
         {"flip", "HDR-FLIP"}, {"flip_ldr", "LDR-FLIP"}, {"efficiency", "efficiency"},
         {"unit_time", "s to unit variance"}, {"sample_var", "variance of a sample"}};
-    const auto it = titles.find(meter);
+    const auto it = titles.find(metric);
     return it == titles.end() ? "" : it->second;
 }
 
-/// Meters that some arm has; of the others, why not.
+/// Metrics that some arm has; of the others, why not.
 std::vector<std::string> measured(
     const CompareResult& result, const std::string& region, std::vector<std::string>& not_measured) {
     std::vector<std::string> out;
-    for (const auto& [name, m] : result.arms[0].region(region).meters) {
+    for (const auto& [name, m] : result.arms[0].region(region).metrics) {
         const bool any = std::any_of(result.arms.begin(), result.arms.end(),
-            [&](const ArmResult& arm) { return arm.region(region).meter(name).value.has_value(); });
+            [&](const ArmResult& arm) { return arm.region(region).metric(name).value.has_value(); });
         if (any) out.push_back(name);
         else not_measured.push_back(fmt::format("{} ({})", title_of(name), escape(m.why)));
     }
@@ -284,16 +284,16 @@ std::vector<std::string> measured(
 }
 
 std::string region_table(const PixelSet& set, const CompareResult& result, std::vector<std::string>& not_measured) {
-    const std::vector<std::string> meters = measured(result, set.name, not_measured);
+    const std::vector<std::string> metrics = measured(result, set.name, not_measured);
     std::vector<html::Cell> head{words("arm"), {"renders", true}};
-    for (const std::string& name : meters) head.push_back({title_of(name), true});
+    for (const std::string& name : metrics) head.push_back({title_of(name), true});
     const std::string caption = set.name == whole_frame
         ? "Whole frame (a footnote: it mixes regions that err for different reasons)"
         : fmt::format("<b>{}</b>, {} pixels", escape(set.name), set.pixels.size());
     html::Table table(caption, head);
     for (const ArmResult& arm : result.arms) {
         std::vector<html::Cell> row{html::heading(escape(arm.name)), html::figure(std::to_string(arm.renders))};
-        for (const std::string& name : meters) row.push_back({cell(arm.region(set.name).meter(name)), true});
+        for (const std::string& name : metrics) row.push_back({cell(arm.region(set.name).metric(name)), true});
         table.row(row);
     }
     return "<div class=\"wide\">" + table.str() + "</div>\n";
@@ -312,9 +312,9 @@ std::string remarks(const PixelSet& set, const CompareResult& result) {
                           *r.renders_needed)
                     : "From how many renders on an interval could be said is not known: the mean of such errors "
                       "does not settle over those that are here."));
-        if (r.told_ratio)
+        if (r.stated_ratio)
             out += html::p(fmt::format("{} in {}: the renderer’s own variance is {} times that over renders.",
-                escape(arm.name), escape(set.name), html::value(figures(*r.told_ratio, 3))));
+                escape(arm.name), escape(set.name), html::value(figures(*r.stated_ratio, 3))));
     }
     return out;
 }
@@ -342,9 +342,9 @@ std::string numbers_section(const ComparePlan& plan, const RenderStats& all, con
 }
 
 std::string rankings_section(const CompareResult& result) {
-    std::vector<std::string> said;
-    for (const Ranking& r : result.rankings) said.push_back(escape(r.sentence));
-    return said.empty() ? "" : html::p("Arms whose intervals overlap are not ranked.") + html::list(said);
+    std::vector<std::string> message;
+    for (const Ranking& r : result.rankings) message.push_back(escape(r.sentence));
+    return message.empty() ? "" : html::p("Arms whose intervals overlap are not ranked.") + html::list(message);
 }
 
 std::string ladders_section(const CompareResult& result) {
@@ -352,12 +352,12 @@ std::string ladders_section(const CompareResult& result) {
     if (result.ladders.empty()) return out;
     for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r) {
         const std::string& region = result.arms[0].regions[r].region;
-        const char* what = rung_words(result.arms[0].regions[r]);
+        const char* what = sample_count_text(result.arms[0].regions[r]);
         std::vector<double> xs, ys;
         for (const SppLadder& l : result.ladders)
             for (const std::size_t a : l.arms) {
                 xs.push_back(*result.arms[a].spp);
-                const MeterValue m = rung_of(result.arms[a].regions[r]);
+                const MetricValue m = sample_count_of(result.arms[a].regions[r]);
                 if (m.value) ys.push_back(*m.value);
                 if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
             }
@@ -368,14 +368,14 @@ std::string ladders_section(const CompareResult& result) {
             const std::string colour = fmt::format("c{}", k % 6);
             std::vector<Point> line;
             for (const std::size_t a : l.arms) {
-                const MeterValue m = rung_of(result.arms[a].regions[r]);
+                const MetricValue m = sample_count_of(result.arms[a].regions[r]);
                 if (!m.value) continue;
                 line.push_back({*result.arms[a].spp, *m.value});
                 if (m.interval) chart.bar(*result.arms[a].spp, m.interval->first, m.interval->second, colour);
             }
             if (line.empty()) continue;
             chart.line(line, colour), chart.dots(line, colour), chart.name(line.back(), l.name, colour);
-            const MeterValue& s = l.slopes[r].second;
+            const MetricValue& s = l.slopes[r].second;
             if (s.value)
                 slopes.push_back(
                     fmt::format("{} falls as N to the power {}{}", escape(l.name), html::value(figures(*s.value, 3)),
@@ -412,4 +412,4 @@ std::string files_section(const RenderStats& all, const CompareResult& result) {
         (warnings.empty() ? "" : "<h3>Warnings</h3>\n" + html::list(warnings));
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -6,9 +6,9 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
-/// The tables of the page: every meter by arm and region, with its interval.
+/// The tables of the page: every metric by arm and region, with its interval.
 std::string numbers_section(const ComparePlan& plan, const RenderStats& all, const CompareResult& result);
 std::string rankings_section(const CompareResult& result);
 std::string means_section(const CompareResult& result);
@@ -17,4 +17,4 @@ std::string ladders_section(const CompareResult& result);
 std::string spectra_section(const RenderStats& all, const CompareResult& result);
 std::string files_section(const RenderStats& all, const CompareResult& result);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

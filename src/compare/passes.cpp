@@ -16,7 +16,7 @@
 #include "math/hypotheses.h"
 #include "math/tail.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 Tiles::Tiles(int width, int height) {
     const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
@@ -395,4 +395,4 @@ void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSo
         for (const Largest& values : deviations[q]) arm.quantities[q].largest.push_back(values.falling());
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -4,7 +4,7 @@
 #include "compare/file_warnings.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 // ---- What the first pass keeps while it reads: the size that all must have, and which pixels it has seen in which
 // file.
@@ -41,4 +41,4 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
 void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSource& source, ArmStats& arm,
     const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -11,7 +11,7 @@
 #include "experiment/parser.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -109,10 +109,10 @@ void check_names(ParseContext& context, ComparePlan& plan) {
         a.check = *check;
         for (const ParsedQuantity* q : {&a.check.left, &a.check.right}) {
             if (q->number) continue;
-            if (!std::count(arms.begin(), arms.end(), q->subject))
+            if (!std::count(arms.begin(), arms.end(), q->adapter))
                 context.report(a.name, a.at,
-                    fmt::format("{}: no arm '{}': expected one of {}{}", a.text, q->subject, listed(arms, ", "),
-                        hint(q->subject, arms)));
+                    fmt::format("{}: no arm '{}': expected one of {}{}", a.text, q->adapter, listed(arms, ", "),
+                        hint(q->adapter, arms)));
             if (!std::count(regions.begin(), regions.end(), q->region))
                 context.report(a.name, a.at,
                     fmt::format("{}: no region '{}': expected one of {}{}", a.text, q->region, listed(regions, ", "),
@@ -283,4 +283,4 @@ std::string compare_schema_text() {
 
 std::string compare_schema_json() { return json_schema_of(compare_schema(), "crescent comparison"); }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -12,7 +12,7 @@
 #include "experiment/schema.h"
 #include "output/color_map.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..], %d for digits).
 struct RenderArm {
@@ -86,4 +86,4 @@ const std::vector<QuantityWord>& compare_words();
 /// The region that is every pixel; a footnote, never a headline.
 inline constexpr const char* whole_frame = "frame";
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

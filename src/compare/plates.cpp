@@ -23,11 +23,11 @@ namespace crescent::plates {
 // ---- Colours in sRGB; a difference of t goes from the middle colour to an end's at |t| = 1, straight in sRGB. A block
 // that is shown smaller shows means over its pixels. Places in units of the sheet, a pixel each.
 
-void header(Canvas& c, bool instrument, const std::string& label) {
-    const Colour accent = instrument ? instrument_accent : photograph_accent;
+void header(Canvas& c, bool backend, const std::string& label) {
+    const Colour accent = backend ? backend_accent : photograph_accent;
     c.fill({header_band.x, header_band.y + 4, 5, header_band.h - 8}, accent);
     c.text({header_band.x + 17, header_band.y, header_band.w - 17, header_band.h},
-        (instrument ? "INSTRUMENT / " : "Khronos PBR Neutral / PHOTO-ONLY / ") + label, label_text);
+        (backend ? "INSTRUMENT / " : "Khronos PBR Neutral / PHOTO-ONLY / ") + label, label_text);
 }
 
 void finish(Canvas& c, const std::string& caption, const std::string& note) {
@@ -98,7 +98,7 @@ std::function<Srgb8(double)> signed_colours(Theme theme) {
 
 }  // namespace crescent::plates
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -261,12 +261,12 @@ LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_
     LadderCurve out;
     out.name = escaped(l.name), out.ink = series[ladder % series_count];
     for (const std::size_t a : l.arms) {
-        const MeterValue rung = rung_of(result.arms[a].regions[region]);
-        out.n.push_back(*result.arms[a].spp), out.value.push_back(rung.value.value_or(nan));
-        out.interval.push_back(rung.interval.value_or(std::pair(nan, nan)));
+        const MetricValue sample_count = sample_count_of(result.arms[a].regions[region]);
+        out.n.push_back(*result.arms[a].spp), out.value.push_back(sample_count.value.value_or(nan));
+        out.interval.push_back(sample_count.interval.value_or(std::pair(nan, nan)));
         out.heavy |= result.arms[a].regions[region].heavy();
     }
-    const MeterValue& slope = l.slopes[region].second;
+    const MetricValue& slope = l.slopes[region].second;
     out.slope = slope.value.value_or(nan);
     out.low = slope.interval ? slope.interval->first : nan, out.high = slope.interval ? slope.interval->second : nan;
     return out;
@@ -280,7 +280,7 @@ std::vector<std::size_t> columns_of(const CompareResult& result) {
 }
 
 void draw_plate(Canvas& c, const CompareResult& result) {
-    const char* what = rung_words(result.arms[0].regions[0]);
+    const char* what = sample_count_text(result.arms[0].regions[0]);
     header(c, true, fmt::format("{} of one render over its samples a pixel", what));
     const std::vector<std::size_t> columns = columns_of(result);
     const std::size_t shown = std::min(most_curves, result.ladders.size());
@@ -334,11 +334,11 @@ Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {
 double visible(double t) { return std::copysign(0.2 + 0.8 * std::min(1.0, std::fabs(t)), t); }
 
 /// A value a tile, `told` ones in their colour, the others grey; in the left of two slots, or in one.
-Block tile_block(const RenderStats& all, const Fit& f, const std::vector<double>& value, const std::vector<bool>& told,
-    double top, Theme theme) {
+Block tile_block(const RenderStats& all, const Fit& f, const std::vector<double>& value,
+    const std::vector<bool>& describe, double top, Theme theme) {
     return nearest_block(all.frame(), f, [&](int x, int y) {
         const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
-        return diverging(std::isnan(value[t]) ? value[t] : told[t] ? visible(value[t] / top) : 0.0, theme);
+        return diverging(std::isnan(value[t]) ? value[t] : describe[t] ? visible(value[t] / top) : 0.0, theme);
     });
 }
 
@@ -441,10 +441,10 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
     band.w -= bar_room;
     std::vector<double> sizes{1};
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
-        if (n.told_apart[t]) sizes.push_back(std::fabs(n.log2_ratio[t]));
+        if (n.distinguished[t]) sizes.push_back(std::fabs(n.log2_ratio[t]));
     const double top = std::ceil(quantile(std::move(sizes), 0.95));
     const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
-    framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top, theme), band);
+    framed(c, tile_block(all, f, n.log2_ratio, n.distinguished, top, theme), band);
     const auto ratio = [](double log2) {
         return log2 < 0 ? fmt::format("1/{:.0f}", math::exp2(-log2)) : fmt::format("{:.0f}", math::exp2(log2));
     };
@@ -457,4 +457,4 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
         fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

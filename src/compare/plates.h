@@ -16,7 +16,7 @@ namespace crescent::plates {
 inline constexpr double bar_room = 116;
 
 /// The header of a sheet; finish() sets caption and footer.
-void header(Canvas& c, bool instrument, const std::string& label);
+void header(Canvas& c, bool backend, const std::string& label);
 void finish(Canvas& c, const std::string& caption, const std::string& note);
 /// The same, and what was drawn.
 Picture finished(Canvas& c, const std::string& caption, const std::string& note);
@@ -40,7 +40,7 @@ std::function<Srgb8(double)> signed_colours(Theme theme);
 
 }  // namespace crescent::plates
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// renders, errors, ladders, bias-A-B, noise-A-B: those that there is something to show for. Throws OutputError without
 /// the font.
@@ -56,4 +56,4 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& noise, Theme them
 Picture ladders_plate(const CompareResult& result, Theme theme);
 std::string ladders_svg(const CompareResult& result, Theme theme);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -107,4 +107,4 @@ Matrix3 conversion(const Chromaticities& from, const Chromaticities& to) {
     return product(inverse(b), product(adaptation(transformed(a, white), transformed(b, white)), a));
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// CIE 1931 xy of the three primaries and of white (R = G = B).
 struct Chromaticities {
@@ -34,4 +34,4 @@ Matrix3 conversion(const Chromaticities& from, const Chromaticities& to);
 /// Weights of R, G and B in Y.
 Rgb luminance_weights_of(const Chromaticities& c);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

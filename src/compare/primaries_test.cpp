@@ -5,7 +5,7 @@
 
 #include "compare/primaries.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 constexpr Chromaticities ap1{{0.713, 0.293}, {0.165, 0.83}, {0.128, 0.044}, {0.32168, 0.33767}};  // ACEScg
@@ -59,4 +59,4 @@ TEST(Primaries, WhatDescribesNoColoursIsNotValid) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

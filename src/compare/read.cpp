@@ -17,7 +17,7 @@
 #include "compare/renders.h"
 #include "compare/view.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -420,4 +420,4 @@ Render read_radiance_hdr(const OpenFile& file) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -6,7 +6,7 @@
 
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::HasSubstr;
@@ -62,4 +62,4 @@ TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

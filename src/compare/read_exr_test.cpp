@@ -17,7 +17,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::AllOf;
@@ -259,4 +259,4 @@ TEST_F(ExrFiles, NoBeginningOfAFileIsAFile) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -16,7 +16,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 using ::testing::HasSubstr;
@@ -283,4 +283,4 @@ TEST_F(Renders, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

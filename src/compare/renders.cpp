@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -72,4 +72,4 @@ Render read_render(const std::string& path, const std::string& layer) {
                            : "expected OpenEXR, PFM, Radiance HDR or NPY, found something else");
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

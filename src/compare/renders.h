@@ -16,7 +16,7 @@
 #include "compare/primaries.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 // ---- One render of another program: linear radiance per pixel, read from OpenEXR, PFM, Radiance HDR or NPY. Rows run
 // bottom-up, pixel (i, j) at j * width + i, as in a Film. Units are the renderer's own; Y is the luminance of the
@@ -77,10 +77,10 @@ struct MeanPlane {
 
 /// Means of the quantities of quantities.h over K renders. A film whose renders are all grey holds Y alone.
 struct MeanFilm {
-    std::size_t count = 0;             // K
-    std::vector<MeanPlane> planes;     // Y; and R, G, B once a render was not grey
-    std::vector<float> told_variance;  // sum over renders of the variance of Y that the renderer wrote; empty: none
-    double rounding = 0;               // of a pixel, relative: the coarsest of its files
+    std::size_t count = 0;               // K
+    std::vector<MeanPlane> planes;       // Y; and R, G, B once a render was not grey
+    std::vector<float> stated_variance;  // sum over renders of the variance of Y that the renderer wrote; empty: none
+    double rounding = 0;                 // of a pixel, relative: the coarsest of its files
     /// `variance_scale` makes what the render tells the variance of its pixels; 0: it cannot be known.
     void add(const Render& render, double variance_scale = 1);
     /// The plane of a quantity; of a channel of a grey film that of Y.
@@ -193,4 +193,4 @@ Render in_rec709(const RenderStats& all, const MeanFilm& film);
 /// Reads everything twice. Throws InputError where files do not fit each other.
 RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source = {});
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -1,4 +1,4 @@
-// What a comparison found, as plain data: meters with their doubt, whether arms differ, where the noise moved.
+// What a comparison found, as plain data: metrics with their doubt, whether arms differ, where the noise moved.
 #pragma once
 
 #include <cmath>
@@ -15,14 +15,14 @@
 #include "math/hypotheses.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;  // of every interval
 inline constexpr double heavy_share = 0.5;  // one squared error that is half of their sum decides a mean by itself
 
-/// A meter of one arm in one region. `why` says why there is no value or no interval.
-struct MeterValue {
+/// A metric of one arm in one region. `why` says why there is no value or no interval.
+struct MetricValue {
     std::optional<double> value;
     std::optional<std::pair<double, double>> interval;  // 95 %
     std::string why;
@@ -31,14 +31,14 @@ struct MeterValue {
 struct RegionResult {
     std::string region;
     std::uint64_t pixels = 0;
-    std::vector<std::pair<std::string, MeterValue>> meters;  // in the order of compare_words()
-    std::optional<Tail> tail;                                // of the squared errors of all pixels and renders
-    double largest_share = 0;                                // of the largest squared error in their sum
-    std::vector<double> power;                               // error spectrum, see spectrum.h
+    std::vector<std::pair<std::string, MetricValue>> metrics;  // in the order of compare_words()
+    std::optional<Tail> tail;                                  // of the squared errors of all pixels and renders
+    double largest_share = 0;                                  // of the largest squared error in their sum
+    std::vector<double> power;                                 // error spectrum, see spectrum.h
     NoiseColour colour = NoiseColour::unknown;
-    std::optional<double> told_ratio;      // the variance that the renderer wrote over that over renders
+    std::optional<double> stated_ratio;    // the variance that the renderer wrote over that over renders
     std::optional<double> renders_needed;  // where the tail is heavy: renders from which an interval could be said
-    const MeterValue& meter(const std::string& name) const;
+    const MetricValue& metric(const std::string& name) const;
     /// The tail is too heavy for an interval of a mean of squares to mean anything.
     bool heavy() const;
     /// The same for a mean of the errors themselves: their squares' index is twice theirs.
@@ -132,11 +132,11 @@ struct BiasResult {
 /// Where the noise moved from b to a: log2(variance a / variance b) a tile.
 struct NoiseResult {
     std::string a, b;
-    std::vector<double> log2_ratio;  // NaN: no variance
-    std::vector<bool> told_apart;    // from 1
+    std::vector<double> log2_ratio;   // NaN: no variance
+    std::vector<bool> distinguished;  // from 1
     struct Histogram {
         std::string region;
-        std::vector<std::uint64_t> told, rest;  // tiles by log2_ratio, noise_bins of them, ends open
+        std::vector<std::uint64_t> describe, rest;  // tiles by log2_ratio, noise_bins of them, ends open
     };
     std::vector<Histogram> regions;
     std::string sentence;
@@ -154,8 +154,8 @@ struct Ranking {
 /// One arm at several samples a pixel.
 struct SppLadder {
     std::string name;
-    std::vector<std::size_t> arms;                           // by rising spp
-    std::vector<std::pair<std::string, MeterValue>> slopes;  // of log RMSE (else log sd) over log spp, a region each
+    std::vector<std::size_t> arms;                            // by rising spp
+    std::vector<std::pair<std::string, MetricValue>> slopes;  // of log RMSE (else log sd) over log spp, a region each
 };
 
 struct CompareResult {
@@ -174,4 +174,4 @@ struct CompareResult {
     std::string sentence;  // one for the state
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

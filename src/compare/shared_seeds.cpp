@@ -11,7 +11,7 @@
 
 #include "math/hypotheses.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -129,4 +129,4 @@ std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, co
     return found;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

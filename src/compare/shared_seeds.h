@@ -7,7 +7,7 @@
 
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Pixels that are looked at, in square blocks of the image.
 struct SeedSamples {
@@ -33,4 +33,4 @@ inline constexpr double shared_seed_level = 1e-3;
 /// of the largest correlation. Empty where some side has one render.
 std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

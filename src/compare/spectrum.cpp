@@ -11,7 +11,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -131,4 +131,4 @@ const char* to_string(NoiseColour colour) {
     return "unknown";
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

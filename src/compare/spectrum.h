@@ -9,7 +9,7 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 inline constexpr int spectrum_block = 32;                 // pixels a side of a block
 inline constexpr int spectrum_bins = spectrum_block / 2;  // frequencies 1..16 cycles a block; the mean is left out
@@ -26,4 +26,4 @@ enum class NoiseColour { unknown, white, blue, correlated };
 NoiseColour noise_colour(const std::vector<double>& power);
 const char* to_string(NoiseColour colour);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

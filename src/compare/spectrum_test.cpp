@@ -8,7 +8,7 @@
 
 #include "compare/synthetic.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 namespace {
 
 TEST(Spectrum, TellsFilteredNoiseFromWhite) {
@@ -33,4 +33,4 @@ TEST(Spectrum, HoldsThePowerOfAWave) {
 }
 
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -19,7 +19,7 @@
 #include "math/simd/random.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -204,11 +204,11 @@ CompareResult compare_synthetic(const SyntheticScene& world, std::uint32_t seed,
     flags.insert(flags.end(), more.begin(), more.end());
     const ComparePlan plan = plan_of(flags);
     ProgressMonitor monitor;
-    return judge(plan, read_all(plan, monitor, source_of(world, seed)), monitor);
+    return test_differences(plan, read_all(plan, monitor, source_of(world, seed)), monitor);
 }
 
 // ---- compare is called on renders that made.cpp draws, `repeats` times a kind, each call from its own seed; what it
-// says is counted. The truth of a meter is its mean over all calls of the kind. Rates with exact binomial intervals.
+// says is counted. The truth of a metric is its mean over all calls of the kind. Rates with exact binomial intervals.
 
 namespace {
 
@@ -244,28 +244,28 @@ template <class Is> std::uint64_t count(const std::vector<CompareResult>& all, I
 bool differs(const CompareResult& r) { return r.differs(); }
 /// Some mean was not tested, or not judged, because of a heavy tail.
 bool heavy(const CompareResult& r) {
-    const auto said = [](const MeanTest& t) {
+    const auto message = [](const MeanTest& t) {
         return t.why.starts_with("heavy tail") || t.doubt.starts_with("heavy tail");
     };
     return std::any_of(r.bias.begin(), r.bias.end(),
-        [&](const BiasResult& b) { return std::any_of(b.regions.begin(), b.regions.end(), said); });
+        [&](const BiasResult& b) { return std::any_of(b.regions.begin(), b.regions.end(), message); });
 }
 
-/// The noisy arm's intervals of one meter: how many there were, and how many held the truth, which is what the meter is
-/// on average over all calls (under the root where the meter is one, of the inverse where it is one).
-std::string coverage(const std::vector<CompareResult>& all, const std::string& meter) {
-    const bool root = meter == "rmse", inverse = meter == "efficiency";
+/// The noisy arm's intervals of one metric: how many there were, and how many held the truth, which is what the metric
+/// is on average over all calls (under the root where the metric is one, of the inverse where it is one).
+std::string coverage(const std::vector<CompareResult>& all, const std::string& metric) {
+    const bool root = metric == "rmse", inverse = metric == "efficiency";
     double sum = 0;
     std::uint64_t values = 0, stated = 0, held = 0;
     for (const CompareResult& r : all) {
-        const MeterValue& m = r.arms[0].region(whole_frame).meter(meter);
+        const MetricValue& m = r.arms[0].region(whole_frame).metric(metric);
         if (!m.value) continue;
         sum += root ? *m.value * *m.value : inverse ? 1 / *m.value : *m.value, ++values;
     }
     if (!values) return "–";
     const double mean = sum / static_cast<double>(values), truth = root ? std::sqrt(mean) : inverse ? 1 / mean : mean;
     for (const CompareResult& r : all) {
-        const MeterValue& m = r.arms[0].region(whole_frame).meter(meter);
+        const MetricValue& m = r.arms[0].region(whole_frame).metric(metric);
         if (!m.interval) continue;
         ++stated, held += m.interval->first <= truth && truth <= m.interval->second;
     }
@@ -282,28 +282,28 @@ std::string false_alarms(const std::vector<Calls>& worlds) {
         std::uint64_t met = 0, alarms = 0;
         for (std::size_t k = 0; k < c.met.size(); ++k)
             if (c.met[k]) ++met, alarms += c.results[k].differs();
-        const std::uint64_t of = c.results.size(), told = count(c.results, differs);
+        const std::uint64_t of = c.results.size(), describe = count(c.results, differs);
         out += fmt::format("| {} | {} | {} | {} | {} | {} | {} of {} |\n", to_string(c.world.a), to_string(c.world.b),
-            c.world.renders, rate_text(told, of),
+            c.world.renders, rate_text(describe, of),
             met == of ? "all"
                 : met ? rate_text(alarms, met)
                       : "–",
-            met == of ? "–" : fmt::format("{} of {}", told - alarms, of - met), count(c.results, heavy), of);
+            met == of ? "–" : fmt::format("{} of {}", describe - alarms, of - met), count(c.results, heavy), of);
     }
     return out;
 }
 
 std::string covered(const std::vector<Calls>& worlds) {
-    const std::vector<std::string> meters{
+    const std::vector<std::string> metrics{
         "y_mean", "var", "rmse", "bias2", "relmse", "mape", "fireflies", "efficiency", "unit_time", "sample_var"};
     std::string out = "| noise | renders |";
-    for (const std::string& m : meters) out += fmt::format(" {} |", m);
+    for (const std::string& m : metrics) out += fmt::format(" {} |", m);
     out += "\n|---|---|";
-    for (std::size_t k = 0; k < meters.size(); ++k) out += "---|";
+    for (std::size_t k = 0; k < metrics.size(); ++k) out += "---|";
     out += "\n";
     for (const Calls& c : worlds) {
         out += fmt::format("| {} | {} |", to_string(c.world.a), c.world.renders);
-        for (const std::string& m : meters) out += fmt::format(" {} |", coverage(c.results, m));
+        for (const std::string& m : metrics) out += fmt::format(" {} |", coverage(c.results, m));
         out += "\n";
     }
     return out;
@@ -515,4 +515,4 @@ std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Progr
     return out + covered(right);
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

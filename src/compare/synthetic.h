@@ -6,14 +6,14 @@
 #include "base/progress.h"
 #include "compare/compare.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Noise of mean 1 + bias. normal: of this sd. lognormal: sd is that of the logarithm. events: 0.9, and with this
-/// chance a bright event that is exponentially distributed and makes up the rest: what a caustic or a missed lamp does.
-/// Rules are chosen on these three. The next three stand by to measure what was chosen: pareto: of this tail index (>
-/// 1; the variance is infinite up to 2). hits: the mean of 16 samples, each of which meets a lamp with this chance.
-/// sparks: 0.9, and in a sixteenth of the frame with this chance a pixel a spark of one size, which makes up the rest
-/// there. gamma: of this sd.
+/// chance a bright event that is exponentially distributed and makes up the rest: what a caustic or a missed area light
+/// does. Rules are chosen on these three. The next three stand by to measure what was chosen: pareto: of this tail
+/// index (> 1; the variance is infinite up to 2). hits: the mean of 16 samples, each of which meets a area light with
+/// this chance. sparks: 0.9, and in a sixteenth of the frame with this chance a pixel a spark of one size, which makes
+/// up the rest there. gamma: of this sd.
 struct SyntheticNoise {
     /// The distribution of a pixel's noise, see above.
     enum class Kind { normal, lognormal, events, pareto, hits, sparks, gamma } kind = Kind::normal;
@@ -52,4 +52,4 @@ CompareResult compare_synthetic(
 /// Markdown. `repeats` calls of each kind of noise; equal arguments give equal text but for the date in the caller's.
 std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -10,7 +10,7 @@
 #include "compare/plan.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 class CommonView {
 public:
@@ -48,4 +48,4 @@ private:
     Mutex lock_;
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -16,7 +16,7 @@
 #include "math/tail.h"
 #include "output/format.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 namespace {
 
@@ -451,4 +451,4 @@ std::vector<std::string> found_about_means(const CompareResult& result) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

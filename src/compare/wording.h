@@ -7,7 +7,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Noise of a set of pixels: means over it of the variance of a pixel, of one render.
 struct SetVariance {
@@ -77,4 +77,4 @@ private:
 /// the reference varies from one pixel to the next, less the arm's own share; a bias is taken to be smooth.
 double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set);
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -1,4 +1,4 @@
-// A check written out, and held: five ways to compare two doubles.
+// Formats and evaluates assertions: five ways to compare two doubles.
 #include "experiment/assertion.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ std::string to_string(const ParsedQuantity& q) {
     if (q.number) return fmt::format("{}", *q.number);
     std::string text = q.word;
     if (!q.region.empty()) text += "." + q.region;
-    if (q.subject.empty()) return text;
-    text += "(" + q.subject;
+    if (q.adapter.empty()) return text;
+    text += "(" + q.adapter;
     if (q.n > 0) text += fmt::format(", n={}", q.n);
     if (q.s > 0) text += fmt::format(", s={}", q.s);
     return text + ")";
@@ -35,7 +35,7 @@ bool holds(double left, std::string_view op, double right) {
     return op == "==" && left == right;
 }
 
-// ---- Text -> ParsedQuantity, by recursive descent over one line.
+// ---- Parses text to a ParsedQuantity, by recursive descent over one line.
 
 namespace {
 
@@ -126,22 +126,22 @@ private:
             return false;
         }
         if (known->of_region != !q.region.empty()) {
-            const bool whole_image = known->of_region && known->subject == QuantityOf::compared;
+            const bool whole_image = known->of_region && known->adapter == QuantityOf::compared;
             why_ = fmt::format("expected {}{}, found '{}'", form_of(*known),
                 whole_image ? ", where REGION is a region, a mask or 'frame', the whole image" : "",
                 name.substr(0, 64));
             return false;
         }
-        return known->subject == QuantityOf::none || brackets(q, *known);
+        return known->adapter == QuantityOf::none || brackets(q, *known);
     }
 
     bool brackets(ParsedQuantity& q, const QuantityWord& known) {
         if (!take('(')) return fail(fmt::format("'(' as in {}", form_of(known)));
-        q.subject = word();
-        if (q.subject.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
-        while (known.subject == QuantityOf::run && take(','))
+        q.adapter = word();
+        if (q.adapter.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
+        while (known.adapter == QuantityOf::run && take(','))
             if (!argument(q)) return false;
-        return take(')') || fail(known.subject == QuantityOf::compared ? "')', for films have neither n nor s" : "')'");
+        return take(')') || fail(known.adapter == QuantityOf::compared ? "')', for films have neither n nor s" : "')'");
     }
 
     bool argument(ParsedQuantity& q) {
@@ -175,7 +175,7 @@ template <class T> std::string missing(const std::vector<T>& all, const char* wh
         names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
 }
 
-/// Null where there is no such word.
+/// Returns null if there is no such word.
 const QuantityWord* word_of(const ParsedQuantity& q) {
     const auto& words = quantity_words();
     const auto known = std::ranges::find(words, q.word, &QuantityWord::word);
@@ -183,13 +183,13 @@ const QuantityWord* word_of(const ParsedQuantity& q) {
 }
 
 std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
-    if (std::string why = missing(e.arms, "arm", q.subject); !why.empty()) return why;
-    const ArmPlan& arm = *e.find_arm(q.subject);
+    if (std::string why = missing(e.arms, "arm", q.adapter); !why.empty()) return why;
+    const ArmPlan& arm = *e.find_arm(q.adapter);
     if (arm.n.empty()) return "";
     if (q.n == 0) q.n = word_of(q)->of_single_samples ? arm.n.back() : e.n_of(arm);
     if (!std::count(arm.n.begin(), arm.n.end(), q.n))
         return fmt::format("the arm '{}' has no rung n = {}: expected one of {}", arm.name, q.n, listed(arm.n, ", "));
-    return why_not_run(e, q.subject, q.n, q.s);
+    return why_not_run(e, q.adapter, q.n, q.s);
 }
 
 }  // namespace
@@ -219,7 +219,7 @@ std::string form_of(const QuantityWord& word) {
     static_assert(
         std::size(brackets) == std::size_t(QuantityOf::compared) + 1, "a form for each subject of a quantity");
     return fmt::format(
-        "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
+        "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.adapter)]);
 }
 
 std::optional<ParsedQuantity> parse_quantity(
@@ -236,19 +236,19 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     if (!q.region.empty())
         if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
     const QuantityWord* known = word_of(q);
-    switch (known ? known->subject : QuantityOf::none) {
+    switch (known ? known->adapter : QuantityOf::none) {
         case QuantityOf::none:
         case QuantityOf::compared: return "";
         case QuantityOf::run: return resolve_run(q, e);
-        case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.subject);
-        case QuantityOf::shape: return missing(e.shapes, "shape", q.subject);
-        case QuantityOf::region: return missing(e.regions, "region", q.subject);
-        case QuantityOf::plate: return missing(e.plates, "plate", q.subject);
+        case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.adapter);
+        case QuantityOf::shape: return missing(e.shapes, "shape", q.adapter);
+        case QuantityOf::region: return missing(e.regions, "region", q.adapter);
+        case QuantityOf::plate: return missing(e.plates, "plate", q.adapter);
     }
     return "";
 }
 
-// ---- Every check of the file, parsed; its quantities are written out in full.
+// ---- Parses every assertion of the file and completes its quantities.
 
 namespace {
 

@@ -1,5 +1,5 @@
-// What values say of each other: names that must exist, boxes on the image, a camera that looks somewhere, shapes
-// with an extent, light.
+// Checks that involve several values: names that must exist, boxes on the image, the camera's direction, shapes with an
+// extent, light.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ void check_box_on_image(ParseContext& context, const std::string& path, const Bo
             image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
 }
 
-/// What the parameters of a kind say of each other, where all of them could be read.
+/// Checks the parameters of a kind against each other, if all of them could be read.
 template <class Any> void check_form(ParseContext& context, const std::string& path, const Any& any) {
     if (!context.is_valid(path + ".kind")) return;
     std::visit(
@@ -98,7 +98,7 @@ void check_light(ParseContext& context) {
         context.report("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
 }
 
-void check_outside_arms(ParseContext& context) {
+void check_external_arms(ParseContext& context) {
     for (const ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
         if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
@@ -109,7 +109,7 @@ void check_outside_arms(ParseContext& context) {
     }
 }
 
-/// No two arms may write their films into one file.
+/// Checks that no two arms write their films into one file.
 void check_film_files(ParseContext& context) {
     const Experiment& e = context.e;
     std::map<std::string, std::string, std::less<>> taken = {{std::string(reference_file), "the references"}};
@@ -149,7 +149,7 @@ void check_names(ParseContext& context) {
                 valid.empty() ? "(none)" : listed(valid, ", "), hint(r.name, valid)));
     }
     check_film_files(context);
-    check_outside_arms(context);
+    check_external_arms(context);
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
         if (const Shape* shape = context.e.find_shape(name))
             context.report(path + name,

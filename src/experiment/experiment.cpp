@@ -1,4 +1,4 @@
-// Questions that an experiment answers about itself.
+// Values derived from an experiment.
 #include "experiment/experiment.h"
 
 #include <algorithm>

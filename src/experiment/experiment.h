@@ -1,5 +1,5 @@
-// An experiment as it was written: every number of a run, in the units of its key. Lengths in scene units (m),
-// radiance in W/(sr m^2), angles in degrees, albedos in [0, 1]; y is up; the camera space is right-handed.
+// An experiment as it is written: every number of a run, in the units of its key. Lengths in scene units (m), radiance
+// in W/(sr m^2), angles in degrees, albedos in [0, 1]; y is up; the camera space is right-handed.
 #pragma once
 
 #include <array>
@@ -20,39 +20,39 @@
 
 namespace crescent::inline experiment {
 
-// ---- Figures that someone published for an experiment, to stand beside the measured ones. JSON:
+// ---- Published values for an experiment, shown next to the measured ones. JSON:
 //   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces":
 //   {"NAME": 0.29}}
-// Meters are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
+// Metrics are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
 
-/// Figures that were published for an experiment, by arm, sample count, exponent and metric.
+/// Values that were published for an experiment, by arm, sample count, exponent and metric.
 class Published {
 public:
     std::string source;
-    std::optional<std::uint32_t> seed;  // of the published run, where it is known
+    std::optional<std::uint32_t> seed;  // of the published run, if known
 
-    /// Empty where none was published.
-    std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& meter) const;
-    /// Of the furnace of this name; empty where none was published.
+    /// Returns empty if none was published.
+    std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& metric) const;
+    /// Returns the value of the furnace of this name; empty if none was published.
     std::optional<double> furnace(const std::string& name) const;
 
-    std::map<std::tuple<std::string, std::uint64_t, double, std::string>, double> runs;  // arm, n, s, meter
+    std::map<std::tuple<std::string, std::uint64_t, double, std::string>, double> runs;  // arm, n, s, metric
     std::map<std::string, double> furnaces;
 };
 
-/// Nothing where `path` is empty; throws InputError where the file cannot be read or is not of the form above.
+/// Returns nothing if `path` is empty; throws InputError if the file cannot be read or does not have the form above.
 std::optional<Published> load_published(const std::string& path);
-/// The same from text, `name` standing for the file in messages.
+/// The same from text; `name` is the file's name in messages.
 Published parse_published(std::string_view text, const std::string& name);
 
-/// A whole text file of at most 4 MiB; `what` names it in the InputError where it cannot be read.
+/// Reads a whole text file of at most 4 MiB; `what` names it in the InputError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what);
 
 }  // namespace crescent::inline experiment
 
-// ---- The one list of plates: the pictures that an experiment can ask for. A new one is a file of plates/ with its
-// painter, draw_PAINTER(Sheet&), and one line here; the list feeds the keys of experiments and their schema, `crescent
-// list plates`, the painters, the report and the tests.
+// ---- The list of plates (figures) that an experiment can request. To add one, add a file in plates/ with its painter,
+// draw_PAINTER(Sheet&), and a line here; the list determines the keys of experiments and their schema, `crescent list
+// plates`, the painters, the report and the tests.
 //
 // plate(name, painter, fewest runs, most runs, look, what it shows)
 
@@ -64,24 +64,24 @@ std::string read_text(const std::string& path, std::string_view what);
     plate(ladder, strip, 1, 64, photograph, "the rungs of arms side by side, each with a part enlarged") \
     plate(exponent, strip, 1, 4, photograph, "the runs of the exponent control, each with a part enlarged") \
     plate(surround, strip, 1, 4, photograph, "a part of runs enlarged, side by side") \
-    plate(reference, reference, 0, 1, instrument, "the reference with the regions, and their means") \
-    plate(heat, heat, 1, 4, instrument, "where runs differ from the reference, on one scale") \
-    plate(rose, rose, 1, 4, instrument, "densities in the plane of the normal and R, and over the hemisphere") \
+    plate(reference, reference, 0, 1, backend, "the reference with the regions, and their means") \
+    plate(heat, heat, 1, 4, backend, "where runs differ from the reference, on one scale") \
+    plate(rose, rose, 1, 4, backend, "densities in the plane of the normal and R, and over the hemisphere") \
     plate(meters, meters, 0, 64, drawing, "the table of what was measured, and RMSE against N")
 // clang-format on
 
 namespace crescent::inline experiment {
 
 #define CRESCENT_NAME(name, ...) name,
-/// One of the plates, by its word in an experiment.
+/// One of the plates, by its name in an experiment.
 enum class PlateKind { CRESCENT_PLATES(CRESCENT_NAME) };
 #undef CRESCENT_NAME
 
-/// A photograph goes through the display chain and no number stands on it; an instrument reads the float films; a
-/// drawing is an instrument of lines and text alone, which is written as SVG too.
-enum class PlateLook { photograph, instrument, drawing };
+/// A photograph is tone mapped and has no numbers on it; `backend` plates show the float films; a drawing consists only
+/// of lines and text and is written as SVG too.
+enum class PlateLook { photograph, backend, drawing };
 
-/// What the lists of plates state of one.
+/// The data of a plate in the lists of plates.
 struct PlateInfo {
     std::string_view name;
     std::size_t least, most;  // runs that it shows
@@ -95,39 +95,39 @@ inline constexpr std::array plate_infos = {CRESCENT_PLATES(CRESCENT_INFO)};
 #undef CRESCENT_INFO
 constexpr const PlateInfo& plate_info(PlateKind kind) { return plate_infos[static_cast<std::size_t>(kind)]; }
 
-/// One sampler with its ladder: rungs are prefixes of one stream.
+/// One sampler with its sample counts, which are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
-    std::string sampler;           // a word of arms/all.h; "": what exec or plugin names
+    std::string sampler;           // a name of samplers/all.h; "": given by exec or plugin
     std::vector<std::uint64_t> n;  // ascending samples per pixel
     SourceLocation at;
     std::optional<std::string> exec = {}, plugin = {};  // a command, the file of a shared library
 };
 
-/// The exponent control: `arm` again at each s, which changes the pdf, the BRDF and the reference.
+/// The exponent control: `arm` repeated at each s, which changes the pdf, the BRDF and the reference.
 struct ExponentControl {
     std::string arm;
     std::uint64_t n = 0;
     std::vector<double> s;
-    std::string shape;  // whose s is meant: SceneData::s_of
+    std::string shape;  // whose s is used: SceneData::s_of
     SourceLocation at;
 };
 
-/// A box of pixels under a name; both ends inclusive, origin bottom-left.
+/// A named box of pixels; both ends inclusive, origin bottom-left.
 struct Region {
     std::string name;
     Box box;
     SourceLocation at;
 };
 
-/// The deterministic quadrature, or the published note's Monte Carlo estimate.
+/// The deterministic quadrature, or the article's Monte Carlo estimate.
 enum class ReferenceKind { quadrature, note };
 
-/// What the meters compare with. The quadrature is always computed.
+/// The reference of the metrics. The quadrature is always computed.
 struct ReferencePlan {
-    ReferenceKind kind = ReferenceKind::quadrature;  // the one that the meters use
-    bool monte_carlo = false;     // whether the note's is computed too where the meters do not use it
-    std::uint32_t seed = 0;       // of the note's Monte Carlo reference
+    ReferenceKind kind = ReferenceKind::quadrature;  // the one that the metrics use
+    bool monte_carlo = false;     // whether the article's is computed too if the metrics do not use it
+    std::uint32_t seed = 0;       // of the article's Monte Carlo reference
     std::uint64_t lobe_spp = 32;  // Phong-sampled lobe x fill
     std::uint64_t disk_spp = 96;  // samples on each light
 };
@@ -135,17 +135,17 @@ struct ReferencePlan {
 /// The whole BRDF, or its lobe without the Lambert part.
 enum class FurnacePart { combined, lobe };
 
-/// White furnace: L_i = 1, R = n. Expected: rho_d + rho_s, or rho_s for the lobe alone (as Y).
+/// White furnace: L_i = 1, R = n. Expected: rho_d + rho_s; for the lobe alone, rho_s (as Y).
 struct FurnacePlan {
     std::string name;
     std::string arm;
     FurnacePart part = FurnacePart::combined;
-    std::string shape;  // whose material
+    std::string shape;  // whose material is used
     std::uint64_t n = 0;
     SourceLocation at;
 };
 
-/// One picture. `runs` names what it shows; crops are boxes in image pixels, or the whole frame.
+/// One figure. `runs` names what it shows; crops are boxes in image pixels, or the whole frame.
 struct PlateRun {
     std::string arm;
     std::uint64_t n = 0;
@@ -156,31 +156,31 @@ struct PlatePlan {
     PlateKind kind = PlateKind::hero;
     std::vector<PlateRun> runs;
     std::optional<Box> crop;
-    std::string caption;  // stands alone under the picture
+    std::string caption;  // shown alone under the picture
     SourceLocation at;
 };
 
-/// A comparison that must hold. Quantities are looked up by name (see meters/quantity.h).
+/// A comparison that must hold. Quantities are looked up by name (see metrics/assertions.h).
 struct AssertionPlan {
     std::string name;
-    std::string text;     // as the file has it, e.g. "rmse.H(phong) < rmse.H(cosine)"
-    Comparison check;     // the same, parsed; every n is said
+    std::string text;     // as in the file, e.g. "rmse.H(phong) < rmse.H(cosine)"
+    Comparison check;     // the same, parsed; every n is filled in
     bool median = false;  // over seeds, else at the published seed
     SourceLocation at;
 };
 
-/// A scene, and what is asked of it.
+/// A scene, and the computations requested for it.
 struct Experiment : SceneData {
     std::string file;  // as given
     std::string title;
     std::vector<std::string> overrides;  // PATH=VALUE, as given
     std::uint32_t seed = 0;
-    std::uint64_t n = 0;  // samples per pixel where an arm, plate, check or exponent control gives none; 0: none given
-    int seeds = 1;        // how many seeds the bands are made of; the first is `seed`
+    std::uint64_t n = 0;  // default samples per pixel; 0: none given
+    int seeds = 1;        // number of seeds of the bands; the first is `seed`
     double exposure = 1;
     std::optional<Theme> theme;  // of plates; none: dark
     double firefly_k = 4;
-    bool note_evidence = false;  // whether the note's explanations are put to measurements of their own
+    bool note_evidence = false;  // whether the article's explanations are tested by measurements
     std::vector<ArmPlan> arms;
     std::optional<ExponentControl> exponent;
     std::vector<Region> regions;
@@ -189,36 +189,37 @@ struct Experiment : SceneData {
     std::vector<PlatePlan> plates;
     std::vector<AssertionPlan> assertions;
     std::optional<std::string> published;          // path of a JSON of published figures, resolved against `file`
-    std::optional<Published> figures;              // what it says, once it is read: by load(), else by run()
-    std::map<std::string, SourceLocation> places;  // "camera.eye" -> where it was written
+    std::optional<Published> figures;              // its content, once read: by load(), else by run()
+    std::map<std::string, SourceLocation> places;  // "camera.eye" -> place in the file
 
-    /// This experiment with another s: on the shape that s() is read from and on all that inherit it.
+    /// Returns this experiment with another s: for the shape that s() is read from and all that inherit it.
     Experiment with_s(double s) const;
-    /// The n meant where none is named: the experiment's own where `arm` has that rung, else the arm's highest.
+    /// Returns the default n of an arm: the experiment's own if `arm` has that sample count, else the arm's highest.
     std::uint64_t n_of(const ArmPlan& arm) const;
     const ArmPlan* find_arm(std::string_view name) const;
     const Region* find_region(std::string_view name) const;
-    /// Where a key was written; a key that was not, stands where its table does.
+    /// Returns where a key was written; for a missing key, the place of its table.
     SourceLocation place_of(const std::string& path) const;
 };
 
-/// Reads and checks a whole file; throws one InputError with every mistake in it.
-/// `overrides` are "path=value" as given to --set.
+/// Reads and checks a whole file; throws one InputError with every mistake in it. `overrides` are "path=value" as given
+/// to --set.
 Experiment load(const std::string& path, const std::vector<std::string>& overrides = {});
-/// The same from text, `name` standing for the file in messages.
+/// The same from text; `name` is the file's name in messages.
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
 
-/// With the published figures read, where it names some and holds none yet.
+/// Returns the experiment with its published values read, if it names some and has none yet.
 Experiment with_figures(Experiment experiment);
 
-/// The experiment as a file that is read as the same experiment: every key with its effective value, in one layout.
+/// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
+/// layout.
 std::string canonical_text(const Experiment& experiment);
-/// What identifies an experiment: XXH3 of every value but the number of seeds and, in place of their path, of the
-/// published figures. Computed anew at each call, so that it is right for an experiment that was made or changed in
-/// code.
+/// Returns the identity of an experiment: XXH3 of every value except the number of seeds; the content of the published
+/// values is used instead of their path. Computed at each call, so that it is correct for an experiment that was made
+/// or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 
-/// The keys with types, units, ranges and defaults, made from the table that parses them.
+/// Returns the keys with types, units, ranges and defaults, made from the table that parses them.
 std::string schema_text();
 std::string schema_json();
 

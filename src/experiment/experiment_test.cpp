@@ -1,4 +1,5 @@
-// Good files: what-ifs in one line, inherited values, stable hashes, and a manual that agrees with the parser.
+// Valid files: overrides on the command line, inherited values, stable hashes, and a manual that agrees with the
+// parser.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,7 +67,7 @@ TEST(WhatIfs, AreOneLineEach) {
     EXPECT_THAT(gallery({"arms.second={sampler=\"cosine\", n=9}"}).find_arm("second")->n, ElementsAre(9u));
 }
 
-TEST(WhatIfs, OfTheExponentMoveEverySurfaceAndEveryRunThatNamesNone) {
+TEST(WhatIfs, ExponentAppliesToAllThatNameNone) {
     const Experiment e = gallery({"sphere.s=64"});
     EXPECT_EQ(e.s(), 64);
     for (const Shape& shape : e.shapes) EXPECT_EQ(shape.material.s, 64) << shape.name;
@@ -103,7 +104,7 @@ TEST(WhatIfs, MeetTheChecksOfTheFile) {
         testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
 }
 
-TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
+TEST(AnotherS, ChangesTheShapeAndAllThatInheritIt) {
     const Experiment e = load(folder + "three-glosses.toml").with_s(7);
     EXPECT_EQ(e.s(), 7);
     EXPECT_EQ(e.find_shape("gloss")->material.s, 7);
@@ -122,7 +123,7 @@ TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
     EXPECT_THROW((void)parse(room + "[arms.phong]\nn = 4\n", "room"), InputError);
 }
 
-/// A good value of a key, as TOML.
+/// Returns a valid value of a key, as TOML.
 std::string example(const Key& key) {
     const double x = key.range.low > 0 ? key.range.low : 1;
     switch (key.type) {
@@ -147,15 +148,15 @@ std::string example(const Key& key) {
     return "";
 }
 
-/// Sets every key of a section to a good value; the parser takes all of them. Returns how many there are.
+/// Sets every key of a section to a valid value, which the parser accepts. Returns the number of keys.
 std::size_t take_every_key(const Section& section, const std::string& path) {
     std::size_t count = section.keys.size();
     const std::string prefix = path.empty() ? "" : path + ".";
     for (const Key& key : section.keys) {
         const std::string at = prefix + std::string(key.name),
-                          say = complaint({fmt::format("{}={}", at, example(key))});
-        EXPECT_THAT(say, testing::Not(HasSubstr("unknown key"))) << at;
-        EXPECT_THAT(say, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
+                          message = complaint({fmt::format("{}={}", at, example(key))});
+        EXPECT_THAT(message, testing::Not(HasSubstr("unknown key"))) << at;
+        EXPECT_THAT(message, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
         EXPECT_FALSE(key.means.empty()) << at;
         EXPECT_EQ(key.need == Requirement::required, key.default_value.empty()) << at;
         EXPECT_THAT(schema_text(), HasSubstr(fmt::format("  {}: ", key.name)));
@@ -176,13 +177,13 @@ TEST(TheSchema, NamesTheKeysThatTheParserTakes) { EXPECT_GT(take_every_key(schem
 
 TEST(TheSchema, TellsEditorsOfEveryKey) {
     const std::string json = schema_json();
-    std::size_t told = 0;
-    for (std::size_t at = 0; (at = json.find(" Expects ", at)) != std::string::npos; ++at) ++told;
+    std::size_t describe = 0;
+    for (std::size_t at = 0; (at = json.find(" Expects ", at)) != std::string::npos; ++at) ++describe;
     // A titled family is described twice: as tables under names and as a list.
     std::size_t titled = 0;
     for (const Section& section : schema().sections)
         titled += section.many == Multiplicity::titled ? section.keys.size() : 0;
-    EXPECT_EQ(told, take_every_key(schema(), "") + titled);
+    EXPECT_EQ(describe, take_every_key(schema(), "") + titled);
 }
 
 TEST(TheSchema, JoinsTheKindsThatTakeAKeyInWords) {
@@ -211,21 +212,21 @@ TEST(PublishedFigures, AreLookedUpByArmNSAndMeter) {
 }
 
 TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
-    const auto say = [](const char* text) -> std::string {
+    const auto message = [](const char* text) -> std::string {
         try {
             (void)parse_published(text, "p.json");
         } catch (const InputError& error) { return error.what(); }
         return "";
     };
-    EXPECT_THAT(say("{\n  \"runs\": [}"), HasSubstr("p.json:2:12: not JSON"));
-    EXPECT_THAT(say("[]"), HasSubstr("expected an object"));
-    EXPECT_THAT(say("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
-    EXPECT_THAT(say("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
-    EXPECT_THAT(say("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"),
+    EXPECT_THAT(message("{\n  \"runs\": [}"), HasSubstr("p.json:2:12: not JSON"));
+    EXPECT_THAT(message("[]"), HasSubstr("expected an object"));
+    EXPECT_THAT(message("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
+    EXPECT_THAT(message("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
+    EXPECT_THAT(message("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"),
         HasSubstr("/runs/0/rmse.H: expected a number"));
-    EXPECT_THAT(say("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
-    EXPECT_THAT(say("{\"rums\": []}"), HasSubstr("/rums"));
-    EXPECT_EQ(say("{}"), "");
+    EXPECT_THAT(message("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
+    EXPECT_THAT(message("{\"rums\": []}"), HasSubstr("/rums"));
+    EXPECT_EQ(message("{}"), "");
 }
 
 }  // namespace

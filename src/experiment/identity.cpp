@@ -1,4 +1,5 @@
-// What an experiment is, computed from its values: the text that says all of them, and the hash of that text.
+// The identity of an experiment, computed from its values: the text that contains all of them, and the hash of that
+// text.
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -21,7 +22,7 @@ std::string toml_text(std::string_view text) {
     return out + '"';
 }
 
-/// The shortest text that is read as the same double. TOML's integer -0 is 0.
+/// Returns the shortest text that is read as the same double. TOML's integer -0 is 0.
 std::string number(double x) { return x == 0 && std::signbit(x) ? "-0.0" : fmt::format("{}", x); }
 
 std::string list(const std::vector<double>& all) {
@@ -51,7 +52,7 @@ std::string toml(const Key& key, const Value& value) {
     }
 }
 
-/// A number of 0 and an empty list stand for an optional key that was not given.
+/// A number of 0 and an empty list represent an optional key that was not given.
 bool is_given(const Key& key, const Value& value) {
     if (key.type == Type::sampler) return !value.text.empty();
     if (key.need != Requirement::optional) return true;
@@ -126,13 +127,13 @@ private:
     std::string text_;
 };
 
-/// Every figure, so that another content of the same file is another experiment.
+/// Returns every published value, so that other content of the same file is another experiment.
 std::string text_of(const Published& published) {
     std::string out =
         fmt::format("{} {}\n", toml_text(published.source), published.seed ? std::to_string(*published.seed) : "");
     for (const auto& [key, value] : published.runs) {
-        const auto& [arm, n, s, meter] = key;
-        out += fmt::format("{} {} {} {} {}\n", toml_text(arm), n, s, toml_text(meter), value);
+        const auto& [arm, n, s, metric] = key;
+        out += fmt::format("{} {} {} {} {}\n", toml_text(arm), n, s, toml_text(metric), value);
     }
     for (const auto& [name, value] : published.furnaces) out += fmt::format("{} {}\n", toml_text(name), value);
     return out;
@@ -145,10 +146,10 @@ std::string canonical_text(const Experiment& experiment) { return Writer(experim
 std::uint64_t hash(const Experiment& experiment) {
     Experiment counted = experiment;
     counted.seeds = 1;                                  // a longer series is more of the same experiment
-    if (experiment.figures) counted.published.reset();  // what they say counts, not where they are
+    if (experiment.figures) counted.published.reset();  // their content counts, not their path
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);
-    if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code: no key says it
+    if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code
         text += toml_text(experiment.s_of);
     return XXH3_64bits(text.data(), text.size());
 }

@@ -1,4 +1,5 @@
-// An experiment's identity is computed from its values: whatever changes an output changes it, and nothing else does.
+// An experiment's identity is computed from its values: every value that changes an output changes it, and nothing else
+// does.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +18,7 @@ const std::string room =
     "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n"
     "[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n";
 
-/// A room with something of every section and a shape of every kind.
+/// Returns a room with an element of every section and a shape of every kind.
 Experiment with_everything() {
     return parse(room + R"toml(
 [shapes.lobe]
@@ -108,7 +109,7 @@ check = "rmse.H(phong) < rmse.H(cosine, n=4)"
         "everything.toml", {"title=All", "n=16", "published=none.json"});
 }
 
-/// Another value of the same key.
+/// Returns another value of the same key.
 Value changed(const Key& key, Value value) {
     value.flag = !value.flag;
     value.word = key.words.empty() ? value.word : (value.word + 1) % static_cast<int>(key.words.size());
@@ -119,7 +120,8 @@ Value changed(const Key& key, Value value) {
     return value;
 }
 
-/// Changes each key of each object in turn, but for the number of seeds. Returns how many keys of the table were met.
+/// Changes each key of each object in turn, except the number of seeds. Returns the number of keys of the table that
+/// were tested.
 std::size_t change_each(const Section& section, void* object, const Experiment& e, std::uint64_t before) {
     std::size_t met = 0;
     Value value, kind;
@@ -154,7 +156,7 @@ std::size_t keys_of(const Section& section) {
     return all;
 }
 
-TEST(Identity, SeesTheColourOfALobeAndTakesAGreyOneForItsNumber) {
+TEST(Identity, GreyColourEqualsItsNumber) {
     const auto text_of = [](const char* value) {
         return canonical_text(parse(room, "a.toml", {std::string("ball.rho_s=") + value, "ball.s=9"}));
     };

@@ -1,6 +1,6 @@
-// `crescent schema --json`: the table as a JSON Schema of draft 7, the draft that TOML editors read (Taplo, Even
-// Better TOML). It holds what one value can say of itself: type, range, words, which keys a kind of shape needs. What
-// hangs on several values (names that must exist, unit vectors, boxes inside the image) is for the reader to check.
+// `crescent schema --json`: the table as a JSON Schema of draft 7, the draft that TOML editors read (Taplo, Even Better
+// TOML). It contains the constraints on single values: type, range, words, the keys that a kind of shape needs. The
+// parser checks constraints on several values (names that must exist, unit vectors, boxes inside the image).
 #include <nlohmann/json.hpp>
 
 #include "experiment/assertion.h"
@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$";  // names become file names
 constexpr int most_schema_characters = 4096, most_schema_items = 64, longest_title = 200;
 
-/// A number of the key's range; box coordinates and counts are whole.
+/// Returns a number of the key's range; box coordinates and counts are integers.
 Json number(const Key& key, bool whole) {
     Json out = {{"type", whole ? "integer" : "number"}};
     if (key.range.low == key.range.high) return out;
@@ -60,7 +60,7 @@ Json type_of(const Key& key) {
     return {};
 }
 
-/// What an editor shows beside the key.
+/// Returns what an editor shows for the key.
 std::string description(const Key& key) {
     std::string text = std::string(key.means) + " Expects " + expectation(key) + ".";
     if (key.need != Requirement::required) text += " Default: " + std::string(key.default_value) + ".";
@@ -79,7 +79,7 @@ Json property(const Key& key) {
     return out;
 }
 
-/// For tables with a key `kind`: which keys that kind needs, and that it has none of the other kinds'.
+/// For tables with a key `kind`: the keys that each kind needs, and that it has no keys of other kinds.
 Json kinds_of(const Section& section, const std::vector<std::string>& kinds) {
     Json rules = Json::array();
     for (const std::string& kind : kinds) {
@@ -116,7 +116,7 @@ Json table(const Section& section) {
     return out;
 }
 
-/// A table, tables under names of the user's choice, or a list of tables.
+/// Returns a table, tables under names of the user's choice, or a list of tables.
 Json family(const Section& section) {
     const Json one = table(section);
     const Json listed = {{"type", "array"}, {"items", one}, {"description", section.means}};
@@ -131,7 +131,7 @@ Json family(const Section& section) {
             return named;
         case Multiplicity::titled: break;
     }
-    named["additionalProperties"] = one;  // [assertions."any text"], or a list whose tables say their own name
+    named["additionalProperties"] = one;  // [assertions."any text"], or a list whose tables contain their own name
     Json item = one;
     item["properties"]["name"] = {{"type", "string"}, {"minLength", 1}, {"maxLength", longest_title}};
     item["required"].push_back("name");

@@ -1,4 +1,4 @@
-// Mistakes of a reader's file: each is found, where it stands, in words that help.
+// Mistakes in a user's file: each is found at its place, with a helpful message.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// One key a line, so that a case can name its place.
+// One key per line, so that a case can name its place.
 const std::string good = R"toml(seed = 5
 n = 16
 [image]
@@ -66,7 +66,7 @@ ok.check = "rmse.H(phong) < rmse.H(cosine)"
 )toml";
 
 struct Mistake {
-    std::string old_text, new_text;  // an edit of the good file
+    std::string old_text, new_text;  // an edit of the valid file
     unsigned line, column;
     std::string phrase;
     std::size_t mistakes = 1;
@@ -261,12 +261,12 @@ TEST(Mistakes, ANameGivenTwiceDoesNotHideTheRest) {
     }
 }
 
-TEST(Mistakes, AFileThatIsNotThereOrAFolderIsTheReadersMistake) {
+TEST(Mistakes, MissingFileAndFolderAreInputErrors) {
     EXPECT_THROW((void)load("/nowhere/at/all.toml"), InputError);
     EXPECT_THROW((void)load("/"), InputError);
 }
 
-TEST(Mistakes, MoreDiskLightsThanKernelsHoldAreRefusedWhereTheFirstOfThemStands) {
+TEST(Mistakes, TooManyDiskLightsAreRejected) {
     std::string text = good;
     for (int k = 0; k < 64; ++k)
         text += fmt::format(

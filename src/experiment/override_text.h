@@ -1,11 +1,11 @@
-// The two parts of "path=value", as --set takes it.
+// The two parts of "path=value", as --set accepts it.
 #pragma once
 
 #include <string_view>
 
 namespace crescent::inline experiment {
 
-/// Where the path ends: at the first '=' that is not in quotes; npos where there is none.
+/// Returns where the path ends: at the first '=' outside quotes; npos if there is none.
 inline std::size_t end_of_path(std::string_view override_text) {
     char quote = 0;
     for (std::size_t i = 0; i < override_text.size(); ++i) {

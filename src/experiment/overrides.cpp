@@ -1,5 +1,5 @@
-// --set path=value: the tree is changed before it is read, so that an override meets the same checks as the file.
-// A path is a full one (shapes.sphere.s) or starts at a name (sphere.s); list items are .0 or [0].
+// --set path=value: the tree is changed before it is read, so that an override passes the same checks as the file. A
+// path is a full one (shapes.sphere.s) or starts at a name (sphere.s); list items are .0 or [0].
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ std::optional<std::size_t> index_of(const std::string& segment) {
     return error == std::errc{} && end == segment.data() + segment.size() ? std::optional(index) : std::nullopt;
 }
 
-/// Whether the table has this path, names of the user's choice taken as they come.
+/// Returns whether the table has this path; names of the user's choice are accepted as they are.
 bool in_table(const Section& section, const Segments& path, std::size_t i) {
     if (i >= path.size()) return true;
     if (section.find_key(path[i])) return i + 1 == path.size() || (i + 2 == path.size() && index_of(path[i + 1]));
@@ -88,9 +88,9 @@ public:
     }
 
 private:
-    void fail(const std::string& say) { draft_.report(written_, place_, say); }
+    void fail(const std::string& message) { draft_.report(written_, place_, message); }
 
-    /// TOML where it is TOML, else the bare words as text.
+    /// Parses a value as TOML if it is TOML, else as bare text.
     bool parse_value(const std::string& text, Node& value) {
         try {
             Node tree = read_toml("value = " + text, place_.file);
@@ -106,7 +106,7 @@ private:
         return true;
     }
 
-    /// Completes a path that starts at a name with the family the name belongs to.
+    /// Completes a path that starts at a name with the family of that name.
     bool resolve(Segments& path) {
         if (in_table(schema(), path, 0)) return true;
         std::vector<Segments> valid, all;
@@ -133,7 +133,7 @@ private:
                        path[0], hint(path[0], words))),
                    false;
         if (!valid.empty()) path = valid[0];
-        else if (!top) path = all[0];  // the reader says what is wrong with its key
+        else if (!top) path = all[0];  // the parser reports what is wrong with its key
         return true;
     }
 

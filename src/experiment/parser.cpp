@@ -1,4 +1,4 @@
-// Mistakes found so far, each under the path of the value that it spoils.
+// Mistakes found so far, each under the path of its value.
 #include "experiment/parser.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void ParseContext::report(const std::string& path, const std::string& message) {
     report(path, e.place_of(path), message);
 }
 
-// ---- The table walked over the tree: which tables and keys there are, which are missing, what each value is.
+// ---- Walks the table over the tree: which tables and keys there are, which are missing, the type of each value.
 
 namespace {
 
@@ -66,7 +66,7 @@ public:
         for (const Section& sub : section.sections) family(sub, node, join(path, sub.name), at, object);
     }
 
-    std::vector<std::string> siblings;  // names beside the table that is being read
+    std::vector<std::string> siblings;  // names in the same list as the table that is being read
 
 private:
     static std::string kind_of(const Section& section, const Node& node) {
@@ -91,7 +91,7 @@ private:
     }
 
     void missing_key(const Key& key, const std::string& path, const SourceLocation& at, const std::string& kind) {
-        if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is needed
+        if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is required
         const std::string name = path.substr(path.rfind('.') + 1);
         const bool made_by_override = at.line == 0 && !siblings.empty();
         draft_.report(join(path, key.name), at,
@@ -120,7 +120,7 @@ private:
     }
 
     void default_value(const Key& key, const std::string& path, void* object) {
-        if (key.type == Type::sampler) {  // the arm's own name, where nothing stands in its place
+        if (key.type == Type::sampler) {  // the arm's own name, unless exec or plugin is given
             const auto& arm = *static_cast<const ArmPlan*>(object);
             if (arm.exec || arm.plugin) return;
             Node name;
@@ -132,7 +132,7 @@ private:
             object);
     }
 
-    /// A table, or all tables of a family.
+    /// Reads a table, or all tables of a family.
     void family(const Section& section, const Node& parent, const std::string& path, const SourceLocation& parent_at,
         void* object) {
         const Member* member = parent.find(section.name);
@@ -211,7 +211,7 @@ private:
         table(section, member.value, own, at, section.family.add(object, name, at));
     }
 
-    /// The name of a table in a list; false where it has none that is new.
+    /// Reads the name of a table in a list; returns false if it has no new name.
     bool title(
         const Member& member, const std::string& path, std::size_t index, std::string& name, SourceLocation& at) {
         const Member* own = member.value.find("name");
@@ -234,7 +234,7 @@ private:
 
     ParseContext& draft_;
     std::map<std::string, SourceLocation> titles_;  // names of a list so far
-    bool in_list_ = false;                          // the table that is being read stands in one, and says its own name
+    bool in_list_ = false;                          // the table that is read is in a list with its own name
 };
 
 }  // namespace
@@ -246,8 +246,9 @@ void read_tree(ParseContext& context, const Section& table, const Node& root, vo
 
 void read_tree(ParseContext& context, const Node& root) { read_tree(context, schema(), root, &context.e); }
 
-// ---- What depends on other keys is filled in: every Lambert surface's s, every arm's ladder, the n of runs that name
-// none. Then each run that a plate or the exponent control asks for is checked to be one that the experiment makes.
+// ---- Fills in values that depend on other keys: every Lambert surface's s, every arm's sample counts, the n of runs
+// that name none. Then checks that each run requested by a plate or the exponent control is one that the experiment
+// makes.
 
 namespace {
 
@@ -287,8 +288,9 @@ void resolve_ladders(ParseContext& context) {
     }
 }
 
-/// The n of a run, its arm's where it names none; complains where the arm has no such rung.
-std::uint64_t rung(ParseContext& context, const std::string& path, const std::string& arm_name, std::uint64_t n) {
+/// Returns the n of a run, by default its arm's; reports an error if the arm has no such sample count.
+std::uint64_t sample_count(
+    ParseContext& context, const std::string& path, const std::string& arm_name, std::uint64_t n) {
     const ArmPlan* arm = context.e.find_arm(arm_name);
     if (!arm || arm->n.empty()) return n;
     if (n == 0) return context.e.n_of(*arm);
@@ -331,7 +333,8 @@ void resolve_plate(ParseContext& context, PlatePlan& plate) {
             for (const double s : control->s) runs.push_back({run.arm, control->n, s});
             continue;
         }
-        run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(context, own + ".n", run.arm, run.n);
+        run.n =
+            open && plate.kind == PlateKind::hero ? arm->n.back() : sample_count(context, own + ".n", run.arm, run.n);
         if (context.is_valid(own + ".n") && context.is_valid(own + ".s")) check_s(context, own + ".s", run);
         runs.push_back(run);
     }
@@ -357,12 +360,12 @@ void resolve_runs(ParseContext& context) {
     resolve_ladders(context);
     if (context.e.exponent) {
         ExponentControl& control = *context.e.exponent;
-        if (context.is_valid("exponent.n")) control.n = rung(context, "exponent.n", control.arm, control.n);
+        if (context.is_valid("exponent.n")) control.n = sample_count(context, "exponent.n", control.arm, control.n);
     }
     for (PlatePlan& plate : context.e.plates) resolve_plate(context, plate);
 }
 
-// ---- A file, or text, and its overrides -> Experiment; every mistake in one InputError, in file order.
+// ---- Reads a file, or text, and its overrides into an Experiment; every mistake is in one InputError, in file order.
 
 namespace {
 
@@ -387,7 +390,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
 
 }  // namespace
 
-/// In file order; overrides come after the file, as given.
+/// In file order; overrides follow the file, as given.
 void throw_if_any(std::vector<Diagnostic> all) {
     if (all.empty()) return;
     std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted;  // equals keep their order

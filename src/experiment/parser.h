@@ -12,7 +12,7 @@
 
 namespace crescent::inline experiment {
 
-/// A value that names something else in the file.
+/// A value that refers to another name in the file.
 struct Reference {
     Type type;
     std::string path, name;
@@ -29,34 +29,36 @@ struct ParseContext {
     bool is_valid(const std::string& path) const { return !invalid_paths.contains(path); }
 };
 
-/// "; did you mean 'phong'?", or nothing where no valid word is near.
+/// Returns "; did you mean 'phong'?", or nothing if no valid word is near.
 std::string hint(std::string_view word, const std::vector<std::string>& valid);
 
-/// Checks one value against its key; complains and returns false where it does not fit.
+/// Checks one value against its key; reports an error and returns false if it does not fit.
 bool read_value(ParseContext& context, const Key& key, const Node& node, const std::string& path, Value& value);
 
 /// Walks the table over the tree: unknown and missing keys, types, ranges; fills context.e.
 void read_tree(ParseContext& context, const Node& root);
-/// The same over another table: values go into `object`, places and diagnostics into the context.
+/// The same for another table: values go into `object`, places and diagnostics into the context.
 void read_tree(ParseContext& context, const Section& table, const Node& root, void* object);
 
-/// Throws one InputError with all diagnostics in file order; returns where there is none.
+/// Throws one InputError with all diagnostics in file order; returns if there is none.
 void throw_if_any(std::vector<Diagnostic> all);
 
 /// Puts "path=value" overrides into the tree.
 void apply_overrides(ParseContext& context, Node& root, const std::vector<std::string>& overrides);
 
-/// What keys say of each other: names that must exist, regions on the image, the camera, degenerate shapes.
+/// Checks keys against each other: names that must exist, regions on the image, the camera, degenerate shapes.
 void check_geometry(ParseContext& context);
 void check_names(ParseContext& context);
 
-/// Fills in what depends on other keys (s, n, the rungs of ladder plates) and checks runs against arms and exponents.
+/// Fills in what depends on other keys (s, n, the sample counts of ladder plates) and checks runs against arms and
+/// exponents.
 void resolve_runs(ParseContext& context);
 
-/// Why the experiment makes no run of this arm at this s (0: its own); "" where it does. The rung is checked apart.
+/// Returns why the experiment makes no run of this arm at this s (0: its own); "" if it does. Does not check the sample
+/// count.
 std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s);
 
-/// Parses every check and makes sure that all it names will be measured.
+/// Parses every assertion and checks that all it names will be measured.
 void resolve_assertions(ParseContext& context);
 
 }  // namespace crescent::inline experiment

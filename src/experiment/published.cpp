@@ -1,4 +1,5 @@
-// Published figures from JSON. A place in the file is known for wrong syntax; elsewhere a JSON pointer stands for it.
+// Published values from JSON. For wrong syntax the place in the file is known; for other errors a JSON pointer is
+// given.
 #include "experiment/experiment.h"
 
 #include <fmt/format.h>
@@ -43,7 +44,7 @@ public:
     }
 
 private:
-    static bool is_meter(const std::string& key) {
+    static bool is_metric(const std::string& key) {
         return key.starts_with("rmse.") || key.starts_with("var.") || key == "fireflies" || key == "horizon_frac" ||
             key == "y_mean" || key == "rmse_frame";
     }
@@ -67,7 +68,7 @@ private:
             fail(at, "an object with arm (text), n (integer) and s (number)", run);
         for (const auto& [key, value] : run.items()) {
             if (key == "arm" || key == "n" || key == "s") continue;
-            if (!is_meter(key))
+            if (!is_metric(key))
                 fail(at + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
             if (!value.is_number()) fail(at + "/" + key, "a number", value);
             const bool fresh =
@@ -93,8 +94,8 @@ private:
 }  // namespace
 
 std::optional<double> Published::find(
-    const std::string& arm, std::uint64_t n, double s, const std::string& meter) const {
-    const auto it = runs.find({arm, n, s, meter});
+    const std::string& arm, std::uint64_t n, double s, const std::string& metric) const {
+    const auto it = runs.find({arm, n, s, metric});
     return it == runs.end() ? std::nullopt : std::optional(it->second);
 }
 

@@ -1,4 +1,4 @@
-// Where films go.
+// The file names of films.
 #include "experiment/queries.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ std::string film_file(std::string_view arm, double s, double own_s) {
     return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s);
 }
 
-// ---- For each shape, the largest channel of rho_d plus rho_s against 1; reflectances have no unit. Evidence that was
-// asked for and cannot be measured.
+// ---- Compares the largest channel of rho_d plus rho_s of each shape with 1 (reflectances have no unit), and finds
+// requested article checks that cannot be measured.
 
 std::vector<std::string> warnings_of(const Experiment& experiment) {
     std::vector<std::string> out;
@@ -29,8 +29,8 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
     return out;
 }
 
-// ---- The note explains the Phong arm on a Phong lobe: both must be there, the lobe on the exponent control's shape
-// where there is a control.
+// ---- The article explains the Phong sampler on a Phong lobe: both must exist, the lobe on the exponent control's
+// shape if there is a control.
 
 const Shape* evidence_shape(const Experiment& experiment) {
     const auto phong = [](const Shape& shape) {
@@ -51,8 +51,9 @@ std::string why_no_evidence(const Experiment& experiment) {
     return experiment.exponent ? "exponent.shape has no Phong lobe" : "no shape has a Phong lobe";
 }
 
-// ---- Looked up in SamplerInfo by the arm's sampler. One that is not in the list draws one direction, misses nothing
-// and tells s. Arms that miss a light miss the fill: none does where the fill is black.
+// ---- Looks up SamplerInfo by the arm's sampler; a sampler that is not in the list draws one direction, reaches all
+// light and depends on s. An arm that cannot reach a light also cannot reach the fill; if the fill is black, no arm
+// misses light.
 
 int techniques_of(const ArmPlan& arm) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
@@ -61,7 +62,7 @@ int techniques_of(const ArmPlan& arm) {
 
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
-    const bool shines = experiment.fill[0] + experiment.fill[1] + experiment.fill[2] > 0;  // all that arms may miss
+    const bool shines = experiment.fill[0] + experiment.fill[1] + experiment.fill[2] > 0;  // samplers miss only this
     return info && shines ? std::string(info->misses) : "";
 }
 
@@ -77,8 +78,8 @@ bool any_tells_s(const Experiment& experiment) {
         experiment.arms, [&](const ArmPlan& arm) { return tells_s(arm.name, experiment.s(), experiment); });
 }
 
-// ---- A kind of light is widened by its lengths (m), multiplied; a rectangle by its edges, its corner moved so that
-// the centre stays. Directions stay as they are.
+// ---- A kind of light is widened by multiplying its lengths (m); a rectangle by its edges, with its corner moved so
+// that the centre stays. Directions do not change.
 
 std::vector<LightTable> all_lights(const SceneData& scene) {
     std::vector<LightTable> out;

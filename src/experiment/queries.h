@@ -1,4 +1,4 @@
-// What an experiment says of itself: names of its films, warnings, facts of its samplers, tables of its lights.
+// Values derived from an experiment: names of its films, warnings, properties of its samplers, tables of its lights.
 #pragma once
 
 #include <string>
@@ -10,52 +10,55 @@
 
 namespace crescent::inline experiment {
 
-// ---- The names of the files that films go into.
+// ---- The names of film files.
 
-/// Where the films of an arm at exponent s go under films/, without .exr: the arm's name, followed by an s that is not
-/// the experiment's own. The references have a file beside them.
+/// Returns the file for the films of an arm at exponent s under films/, without .exr: the arm's name, followed by s if
+/// it is not the experiment's own. The references have a file in the same folder.
 std::string film_file(std::string_view arm, double s, double own_s);
 inline constexpr std::string_view reference_file = "reference";
 
-// ---- What an experiment may say and yet hardly means: told in the summary and in the report, never refused.
+// ---- Warnings: valid but probably unintended values, shown in the summary and in the report.
 
-/// A line each: surfaces whose rho_d + rho_s is above 1 in a channel, so that they reflect more than they receive; a
-/// `note_evidence` that has nothing to measure.
+/// Returns one line each for surfaces whose rho_d + rho_s is above 1 in a channel, so that they reflect more than they
+/// receive, and for a `note_evidence` without anything to measure.
 std::vector<std::string> warnings_of(const Experiment& experiment);
 
-// ---- What the measurements of `note_evidence` are taken on, or why there is nothing to take them on.
+// ---- The shape and arm that `note_evidence` is measured on, or why there is none.
 
-/// The exponent control's shape, else the first with a Phong lobe; null where it has no Phong lobe or there is none.
+/// Returns the exponent control's shape, else the first with a Phong lobe; null if it has no Phong lobe or there is
+/// none.
 const Shape* evidence_shape(const Experiment& experiment);
-/// "no arm has the sampler 'phong'", ...; "" where note_evidence has an arm and a surface to measure.
+/// Returns "no arm has the sampler 'phong'", ...; "" if note_evidence has an arm and a surface to measure.
 std::string why_no_evidence(const Experiment& experiment);
 
-// ---- What the arms of an experiment are in its scene, by their own manuals (arms/info.h): for plates and reports.
+// ---- Properties of the arms of an experiment in its scene, from SamplerInfo (samplers/info.h): for plates and
+// reports.
 
-/// Directions that an arm draws a sample: 2 where it joins two techniques and N counts pairs.
+/// Returns the directions that an arm draws per sample: 2 if it combines two techniques and N counts pairs.
 int techniques_of(const ArmPlan& arm);
 
-/// The light of this scene that an arm cannot reach ("the fill"), so that it is biased here and
-/// its error stops falling with N; "" where it reaches all.
+/// Returns the light of this scene that an arm cannot reach ("the fill"), so that it is biased here and its error stops
+/// falling with N; "" if it reaches all.
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment);
 
-/// Whether an exponent says something of an arm's run at s: the arm aims by it, or it is not the experiment's own.
+/// Returns whether the exponent identifies an arm's run at s: the arm's pdf depends on it, or it is not the
+/// experiment's own.
 bool tells_s(const std::string& arm, double s, const Experiment& experiment);
-/// The same of any arm at the experiment's own s.
+/// Returns whether that holds for any arm at the experiment's own s.
 bool any_tells_s(const Experiment& experiment);
 
-// ---- The lights of an experiment, whichever of its two tables names them, and how --set reaches them.
+// ---- The lights of an experiment, from both of its tables, and their paths for --set.
 
 /// A light of [disks.NAME] or of [lights.NAME], and the path of that table for --set: "disks.key".
 struct LightTable {
     std::string path;
     Light light;
 };
-/// All lights of a scene but the fill, in the order in which it has them: disks first.
+/// Returns all lights of a scene except the fill, in its order: disks first.
 std::vector<LightTable> all_lights(const SceneData& scene);
 
-/// What --set takes to make a light `factor` times as wide about its centre ("disks.key.radius=0.4"); empty for a kind
-/// that has neither lengths nor edges.
+/// Returns the --set values that make a light `factor` times as wide about its centre ("disks.key.radius=0.4"); empty
+/// for a kind that has neither lengths nor edges.
 std::vector<std::string> widened(const LightTable& table, double factor);
 
 }  // namespace crescent::inline experiment

@@ -1,4 +1,4 @@
-// Lights of both tables under one roof, and the settings that make one wider.
+// Lights of both tables in one list, and the settings that widen one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr const char* lamps = R"(
+constexpr const char* area_lights = R"(
 [image]
 width = 8
 height = 8
@@ -45,20 +45,20 @@ n = 4
 
 TEST(LightTables, AreThoseOfDisksAndThenThoseOfLights) {
     std::vector<std::string> paths;
-    for (const LightTable& table : all_lights(parse(lamps, "lamps.toml"))) paths.push_back(table.path);
+    for (const LightTable& table : all_lights(parse(area_lights, "lamps.toml"))) paths.push_back(table.path);
     EXPECT_THAT(paths, ElementsAre("disks.key", "lights.ball", "lights.window"));
 }
 
 TEST(LightTables, AreWidenedByTheLengthsOfTheirKind) {
-    const auto tables = all_lights(parse(lamps, "lamps.toml"));
+    const auto tables = all_lights(parse(area_lights, "lamps.toml"));
     EXPECT_THAT(widened(tables[0], 4), ElementsAre("disks.key.radius=0.4"));
     EXPECT_THAT(widened(tables[1], 0.5), ElementsAre("lights.ball.radius=0.125"));
 }
 
 TEST(LightTables, AreWidenedAboutTheirCentreByWhatSetTakes) {
-    const Experiment e = parse(lamps, "lamps.toml");
+    const Experiment e = parse(area_lights, "lamps.toml");
     for (const LightTable& table : all_lights(e)) {
-        const auto wide = all_lights(parse(lamps, "lamps.toml", widened(table, 4)));
+        const auto wide = all_lights(parse(area_lights, "lamps.toml", widened(table, 4)));
         for (const LightTable& now : wide) {
             const double grown = now.path == table.path ? 16 : 1;
             for (const LightTable& before : all_lights(e)) {

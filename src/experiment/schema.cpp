@@ -1,4 +1,4 @@
-// Look-ups in the table and what it says of itself in words.
+// Look-ups in the table and its description in words.
 #include "experiment/schema.h"
 
 #include <algorithm>
@@ -104,7 +104,7 @@ std::string path_of(const Section& section, const std::string& parent) {
     return path;
 }
 
-/// Words set in lines of at most 80 columns, every line indented, the second and later ones by `hang` more.
+/// Wraps words to lines of at most 80 columns, every line indented, the second and later ones by `hang` more.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang = 0) {
     std::string out, line(indent, ' ');
     for (std::size_t at = 0; at < text.size();) {

@@ -1,5 +1,5 @@
-// The one table of an experiment file: every key with its type, unit, range, default and meaning, and where its value
-// goes. The reader, `crescent schema`, the overrides and the nearest-word hints all walk this table.
+// The table of an experiment file: every key with its type, unit, range, default and meaning, and where its value is
+// stored. The parser, `crescent schema`, the overrides and the nearest-word hints all use this table.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,11 +16,11 @@
 
 namespace crescent::inline experiment {
 
-/// What a key's value can be.
+/// The type of a key's value.
 enum class Type {
     text,   // any text on one line
-    texts,  // a list of them, a bare text is a list of one
-    check,  // a comparison of quantities, see experiment/quantity_text.h
+    texts,  // a list of them; a bare text is a list of one
+    check,  // a comparison of quantities, see experiment/assertion.h
     word,   // one of Key::words
     flag,   // true or false
     integer,
@@ -37,43 +37,43 @@ enum class Type {
     shape  // the name of one
 };
 
-/// "from 0 to 1", "above 0": for messages and the manual.
+/// Returns "from 0 to 1", "above 0": for messages and the manual.
 std::string to_string(const Range& range);
 
-/// Whether a key must be given, may be left out, or has a default.
+/// Whether a key is required, optional, or has a default.
 enum class Requirement { required, optional, defaulted };
 
-/// A checked value on its way from the file into an Experiment; which field counts follows from the type.
+/// A checked value between the file and an Experiment; its type determines which field is used.
 struct Value {
     bool flag = false;
-    int word = 0;       // index into Key::words; flag is set where it is not the first
-    double number = 0;  // integer as well: exact up to 2^53
+    int word = 0;       // index into Key::words; flag is set if it is not the first
+    double number = 0;  // integers too: exact up to 2^53
     std::vector<double> numbers;
     std::string text;
     std::vector<std::string> texts;
 };
 
-/// Where a key's value stands in its object: how it gets there, and how it is read back (false: none was given).
+/// Where a key's value is stored in its object: how it is written, and how it is read back (false: none was given).
 struct Slot {
     void (*store)(void* object, const Value& value);
     bool (*load)(const void* object, Value& value);
 };
 
-/// A key of a table: what it takes, and where its value goes.
+/// A key of a table: its type, and where its value is stored.
 struct Key {
     std::string_view name;
     Type type;
     Range range;
     std::string_view unit;
     Requirement need;
-    std::string_view default_value;  // TOML of the default, or in words where it depends on other keys
+    std::string_view default_value;  // TOML of the default, or words if it depends on other keys
     std::string_view means;
     Slot slot;
     std::vector<std::string> words = {};
     std::string kinds = {};  // the kinds of shape that have this key; empty: all
 };
 
-/// How many objects a section stands for, and how the file writes them.
+/// How many objects a section represents, and how the file writes them.
 enum class Multiplicity {
     one,     // [camera]
     named,   // [shapes.NAME]; names are file-safe
@@ -86,7 +86,7 @@ struct Family {
     void* (*add)(void* parent, const std::string& name, const SourceLocation& at) = nullptr;
     std::size_t (*size)(const void* parent) = nullptr;
     const void* (*at)(const void* parent, std::size_t index) = nullptr;
-    std::string (*name)(const void* object) = nullptr;  // "" where it has none
+    std::string (*name)(const void* object) = nullptr;  // "" if it has none
 };
 
 /// A table of the file, or a family of tables under names of the user's choice.
@@ -99,7 +99,7 @@ struct Section {
     std::vector<Key> keys;
     std::vector<Section> sections;
 
-    /// Null where the section itself has none of that name.
+    /// Returns null if the section itself has no key of that name.
     const Key* find_key(std::string_view key) const;
     const Section* find_section(std::string_view section) const;
 };
@@ -107,33 +107,33 @@ struct Section {
 /// The whole file of an experiment.
 const Section& schema();
 
-/// The manual of a table: a line or two a key, at most 80 columns.
+/// Returns the manual of a table: a line or two per key, at most 80 columns.
 std::string manual_of(const Section& root);
-/// The table as a JSON Schema, draft 7, under this title.
+/// Returns the table as a JSON Schema, draft 7, under this title.
 std::string json_schema_of(const Section& root, const char* title);
 
-/// Whether a key belongs to this kind of shape; an empty kind (not known yet) has every key.
+/// Returns whether a key belongs to this kind of shape; an empty kind (not known yet) has every key.
 bool has_kind(const Key& key, std::string_view kind);
 
-/// "a number above 0 (m)": what a key takes, for messages and for the manual.
+/// Returns "a number above 0 (m)", the values that a key accepts, for messages and for the manual.
 std::string expectation(const Key& key);
 
-/// Kinds between blanks, as in Key::kinds, in words: "sphere disk box" -> "sphere, disk or box".
+/// Returns kinds separated by blanks, as in Key::kinds, as words: "sphere disk box" -> "sphere, disk or box".
 std::string alternatives(std::string_view kinds);
 
-/// "a, b, c".
+/// Returns "a, b, c".
 template <class T> std::string listed(const std::vector<T>& all, std::string_view between = ", ") {
     std::string text;
     for (const T& one : all) (text += text.empty() ? std::string_view() : between) += fmt::to_string(one);
     return text;
 }
 
-/// The valid words of a section, for hints: keys of this kind and sections.
+/// Returns the valid words of a section, for hints: keys of this kind and sections.
 std::vector<std::string> words_of(const Section& section, std::string_view kind = {});
 
 // --- from a Value into a member, and back -----------------------------------------------------------------------
 
-/// A number that the table's range has let through, as an integer.
+/// Returns a number within the table's range as an integer.
 template <class T> T whole(double x) {
     ensure(x >= static_cast<double>(std::numeric_limits<T>::min()) &&
             x <= static_cast<double>(std::numeric_limits<T>::max()),
@@ -141,7 +141,7 @@ template <class T> T whole(double x) {
     return static_cast<T>(x);
 }
 
-/// A checked value into a member, by the member's type.
+/// Stores a checked value in a member, by the member's type.
 inline void assign(double& to, const Value& v) { to = v.number; }
 inline void assign(bool& to, const Value& v) { to = v.flag; }
 inline void assign(std::string& to, const Value& v) { to = v.text; }
@@ -170,7 +170,7 @@ void assign(T& to, const Value& v) {
 }
 template <class T> void assign(std::optional<T>& to, const Value& v) { assign(to.emplace(), v); }
 
-/// A member back into a value; false where it holds none.
+/// Reads a member back into a value; false if it holds none.
 inline bool fetch(double from, Value& v) { return v.number = from, true; }
 inline bool fetch(bool from, Value& v) { return v.flag = from, v.word = from, true; }
 inline bool fetch(const std::string& from, Value& v) { return v.text = from, true; }
@@ -199,7 +199,7 @@ bool fetch(T from, Value& v) {
 }
 template <class T> bool fetch(const std::optional<T>& from, Value& v) { return from && fetch(*from, v); }
 
-/// The class that a pointer to member belongs to.
+/// The class of a pointer to member.
 template <class T> struct OwnerOf;
 template <class T, class C> struct OwnerOf<T C::*> {
     using type = C;
@@ -218,23 +218,23 @@ template <class Owner, auto First, auto... Rest> constexpr Slot to_owner = {
         return fetch(member_of<First, Rest...>(*static_cast<const Owner*>(object)), value);
     }};
 
-/// The same where the first member's class is the object's own: to<&Shape::material, &Material::rho_s>.
+/// The same if the first member's class is the object's own: to<&Shape::material, &Material::rho_s>.
 template <auto First, auto... Rest> constexpr Slot to =
     to_owner<typename OwnerOf<decltype(First)>::type, First, Rest...>;
 
-/// The object that the next table is read into: the member itself, or a new element.
+/// Returns the object that the next table is read into: the member itself, or a new element.
 template <class T> T* emplaced(T& member) { return &member; }
 template <class T> T* emplaced(std::optional<T>& member) { return &member.emplace(); }
 template <class T> T* emplaced(std::vector<T>& member) { return &member.emplace_back(); }
 
-/// The objects that a member holds: itself, none or one, or its elements.
+/// Returns the objects that a member holds: itself, none or one, or its elements.
 template <class T> std::span<const T> all_of(const T& member) { return {&member, 1}; }
 template <class T> std::span<const T> all_of(const std::optional<T>& member) {
     return member ? std::span<const T>(&*member, 1) : std::span<const T>();
 }
 template <class T> std::span<const T> all_of(const std::vector<T>& member) { return member; }
 
-/// The objects that a section's keys are stored into: the member itself, or its elements.
+/// Returns the objects that a section's keys are stored into: the member itself, or its elements.
 template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
 constexpr Family in = {[](void* parent, const std::string& name, const SourceLocation& at) -> void* {
                            auto* object = emplaced(static_cast<Owner*>(parent)->*M);
@@ -252,15 +252,15 @@ constexpr Family in = {[](void* parent, const std::string& name, const SourceLoc
         else return "";
     }};
 
-// ---- Keys of tables that say their kind: made from the parameters of each kind of a list (scene/parameter.h).
+// ---- Keys of tables with a `kind`: made from the parameters of each kind of a list (scene/body.h).
 
-/// The type of a key, from that of the member it is stored in.
+/// Returns the type of a key, from that of the member it is stored in.
 inline Type type_of(const std::type_identity<double>&, bool) { return Type::number; }
 inline Type type_of(const std::type_identity<bool>&, bool) { return Type::flag; }
 inline Type type_of(const std::type_identity<Vec3d>&, bool unit) { return unit ? Type::direction : Type::point; }
 inline Type type_of(const std::type_identity<std::optional<Rgb>>&, bool) { return Type::color; }
 
-/// The name of the parameter at `index`, counted through all kinds.
+/// Returns the name of the parameter at `index`, counted through all kinds.
 template <class... Kind> constexpr std::string_view parameter_name(KindList<Kind...>, std::size_t index) {
     std::string_view name;
     std::size_t k = 0;
@@ -273,10 +273,10 @@ template <class... Kind> constexpr std::size_t parameter_count(KindList<Kind...>
     return (Kind::parameters().size() + ... + 0);
 }
 
-/// A parameter of an object, whatever its kind; empty where its kind has no parameter of that name.
+/// A parameter of an object of any kind; empty if its kind has no parameter of that name.
 using AnyParameter = std::variant<std::monostate, double*, bool*, Vec3d*, std::optional<Rgb>*>;
 
-/// The parameter of that name of the kind that `any` holds.
+/// Returns the parameter of that name of the kind that `any` holds.
 template <class Any> AnyParameter parameter_named(Any& any, std::string_view name) {
     AnyParameter found;
     std::visit(
@@ -314,7 +314,7 @@ template <class List, auto Form> constexpr Slot kind_slot = {[](void* object, co
         return true;
     }};
 
-/// The parameter at `index` of whichever kind the object holds.
+/// The parameter at `index` of the kind that the object holds.
 template <class List, auto Form, std::size_t index> constexpr Slot parameter_slot = {
     [](void* object, const Value& value) {
         using Owner = typename OwnerOf<decltype(Form)>::type;
@@ -322,7 +322,7 @@ template <class List, auto Form, std::size_t index> constexpr Slot parameter_slo
     },
     [](const void* object, Value& value) {
         using Owner = typename OwnerOf<decltype(Form)>::type;
-        // A member is found in what may be written; it is only read here.
+        // The lookup needs a mutable object; it is only read here.
         auto& form = const_cast<Owner*>(static_cast<const Owner*>(object))->*Form;
         return fetch(parameter_named(form, parameter_name(List{}, index)), value);
     }};
@@ -334,7 +334,7 @@ template <class List, auto Form> Key kind_key() {
     return key;
 }
 
-/// A key for every name among the parameters of the kinds; `kinds` says whose it is.
+/// Returns a key for every name among the parameters of the kinds; `kinds` lists the kinds that have it.
 template <class List, auto Form> std::vector<Key> parameter_keys() {
     std::vector<Key> keys;
     std::vector<Slot> slots;

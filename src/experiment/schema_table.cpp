@@ -5,11 +5,11 @@ namespace crescent::inline experiment {
 
 namespace {
 
-constexpr Range free_range{-1e6, 1e6};  // coordinates: float kernels keep sub-millimetre steps well inside
+constexpr Range free_range{-1e6, 1e6};  // coordinates: float kernels resolve steps below a millimetre in this range
 constexpr Range length_range{1e-6, 1e6};
 constexpr Range unit_range{0, 1};  // albedos
 constexpr Range exponent_range{0, 1e6, true};
-constexpr Range radiance_range{0, 1e9};       // its square and a thousandfold weight still fit a float
+constexpr Range radiance_range{0, 1e9};       // its square times a weight of a thousand fits a float
 constexpr Range count_range{1, 16777216};     // 2^24 samples per pixel
 constexpr Range seed_range{0, 4294967295.0};  // 32 bits
 constexpr Range pixel_range{0, 16383};
@@ -39,7 +39,7 @@ Section camera() {
         {}};
 }
 
-/// One number where the lobe has no colour.
+/// One number if the lobe has no colour.
 constexpr Slot specular = {[](void* object, const Value& value) {
                                const std::vector<double>& n = value.numbers;
                                const bool grey = n.size() == 1;
@@ -142,7 +142,7 @@ Section regions() {
         {}};
 }
 
-/// The words of an enumeration, in its order; `last` is its last value. A value is read as its word's place.
+/// The words of an enumeration, in its order; `last` is its last value. A value is read as the index of its word.
 template <auto last, std::size_t n> std::vector<std::string> words_to(const char* const (&words)[n]) {
     static_assert(n == static_cast<std::size_t>(last) + 1, "an enumeration has one word for each value");
     return {words, words + n};
@@ -201,7 +201,7 @@ Section plates() {
         {runs}};
 }
 
-/// A text until it is parsed. Another text is another check.
+/// The text until it is parsed. Another text is another assertion.
 constexpr Slot comparison = {[](void* object, const Value& value) {
                                  auto& plan = *static_cast<AssertionPlan*>(object);
                                  plan.text = value.text, plan.check = {};

@@ -12,9 +12,9 @@ namespace crescent::inline experiment {
 
 namespace {
 
-// No key is nested deeper than plates.NAME.runs.0.arm; what lies deeper is never looked at.
+// The deepest key is plates.NAME.runs.0.arm; deeper ones are ignored.
 constexpr int deepest = 8;
-// The parser builds one table per dot of a key and takes them down by recursion: this bounds the stack it needs.
+// The parser builds one table per dot of a key and destroys them recursively: this bounds the stack it needs.
 constexpr int most_dots = 32;
 constexpr int most_duplicates = 64;
 constexpr std::string_view dropped = "\\u0001duplicate", dropped_key = "\1duplicate";  // as written, as read
@@ -61,7 +61,7 @@ Node convert(const toml::node& from, const std::string& file, int depth) {
     return to;
 }
 
-/// Refuses what the parser could only take with an unbounded stack or unbounded time.
+/// Rejects text for which the parser would need unbounded stack or time.
 void refuse_junk(std::string_view text, const std::string& file) {
     if (text.size() > most_bytes)
         throw InputError(
@@ -78,8 +78,8 @@ void refuse_junk(std::string_view text, const std::string& file) {
     }
 }
 
-/// Takes a second use of a name out of the text: a header gets a name that is dropped, a key is commented out. False
-/// where that would take more than the one line.
+/// Removes a second use of a name from the text: a header gets a name that is dropped, a key is commented out. Returns
+/// false if that would affect more than the one line.
 bool pass_over(std::string& text, unsigned line, int count) {
     std::size_t begin = 0;
     for (unsigned i = 1; i < line && begin != std::string::npos; ++i) {

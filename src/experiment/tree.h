@@ -1,4 +1,5 @@
-// An experiment file as a tree of plain nodes in file order, each with its place. The only door to the TOML parser.
+// An experiment file as a tree of plain nodes in file order, each with its place. The only interface to the TOML
+// parser.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@ struct Node {
     std::vector<Member> members;  // table, array
     std::string text;
     std::int64_t integer = 0;
-    double number = 0;  // number, and integer as well
+    double number = 0;  // number; integers too
     bool flag = false;
 
     bool is_table() const { return kind == Kind::table; }
@@ -35,11 +36,11 @@ struct Member {
     Node value;
 };
 
-/// "the text 'red'", "3.5", "a table": what was found, for messages.
+/// Returns "the text 'red'", "3.5", "a table": what was found, for messages.
 std::string describe(const Node& node);
 
-/// Reads TOML; throws InputError where the syntax is wrong. `file` stands in every place. Where `duplicates` is given,
-/// a name that is given twice is put there and its second use passed over, so that reading goes on.
+/// Reads TOML; throws InputError if the syntax is wrong. `file` is in every place. If `duplicates` is given, duplicate
+/// names are added to it and their second use is skipped, so that reading continues.
 Node read_toml(std::string_view text, const std::string& file, std::vector<Diagnostic>* duplicates = nullptr);
 
 }  // namespace crescent::inline experiment

@@ -1,4 +1,4 @@
-// One TOML value against one key of the table: type, count, range, finite numbers, unit vectors, order.
+// Checks one TOML value against one key of the table: type, count, range, finite numbers, unit vectors, order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,14 +13,14 @@ namespace crescent::inline experiment {
 
 namespace {
 
-constexpr double unit_tolerance = 1e-4;  // what four written decimals leave of a unit vector
-constexpr double unit_rounding = 4 * std::numeric_limits<double>::epsilon();  // what dividing by the length leaves
+constexpr double unit_tolerance = 1e-4;  // rounding error of a unit vector written with four decimals
+constexpr double unit_rounding = 4 * std::numeric_limits<double>::epsilon();  // after the division by the length
 constexpr std::size_t longest_list = 64;
 constexpr std::size_t longest_text = 4096;
 
 bool is_number(const Node& node) { return node.kind == Node::Kind::number || node.kind == Node::Kind::integer; }
 
-/// How many numbers the type holds; 0: a list of any length.
+/// Returns how many numbers the type has; 0: a list of any length.
 std::size_t count_of(Type type) {
     if (type == Type::box) return 4;
     return type == Type::numbers || type == Type::integers ? 0 : 3;
@@ -60,8 +60,8 @@ private:
             path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
         return false;
     }
-    bool fail(const std::string& say) {
-        draft_.report(path_, fmt::format("{}: {}", path_, say));
+    bool fail(const std::string& message) {
+        draft_.report(path_, fmt::format("{}: {}", path_, message));
         return false;
     }
 
@@ -144,7 +144,7 @@ private:
         std::vector<double>& v = value_.numbers;
         const double length = math::hypot(v[0], v[1], v[2]);
         if (length == 0) return fail("expected a unit vector, found the zero vector");
-        if (std::abs(length - 1) <= unit_rounding) return true;  // a second reading changes nothing
+        if (std::abs(length - 1) <= unit_rounding) return true;  // a second reading does not change it
         if (std::abs(length - 1) > unit_tolerance)
             return fail(
                 fmt::format("expected a unit vector, found length {:.6g}; the unit vector is [{:.6g}, {:.6g}, {:.6g}]",
@@ -173,7 +173,7 @@ private:
     Value& value_;
 };
 
-/// What other renderers' scenes have and these have not yet.
+/// Returns whether other renderers have this word and crescent does not support it yet.
 bool is_beyond(std::string_view word) {
     constexpr std::string_view words[] = {"mesh", "triangle", "ply", "obj", "texture", "bitmap", "envmap",
         "environment", "hdri", "infinite", "glass", "dielectric", "conductor", "mirror", "plastic", "ior", "eta",

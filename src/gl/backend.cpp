@@ -1,5 +1,6 @@
-// Registers "gl" before main. Claims are made of the context and a 1280x720 framebuffer when it is opened, of the
-// film's framebuffer and of three blocks of random integers before the first film; films then come from Estimator.
+// Registers "gl" before main. Assertions about the context and a 1280x720 framebuffer are tested when it is opened,
+// those about the film's framebuffer and three blocks of random integers before the first film; films then come from
+// Estimator.
 #include <fmt/format.h>
 
 #include "backend.h"
@@ -16,7 +17,7 @@ AssertionResult claim(
     return {name, pass, measured, bound, op, fmt::format("{} {} {}", quantity, op, bound)};
 }
 
-/// Random integers that differ from the CPU's, over some blocks of both dimensions.
+/// Returns the share of random integers that differ from the CPU's, over some blocks of both dimensions.
 double unlike_integers_here(const Context& context, std::uint32_t seed) {
     const std::vector<IntegerBlock> blocks = {
         {256, 64, 0, 0, seed}, {256, 64, 1, 1, seed}, {256, 64, 0x7fffffffu, 0, ~seed}};
@@ -29,14 +30,14 @@ double unlike_integers_here(const Context& context, std::uint32_t seed) {
 class GlKind : public BackendKind {
 public:
     std::string name() const override { return "gl"; }
-    std::shared_ptr<Instrument> open(const BackendChoice& choice) const override {
+    std::shared_ptr<Backend> open(const BackendChoice& choice) const override {
         return std::make_shared<GlBackend>(open_context(choice));
     }
     std::vector<BackendDevice> devices() const override { return egl_devices(); }
 };
 
 const bool registered = [] {
-    instrument_kinds().push_back(std::make_shared<GlKind>());
+    backend_kinds().push_back(std::make_shared<GlKind>());
     return true;
 }();
 
@@ -57,7 +58,7 @@ std::vector<std::pair<std::string, std::string>> GlBackend::details() const {
 }
 
 void GlBackend::claim_framebuffer(const std::string& what, int width, int height, std::size_t attachments) {
-    const Framebuffer target(*context_, width, height, attachments);  // throws where it is not complete
+    const Framebuffer target(*context_, width, height, attachments);  // throws if it is not complete
     const std::string name = fmt::format("the {} framebuffer {}x{}", what, width, height);
     claims_.push_back(claim(name + " is complete RGBA32F", target.bits(), "==", 32, "bits a channel"));
     claims_.push_back(claim(name + " has GL_FRAMEBUFFER_SRGB off", target.srgb(), "==", 0, "GL_FRAMEBUFFER_SRGB"));

@@ -1,4 +1,4 @@
-// The GL instrument: the same films as the CPU's, from GLSL.
+// The GL back end: computes the same films as the CPU, in GLSL.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace crescent::gl {
 
-class GlBackend : public Instrument {
+class GlBackend : public Backend {
 public:
-    /// The context comes current and stays so on this thread.
+    /// Makes the context current on this thread.
     explicit GlBackend(std::unique_ptr<Context> context);
 
     std::string name() const override;

@@ -1,5 +1,5 @@
-// What the contexts of EGL and OSMesa share: entry points, version 3.3 at least, the last 20 errors and messages of
-// high severity of the driver. check() asks whether the context is current, then for a reset, then glGetError().
+// Shared by the contexts of EGL and OSMesa: entry points, version 3.3 at least, the last 20 errors and messages of high
+// severity of the driver. check() tests whether the context is current, then for a reset, then glGetError().
 #include "context.h"
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ void Context::take_functions(const std::function<void*(const char*)>& address_of
         gl_.DebugMessageCallback(keep, &log_);
         gl_.Enable(GL_DEBUG_OUTPUT);
     }
-    static_cast<void>(gl_.GetError());  // a 3.3 context may know no GL_DEBUG_OUTPUT
+    static_cast<void>(gl_.GetError());  // a 3.3 context may lack GL_DEBUG_OUTPUT
 }
 
 std::string Context::word(GLenum name) const {

@@ -11,7 +11,7 @@
 
 namespace crescent::gl {
 
-/// What a driver said while it worked, oldest first; the last few lines are kept.
+/// The messages of a driver, oldest first; the last few lines are kept.
 class DriverLog {
 public:
     void add(const std::string& line);
@@ -19,7 +19,7 @@ public:
     std::string text() const;
 
 private:
-    mutable std::mutex guard_;  // drivers speak from threads of their own
+    mutable std::mutex guard_;  // drivers call back from threads of their own
     std::vector<std::string> lines_;
 };
 
@@ -38,16 +38,16 @@ public:
     const Functions& gl() const { return gl_; }
     std::string version() const { return word(GL_VERSION); }
     std::string renderer() const { return word(GL_RENDERER); }
-    /// Major and minor as 3.3, 4.5.
+    /// Returns major and minor version as 3.3, 4.5.
     double version_number() const;
     bool software() const;
-    /// Throws OutputError where the context is gone or GL has an error to tell, with the driver's log.
+    /// Throws OutputError if the context is lost or GL reports an error, with the driver's log.
     void check(const char* after) const;
     const DriverLog& log() const { return log_; }
 
 protected:
     Context() = default;
-    /// To be called once it is current.
+    /// Must be called once it is current.
     void take_functions(const std::function<void*(const char*)>& address_of);
     DriverLog log_;
 
@@ -56,13 +56,13 @@ private:
     Functions gl_;
 };
 
-/// `context`: "", "egl" or "osmesa"; `device`: a number of egl_devices(), -1: a GPU's where one works, else llvmpipe's.
-/// It comes back current. Throws InputError for a device that is not there, OutputError where none can be had.
+/// `context`: "", "egl" or "osmesa"; `device`: a number of egl_devices(), -1: a GPU's if one works, else llvmpipe's.
+/// Returns it current. Throws InputError for an unknown device, OutputError if none is available.
 std::unique_ptr<Context> open_context(const BackendChoice& choice);
 
 std::unique_ptr<Context> open_egl(int device);
 std::unique_ptr<Context> open_osmesa();
-/// Empty where EGL is missing.
+/// Returns none if EGL is missing.
 std::vector<BackendDevice> egl_devices();
 
 }  // namespace crescent::gl

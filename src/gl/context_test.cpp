@@ -1,5 +1,4 @@
-// What goes wrong with contexts, framebuffers and shaders is an OutputError (exit 3) that says why, in the driver's
-// words.
+// Failures of contexts, framebuffers and shaders are OutputErrors (exit 3) that contain the driver's message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +26,7 @@ TEST(Shaders, EveryArmHasItsFileAndCompilesOnEveryLobe) {
                 << arm << " on lobe " << lobe;
 }
 
-TEST(Shaders, OneThatDoesNotCompileIsToldWithTheDriversLogAndTheFile) {
+TEST(Shaders, CompileErrorHasDriverLogAndFile) {
     ShaderSource source;
     source.include("random.glsl");
     source.add("planted.glsl",
@@ -55,16 +54,16 @@ TEST(Framebuffers, AreCompleteRgba32fWithoutSrgbAndMsaa) {
     }
 }
 
-TEST(Framebuffers, WithMoreBuffersThanTheDriverHasAreRefused) {
+TEST(Framebuffers, TooManyBuffersAreRejected) {
     EXPECT_THAT(what_of<OutputError>([] { Framebuffer(test::context(), 16, 16, 1000); }), HasSubstr("1000 are needed"));
 }
 
-TEST(Framebuffers, LargerThanTheDriverTakesAreRefusedWithItsLog) {
+TEST(Framebuffers, TooLargeIsRejectedWithTheDriverLog) {
     GLint largest = 0;
     test::context().gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     EXPECT_THAT(what_of<OutputError>([&] { Framebuffer(test::context(), largest + 1, 4, 1); }),
         AllOf(HasSubstr("GL_INVALID_VALUE"), HasSubstr("of a framebuffer")));
-    EXPECT_NO_THROW(Framebuffer(test::context(), 16, 16, 1));  // and the context is well afterwards
+    EXPECT_NO_THROW(Framebuffer(test::context(), 16, 16, 1));  // the context still works afterwards
 }
 
 TEST(LostContext, EndsTheFilmWithAnErrorThatSaysSo) {
@@ -78,36 +77,37 @@ TEST(LostContext, EndsTheFilmWithAnErrorThatSaysSo) {
         what_of<OutputError>([&] { gl.films(scene, "cosine", {4}, 1, monitor); }), HasSubstr("context was lost"));
 }
 
-TEST(Contexts, AWrongChoiceIsTheReadersMistakeAndNamesWhatIsThere) {
+TEST(Contexts, WrongChoiceIsAnInputErrorWithChoices) {
     EXPECT_THAT(what_of<InputError>([] { open_context({"glx", -1}); }), HasSubstr("expected egl or osmesa"));
     EXPECT_THAT(what_of<InputError>([] { open_context({"osmesa", 0}); }), HasSubstr("OSMesa has no devices"));
     EXPECT_THAT(what_of<InputError>([] { open_context({"egl", 999}); }), HasSubstr("crescent list devices"));
 }
 
-TEST(Contexts, ALibraryThatIsNotThereIsNamedWithWhatNeedsIt) {
-    EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl"); }),
-        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file")));
+TEST(Contexts, MissingLibraryIsNamedWithItsPurpose) {
+    EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl", "libnosuch7"); }),
+        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file"),
+            HasSubstr("install the packages libnosuch7")));
 }
 
 TEST(GlBackend, IsRegisteredByItsWordAndSaysWhatItRunsOn) {
-    const auto kind = find_instrument("gl");
+    const auto kind = find_backend("gl");
     ASSERT_TRUE(kind);
     EXPECT_FALSE(kind->devices().empty());
-    const std::shared_ptr<Instrument> one = kind->open({});
+    const std::shared_ptr<Backend> one = kind->open({});
     EXPECT_THAT(one->name(), AllOf(HasSubstr("GL "), HasSubstr("EGL surfaceless")));
     ASSERT_EQ(one->details().size(), 3u);
-    for (const auto& [what, said] : one->details()) EXPECT_FALSE(said.empty()) << what;
-    EXPECT_EQ(find_instrument("telescope"), nullptr);
+    for (const auto& [what, message] : one->details()) EXPECT_FALSE(message.empty()) << what;
+    EXPECT_EQ(find_backend("telescope"), nullptr);
 }
 
-TEST(Pacer, NeverAsksForMoreThanTheLastDrawsSpeedAllowsAndGrowsSlowly) {
+TEST(Pacer, BudgetFollowsSpeedAndGrowsSlowly) {
     Pacer pacer;
     EXPECT_TRUE(pacer.untried());
     const std::uint64_t first = pacer.budget();
     pacer.took(first, 1e-6);
-    EXPECT_EQ(pacer.budget(), 4 * first);  // however fast it was
+    EXPECT_EQ(pacer.budget(), 4 * first);  // at any speed
     pacer.took(1'000'000, 2 * Pacer::aim_s);
-    EXPECT_LE(pacer.budget(), 500'000u);  // a slow one is taken over at once
+    EXPECT_LE(pacer.budget(), 500'000u);  // a slower draw takes effect at once
     EXPECT_DOUBLE_EQ(pacer.longest_s(), 2 * Pacer::aim_s);
 }
 

@@ -1,5 +1,5 @@
 // EGL without a surface: the devices of EGL_EXT_device_enumeration, a GPU's driver first, llvmpipe otherwise. Core 4.5
-// is asked for, then 3.3.
+// is requested, then 3.3.
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -15,9 +15,9 @@ namespace crescent::gl {
 
 namespace {
 
-/// libEGL with what it said; one for the process.
+/// libEGL with its messages; one per process.
 struct Egl {
-    Library library{"libEGL.so.1", "--instrument gl"};
+    Library library{"libEGL.so.1", "--instrument gl", "libegl1, libegl-mesa0 and libgl1-mesa-dri"};
     DriverLog log;
     decltype(eglGetProcAddress)* address = library.function<decltype(eglGetProcAddress)>("eglGetProcAddress");
     decltype(eglQueryString)* query = library.function<decltype(eglQueryString)>("eglQueryString");
@@ -40,7 +40,7 @@ struct Egl {
         return reinterpret_cast<Function>(address(name));
     }
     static Egl& get() {
-        static Egl& egl = *new Egl;  // a driver's threads may speak until the very end
+        static Egl& egl = *new Egl;  // a driver's threads may use it until the process ends
         return egl;
     }
     static void EGLAPIENTRY keep(
@@ -100,7 +100,7 @@ public:
     bool is_current() const override { return context_ != EGL_NO_CONTEXT && Egl::get().current() == context_; }
 
 private:
-    /// Robust: a context that the driver had to reset says so.
+    /// Robust: a context that the driver had to reset reports it.
     EGLContext create(EGLint major, EGLint minor, bool robust) const {
         std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor,
             EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
@@ -125,7 +125,7 @@ std::unique_ptr<Context> open_device(const std::vector<EGLDeviceEXT>& devices, i
     return std::make_unique<EglContext>(devices[static_cast<std::size_t>(number)], number);
 }
 
-/// The first GPU whose driver works, else the first software device, else whatever stands behind the surfaceless
+/// Opens the first GPU whose driver works, else the first software device, else the default of the surfaceless
 /// platform.
 std::unique_ptr<Context> open_best(const std::vector<EGLDeviceEXT>& devices) {
     std::string why;
@@ -173,7 +173,7 @@ std::vector<BackendDevice> egl_devices() {
                 out.push_back({number, "not usable: " + why.substr(0, why.find('\n'))});
             }
         }
-    } catch (const OutputError&) {  // no EGL here, hence no devices
+    } catch (const OutputError&) {  // no EGL, so no devices
     }
     return out;
 }

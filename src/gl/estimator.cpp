@@ -1,6 +1,6 @@
-// The image in rectangles, one after another: its sites, a program for each lobe there (compiled for the arm, the lobe
-// and the numbers of lights and bodies, kept by its text), then a Pass rung by rung, whose moments resolve_film() makes
-// radiance of.
+// Computes the image in rectangles, one after another: its shading points, a program for each lobe there (compiled for
+// the sampler, the lobe and the numbers of lights and bodies, cached by its text), then a Pass sample count by sample
+// count, whose moments resolve_film() converts to radiance.
 #include "estimator.h"
 
 #include <fmt/format.h>
@@ -73,15 +73,15 @@ Estimator::Kernel& Estimator::kernel(
     return *kernel;
 }
 
-const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, ProgressMonitor& monitor) {
+const PointTexture& Estimator::shading_points(const Scene& scene, const TileBox& box, ProgressMonitor& monitor) {
     const auto same = [](const TileBox& a, const TileBox& b) {
         return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
     };
-    if (sites_ && sites_of_->is_same_as(scene) && same(sites_->box(), box)) return *sites_;
-    sites_.reset();
-    sites_.emplace(context_, scene, box, monitor);
-    sites_of_ = scene;
-    return *sites_;
+    if (shading_points_ && points_of_->is_same_as(scene) && same(shading_points_->box(), box)) return *shading_points_;
+    shading_points_.reset();
+    shading_points_.emplace(context_, scene, box, monitor);
+    points_of_ = scene;
+    return *shading_points_;
 }
 
 const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t attachments) {
@@ -95,11 +95,11 @@ const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t att
 
 namespace {
 
-/// What every draw of a program reads besides the samples' range.
+/// The inputs of every draw of a program except the samples' range.
 void set_scene(const Program& program, const ShadingPoints& lights, const Bodies& bodies, const TileBox& box,
     int image_width, std::uint32_t seed) {
     program.use();
-    program.set("sites", 0);
+    program.set("shading_points", 0);
     program.set("corner", box.x0, box.y0);
     program.set("image_width", image_width);
     program.set("seed", seed);
@@ -114,9 +114,9 @@ void set_scene(const Program& program, const ShadingPoints& lights, const Bodies
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
     std::vector<Film>& films, ProgressMonitor& monitor) {
     const LightCounts counts = count_lights(scene);
-    const SiteTexture& here = sites(scene, box, monitor);
+    const PointTexture& here = shading_points(scene, box, monitor);
     if (here.groups().empty()) return;
-    const ShadingPoints lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
+    const ShadingPoints lights = empty_points(scene, -1);  // a group's own occluders are those that can affect it
     const Bodies bodies = bodies_of(lights.occluders);
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {
@@ -153,8 +153,9 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
                 "the GL instrument has no light of the kind '{}' ({}): use the cpu", light.kind(), light.name));
     const Image& image = scene.image();
     std::vector<Film> out;
-    for (const std::uint64_t rung : n)
-        out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
+    for (const std::uint64_t sample_count : n)
+        out.emplace_back(image.width, image.height, sample_count),
+            out.back().directions = directions_per_sample(sampler);
     for (const TileBox& box : rectangles_of(image.width, image.height, count_lights(scene), largest_texture_))
         estimate(scene, box, sampler, seed, out, monitor);
     return out;

@@ -1,5 +1,5 @@
-// Integrand + arm -> films on a GL context: src/render/ with src/gl/shaders/estimator.glsl as its kernel. Moments of a
-// draw come back as floats and are added up in double.
+// Computes films on a GL context: src/render/ with src/gl/shaders/estimator.glsl as its kernel. Moments of a draw are
+// returned as floats and summed in double.
 #pragma once
 
 #include <map>
@@ -11,24 +11,24 @@
 #include "framebuffer.h"
 #include "pacer.h"
 #include "program.h"
-#include "site_texture.h"
+#include "point_texture.h"
 
 namespace crescent::gl {
 
 class Estimator {
 public:
-    /// `largest_texture`: pixels along a side of what is computed at once; 0: the driver's limit.
+    /// `largest_texture`: pixels along a side of a rectangle; 0: the driver's limit.
     explicit Estimator(const Context& context, int largest_texture = 0);
 
-    /// One film per rung of n (ascending), as estimate_films() makes them.
+    /// Returns one film per sample count of n (ascending), as estimate_films() does.
     std::vector<Film> films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
         std::uint32_t seed, ProgressMonitor& monitor);
-    /// The draw that took longest so far.
+    /// Returns the longest duration of a draw so far.
     double longest_draw_s() const;
     int largest_texture() const { return largest_texture_; }
 
 private:
-    /// A program for one arm on one lobe, and how fast it has been.
+    /// A program for one sampler on one lobe, and its speed so far.
     struct Kernel {
         Program program;
         Pacer pacer;
@@ -36,7 +36,7 @@ private:
     };
 
     Kernel& kernel(const std::string& sampler, int lobe, const LightCounts& lights, const Bodies& bodies);
-    const SiteTexture& sites(const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
+    const PointTexture& shading_points(const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
     const Framebuffer& framebuffer(int width, int height, std::size_t attachments);
     void estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
         std::vector<Film>& films, ProgressMonitor& monitor);
@@ -46,11 +46,11 @@ private:
     int largest_texture_ = 0;
     std::map<std::string, std::unique_ptr<Kernel>> kernels_;  // by source text
     std::optional<Framebuffer> framebuffer_;
-    std::optional<SiteTexture> sites_;  // of the last rectangle
-    std::optional<Scene> sites_of_;     // and of this scene
+    std::optional<PointTexture> shading_points_;  // of the last rectangle
+    std::optional<Scene> points_of_;              // and of this scene
 };
 
-/// The fragment shader of one arm on one lobe, its place in the list or -1.
+/// Returns the fragment shader of one sampler on one lobe, its index in the list or -1.
 ShaderSource estimator_source(
     const std::string& sampler, int lobe, const LightCounts& lights, const std::array<std::size_t, 5>& bodies);
 

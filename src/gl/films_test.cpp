@@ -1,4 +1,4 @@
-// The law of the second copy: GLSL computes the CPU's films, every built-in arm, within a stated tolerance.
+// GLSL computes the CPU's films, for every built-in sampler, within a stated tolerance.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,25 +29,25 @@ void expect_within(const Difference& d, const GlTolerance& tolerance, std::uint6
     EXPECT_EQ(d.bad_gl, d.bad_cpu);
 }
 
-class FilmLaw : public testing::TestWithParam<std::string> {};
+class FilmAgreement : public testing::TestWithParam<std::string> {};
 
-TEST_P(FilmLaw, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
+TEST_P(FilmAgreement, SamplesAreTheCpusExceptNearEdges) {
     const Scene scene(test::small_scene());
     Estimator gl(test::context());
     const bool software = test::context().software();
     const std::string& arm = GetParam();
     const GlTolerance& tolerance = find_arm_info(arm)->gl;
     const Difference single = differences(scene, gl, arm, 1, 24);
-    RecordProperty("largest", fmt::format("{:.2g}", single.largest));  // what docs/gl.md tells
+    RecordProperty("largest", fmt::format("{:.2g}", single.largest));  // given in docs/gl.md
     expect_within(single, tolerance, 1, software);
     expect_within(differences(scene, gl, arm, 48, 1), tolerance, 48, software);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    EveryArm, FilmLaw, testing::ValuesIn(test::all_arms()), [](const auto& each) { return glsl_word(each.param); });
+INSTANTIATE_TEST_SUITE_P(EveryArm, FilmAgreement, testing::ValuesIn(test::all_arms()),
+    [](const auto& each) { return glsl_word(each.param); });
 
-/// The test scene with a ball and a rectangle of light beside its disks, or alone. One lobe: a program takes seconds to
-/// compile, and what lights do is the same on each.
+/// The test scene with a spherical and a rectangular light, with or without its disks. One lobe: a program takes
+/// seconds to compile, and lights behave the same on each.
 Scene with_other_lights(bool disks) {
     std::string text = test::scene_text;
     if (!disks) text = text.substr(0, text.find("[disks.left]")) + text.substr(text.find("[arms.uniform]"));
@@ -70,7 +70,7 @@ two_sided = true
     return Scene(parse(text, "lights.toml", {}));
 }
 
-TEST_P(FilmLaw, LightsThatAreNoDisksAreTheCpus) {
+TEST_P(FilmAgreement, LightsThatAreNoDisksAreTheCpus) {
     Estimator gl(test::context());
     const bool software = test::context().software();
     const GlTolerance& tolerance = find_arm_info(GetParam())->gl;
@@ -79,13 +79,13 @@ TEST_P(FilmLaw, LightsThatAreNoDisksAreTheCpus) {
         expect_within(differences(with_other_lights(false), gl, GetParam(), 16, 12), tolerance, 16, software);
 }
 
-TEST(FilmLaw, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
+TEST(FilmAgreement, ToleranceIsStatedForShadersOnly) {
     for (const SamplerInfo& arm : sampler_infos())
         EXPECT_EQ(arm.gl.relative > 0, shader_text("arms/" + glsl_word(std::string(arm.name)) + ".glsl") != nullptr)
             << arm.name;
 }
 
-TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
+TEST(FilmAgreement, DetectsALobeSharperByOneInTenThousand) {
     const Scene scene(test::small_scene()), other(test::small_scene({"shapes.phong.s=24.0024"}));
     const ShapeMap shapes = shape_map(scene);
     ProgressMonitor monitor;
@@ -96,7 +96,7 @@ TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
     EXPECT_GT(d.largest, 7e-6);
 }
 
-TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
+TEST(FilmAgreement, NoticesALampThatIsFivePercentLarger) {
     const Scene scene(test::small_scene()), other(test::small_scene({"disks.left.radius=0.42"}));
     const ShapeMap shapes = shape_map(scene);
     ProgressMonitor monitor;
@@ -118,13 +118,13 @@ TEST(Films, EveryPlaneIsTheCpus) {
         if (a.light_hits[at] != b.light_hits[at]) continue;
         for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::second_moment, &Film::largest})
             EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 3e-6 * static_cast<double>((a.*plane)[at])) << at;
-        // A variance is a difference: what is left of X^2 after the mean's square.
+        // A variance is a difference: the mean of X^2 minus the mean's square.
         EXPECT_NEAR(b.var[at], a.var[at], 3e-6 * static_cast<double>(a.second_moment[at]) / 63) << at;
         EXPECT_EQ(b.horizon[at], a.horizon[at]);
     }
 }
 
-TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
+TEST(Films, SmallVariancesAreTheCpus) {
     const Scene scene(test::small_scene(
         {"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
     ProgressMonitor monitor;

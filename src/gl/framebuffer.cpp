@@ -1,5 +1,5 @@
-// Textures are made and attached, then GL is asked what came of them: status, bits and type of each attachment, colour
-// encoding, GL_SAMPLES. Reading is glReadPixels() of the whole, four channels a texel.
+// Textures are created and attached, then GL is queried for the result: status, bits and type of each attachment,
+// colour encoding, GL_SAMPLES. Reading is glReadPixels() of the whole, four channels per texel.
 #include "framebuffer.h"
 
 #include <fmt/format.h>

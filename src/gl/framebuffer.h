@@ -1,5 +1,5 @@
 // A framebuffer of 32-bit float textures, checked: complete, every channel a 32-bit float, no sRGB, no multisampling.
-// One that a driver makes of fewer bits is an error, never a fallback.
+// Fewer bits are an error; there is no fallback.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ class Framebuffer {
 public:
     enum class Texel { rgba32f, rgba32ui };
 
-    /// Throws OutputError where the driver does not give what is asked for.
+    /// Throws OutputError if the driver does not provide what is requested.
     Framebuffer(const Context& context, int width, int height, std::size_t attachments, Texel texel = Texel::rgba32f);
     ~Framebuffer();
     Framebuffer(const Framebuffer&) = delete;
@@ -22,15 +22,15 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
     std::size_t attachments() const { return textures_.size(); }
-    /// Draws go here from now on, to the whole of it.
+    /// Makes it the target of draws, over its whole size.
     void bind() const;
-    /// Every texel of an attachment, rows bottom-up.
+    /// Reads every texel of an attachment, rows bottom-up.
     void read(std::size_t attachment, std::vector<float>& rgba) const;
     void read(std::size_t attachment, std::vector<std::uint32_t>& rgba) const;
 
-    /// Smallest number of bits of any channel of any attachment.
+    /// Returns the smallest number of bits of any channel of any attachment.
     int bits() const;
-    bool srgb() const;  // GL_FRAMEBUFFER_SRGB or an attachment encoded so
+    bool srgb() const;  // GL_FRAMEBUFFER_SRGB or an sRGB-encoded attachment
     int multisamples() const;
 
 private:

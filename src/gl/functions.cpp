@@ -1,4 +1,4 @@
-// The lists' macros make a look-up of "gl" + name for each entry point, then a test of each name of core 3.3.
+// The lists' macros look up "gl" + name for each entry point, then test each name of core 3.3.
 #include <dlfcn.h>
 
 #include "crescent/crescent.h"
@@ -6,14 +6,15 @@
 
 namespace crescent::gl {
 
-// ---- dlopen() with every symbol bound at once and none given to others, dlsym(), no dlclose(); the reason is
-// dlerror()'s.
+// ---- Loads libraries by dlopen() with every symbol bound at once and none exported, and dlsym(), without dlclose();
+// the reason of a failure is dlerror()'s.
 
-Library::Library(const std::string& file, const std::string& needed_for)
+Library::Library(const std::string& file, const std::string& needed_for, const std::string& packages)
     : file_(file), handle_(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
     if (handle_) return;
     const char* why = ::dlerror();
-    throw OutputError(file + " cannot be opened, and " + needed_for + " needs it: " + (why ? why : "no reason given"));
+    throw OutputError(file + " cannot be opened, and " + needed_for + " needs it: " + (why ? why : "no reason given") +
+        "; install the packages " + packages + " of Debian, or their like");
 }
 
 void* Library::address_of(const char* name) const { return ::dlsym(handle_, name); }

@@ -1,6 +1,5 @@
-// The entry points of OpenGL that this folder calls, by pointer: the driver's library is opened when it is asked for,
-// so that the program runs on machines without one. Core 3.3 but for the last lines, which are null where a driver has
-// none.
+// The entry points of OpenGL that this folder calls, as pointers: the driver's library is opened on demand, so that the
+// program runs on machines without one. Core 3.3 except for the last lines, which are null if a driver lacks them.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -9,16 +8,16 @@
 
 namespace crescent::gl {
 
-// ---- A shared library that is opened when it is needed. It stays open until the process ends: drivers leave threads
-// and handlers behind that must not lose their code.
+// ---- A shared library that is opened when it is needed and stays open until the process ends, because drivers leave
+// threads and handlers behind that need their code.
 
 class Library {
 public:
-    /// Throws OutputError with the loader's own words; `needed_for` says what goes without it.
-    Library(const std::string& file, const std::string& needed_for);
+    /// Throws OutputError with the loader's own words; `needed_for` says what goes without it, `packages` what has it.
+    Library(const std::string& file, const std::string& needed_for, const std::string& packages);
     /// Null where the library has no such name.
     void* address_of(const char* name) const;
-    /// The same as a function; throws OutputError where it is not there.
+    /// The same as a function; throws OutputError if it is missing.
     template <class Function> Function* function(const char* name) const {
         return reinterpret_cast<Function*>(required(name));
     }
@@ -59,7 +58,7 @@ struct Functions {
 #undef CRESCENT_GL_MEMBER
 };
 
-/// Looks every name up; throws OutputError with the first of core 3.3 that is not there.
+/// Looks up every name; throws OutputError with the first missing one of core 3.3.
 Functions functions_from(const std::function<void*(const char*)>& address_of);
 
 }  // namespace crescent::gl

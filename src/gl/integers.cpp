@@ -1,4 +1,4 @@
-// A full-screen triangle into an RGBA32UI framebuffer for each block; what is read back is compared with draws()
+// Draws a full-screen triangle into an RGBA32UI framebuffer for each block and compares the result with draws(),
 // integer by integer.
 #include "integers.h"
 

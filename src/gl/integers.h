@@ -8,17 +8,17 @@
 
 namespace crescent::gl {
 
-/// What a set of hashes is about: pixels 0 to width x height - 1, one pair of samples, one block of dimensions, one
+/// The input of a set of hashes: pixels 0 to width x height - 1, one pair of samples, one block of dimensions, one
 /// seed.
 struct IntegerBlock {
     int width = 0, height = 0;
     std::uint32_t pair = 0, block = 0, seed = 0;
 };
 
-/// Four integers a pixel, by src/gl/shaders/integers.glsl, for each block.
+/// Returns four integers per pixel, by src/gl/shaders/integers.glsl, for each block.
 std::vector<std::vector<std::uint32_t>> driver_integers(
     const Context& context, const std::vector<IntegerBlock>& blocks);
-/// How many of them differ from draws() of src/math/simd/random.h.
+/// Returns how many of them differ from draws() of src/math/simd/random.h.
 std::uint64_t unlike_integers(const IntegerBlock& block, const std::vector<std::uint32_t>& integers);
 
 }  // namespace crescent::gl

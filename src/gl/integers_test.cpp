@@ -9,8 +9,8 @@
 namespace crescent::gl {
 namespace {
 
-/// Pairs of samples from the first to the last that an N of 2^32 has, both dimensions' blocks and one that no arm uses,
-/// seeds with few bits and with many: 512 x 512 pixels each, 20 million integers.
+/// Returns pairs of samples from the first to the last for an N of 2^32, both dimensions' blocks and one that no
+/// sampler uses, seeds with few bits and with many: 512 x 512 pixels each, 20 million integers.
 std::vector<IntegerBlock> many_blocks() {
     std::vector<IntegerBlock> out;
     for (const std::uint32_t pair : {0u, 1u, 31u, 32767u, 0x7fffffffu})

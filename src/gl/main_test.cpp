@@ -1,4 +1,4 @@
-// Runs the tests of this folder where a GL context is to be had; else says so and returns 77, which ctest counts as
+// Runs the tests of this folder if a GL context is available; else reports it and returns 77, which ctest counts as
 // skipped.
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-// OSMesa: Mesa's renderer on the CPU, without EGL or a driver beneath it. Core 3.3 is asked for; Mesa gives the highest
-// version that is compatible with it.
+// OSMesa: Mesa's renderer on the CPU, without EGL or a driver. Core 3.3 is requested; Mesa returns the highest version
+// that is compatible with it.
 #include "context.h"
 #include "functions.h"
 
-// Mesa has it no more since 25.1.
+// Mesa removed it in 25.1.
 #if __has_include(<GL/osmesa.h>)
 
-// osmesa.h asks for the gl.h of old; glcorearb.h has declared all that it uses.
+// osmesa.h includes the old gl.h; glcorearb.h has declared all that it uses.
 #define __gl_h_
 #define GLAPIENTRY APIENTRY
 #include <GL/osmesa.h>
@@ -17,7 +17,7 @@ namespace {
 
 class OsMesa : public Context {
 public:
-    OsMesa() : library_("libOSMesa.so.8", "--gl-context osmesa") {
+    OsMesa() : library_("libOSMesa.so.8", "--gl-context osmesa", "libosmesa6 and libgl1-mesa-dri") {
         make_current_ = library_.function<decltype(OSMesaMakeCurrent)>("OSMesaMakeCurrent");
         current_ = library_.function<decltype(OSMesaGetCurrentContext)>("OSMesaGetCurrentContext");
         destroy_ = library_.function<decltype(OSMesaDestroyContext)>("OSMesaDestroyContext");

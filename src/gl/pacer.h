@@ -1,6 +1,5 @@
-// How much one draw may hold. Drivers end a draw that takes too long, and none can be interrupted: draws are made to
-// last about a tenth of a second, so that none comes near 0.2 s on llvmpipe even where the next rows cost twice as
-// much.
+// Limits the work of one draw. Drivers end a draw that takes too long, and none can be interrupted: draws last about a
+// tenth of a second, so that none reaches 0.2 s on llvmpipe even if the next rows cost twice as much.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +11,10 @@ class Pacer {
 public:
     static constexpr double aim_s = 0.08;
 
-    /// Samples (pixels x samples a pixel) that the next draw may take.
+    /// Returns the samples (pixels x samples per pixel) of the next draw.
     std::uint64_t budget() const { return std::max<std::uint64_t>(budget_, least); }
-    /// A draw of `work` samples took so long. Growth is at most fourfold a draw, a fall is taken over at once.
+    /// Records the duration of a draw of `work` samples. The budget grows at most fourfold per draw and shrinks at
+    /// once.
     void took(std::uint64_t work, double seconds) {
         longest_ = std::max(longest_, seconds);
         if (work == 0) return;

@@ -13,22 +13,23 @@ namespace crescent::gl {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may hold, see estimator.glsl
+constexpr std::uint64_t longest_sum = 4096;  // samples in a draw's float sums at most, see estimator.glsl
 
 }  // namespace
 
-Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer,
+Pass::Pass(const Context& context, const PointTexture& shading_points, const Framebuffer& framebuffer,
     std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& monitor)
     : context_(context),
-      sites_(sites),
+      shading_points_(shading_points),
       framebuffer_(framebuffer),
       parts_(std::move(parts)),
       lights_(lights),
       monitor_(monitor),
-      moments_(sites.groups().size()),
+      moments_(shading_points.groups().size()),
       met_(framebuffer.attachments() - 2) {
     for (std::size_t g = 0; g < moments_.size(); ++g)
-        moments_[g].resize(sites.groups()[g].count, lights), means_.emplace_back(sites.groups()[g].count);
+        moments_[g].resize(shading_points.groups()[g].count, lights),
+            means_.emplace_back(shading_points.groups()[g].count);
 }
 
 void Pass::advance_to(std::uint64_t n) {
@@ -39,7 +40,7 @@ void Pass::advance_to(std::uint64_t n) {
     }
 }
 
-/// As many as a draw over the fullest strip can take, in whole blocks of 16: few large draws, few readings.
+/// As many as a draw over the fullest strip can take, in whole blocks of 16, which gives few large draws and readings.
 int Pass::samples_per_draw(std::uint64_t left) const {
     std::uint64_t fits = longest_sum;
     for (const LobePart& part : parts_) {
@@ -63,8 +64,7 @@ void Pass::take(int samples) {
     }
 }
 
-/// A draw of no samples: drivers finish compiling when a program is first drawn with, and that is no measure of its
-/// speed.
+/// A draw of no samples: drivers finish compiling at a program's first draw, which must not count as its speed.
 void Pass::warm_up(const LobePart& part) {
     part.program->set("samples", 0);
     draw_strips(part, 0, 1);
@@ -89,7 +89,7 @@ void Pass::draw_part(LobePart& part, int samples) {
 void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
     const Functions& gl = context_.gl();
     const int y0 = static_cast<int>(from) * strip_rows,
-              y1 = std::min(static_cast<int>(to) * strip_rows, sites_.height());
+              y1 = std::min(static_cast<int>(to) * strip_rows, shading_points_.height());
     gl.Enable(GL_SCISSOR_TEST);
     gl.Scissor(part.pixels.x0, y0, part.pixels.x1 - part.pixels.x0, y1 - y0);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
@@ -97,7 +97,7 @@ void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
     context_.check("a draw");
 }
 
-/// Adds what the last draws of all parts wrote.
+/// Adds the results of the last draws of all parts.
 void Pass::gather(std::size_t first_light, int samples) {
     const double before = static_cast<double>(done_), more = samples;
     if (first_light == 0) {
@@ -107,10 +107,10 @@ void Pass::gather(std::size_t first_light, int samples) {
     for (std::size_t k = 0; k < met_.size(); ++k) framebuffer_.read(2 + k, met_[k]);
     const std::size_t lights = std::min(lights_ - std::min(first_light, lights_), most_recorded);
     tbb::parallel_for(std::size_t{0}, moments_.size(), [&](std::size_t g) {
-        const ShadingPoints& group = sites_.groups()[g];
+        const ShadingPoints& group = shading_points_.groups()[g];
         Moments& m = moments_[g];
         for (std::size_t i = 0; i < group.count; ++i) {
-            const std::size_t at = 4 * sites_.texel(group, i);
+            const std::size_t at = 4 * shading_points_.texel(group, i);
             if (first_light == 0) {
                 m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
                 const double by = static_cast<double>(counts_[at + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983

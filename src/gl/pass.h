@@ -1,5 +1,4 @@
-// One rectangle of a film: draws of bounded length, the moments they bring back, a rung whenever its samples are
-// complete.
+// One rectangle of a film: draws of bounded length and their moments, a sample count whenever its samples are complete.
 #pragma once
 
 #include <functional>
@@ -8,17 +7,16 @@
 #include "framebuffer.h"
 #include "pacer.h"
 #include "program.h"
-#include "site_texture.h"
+#include "point_texture.h"
 
 namespace crescent::gl {
 
-/// Lights whose sums one draw can write beside the two attachments that it always has: 8 draw buffers are what core 3.3
-/// promises.
+/// Lights whose sums one draw can write in addition to its two fixed attachments: core 3.3 guarantees 8 draw buffers.
 constexpr std::size_t most_recorded = 12;
 constexpr std::size_t recorded_lights(std::size_t lights) { return lights < most_recorded ? lights : most_recorded; }
 constexpr std::size_t attachments_for(std::size_t lights) { return 2 + (recorded_lights(lights) + 1) / 2; }
 
-/// The pixels of one lobe in the rectangle, with the program that draws them.
+/// The pixels of one lobe in the rectangle, and the program that draws them.
 struct LobePart {
     Program* program = nullptr;
     Pacer* pacer = nullptr;
@@ -27,15 +25,15 @@ struct LobePart {
 
 class Pass {
 public:
-    Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts,
-        std::size_t lights, ProgressMonitor& monitor);
+    Pass(const Context& context, const PointTexture& shading_points, const Framebuffer& framebuffer,
+        std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& monitor);
 
-    /// Takes samples [done, n); then moments() are those of n samples.
+    /// Takes samples [done, n); after that, moments() are those of n samples.
     void advance_to(std::uint64_t n);
     const std::vector<Moments>& moments() const { return moments_; }
 
 private:
-    /// How often each sample is drawn, so that every light has its sums.
+    /// Returns how often each sample is drawn, so that every light has its sums.
     std::size_t passes() const { return lights_ == 0 ? 1 : (lights_ + most_recorded - 1) / most_recorded; }
     int samples_per_draw(std::uint64_t left) const;
     void take(int samples);
@@ -45,14 +43,14 @@ private:
     void gather(std::size_t first_light, int samples);
 
     const Context& context_;
-    const SiteTexture& sites_;
+    const PointTexture& shading_points_;
     const Framebuffer& framebuffer_;
     std::vector<LobePart> parts_;
     std::size_t lights_;
     ProgressMonitor& monitor_;
     std::uint64_t done_ = 0;
-    std::vector<Moments> moments_;            // one a group of the sites
-    std::vector<std::vector<double>> means_;  // of X so far, as moments_
+    std::vector<Moments> moments_;            // one per group of shading points
+    std::vector<std::vector<double>> means_;  // of X so far, like moments_
     std::vector<float> sums_, counts_;
     std::vector<std::vector<float>> met_;
 };

@@ -1,5 +1,5 @@
-// The vertex shader is always full_screen.vert.glsl. Where a shader does not compile or the two do not link, the error
-// has the driver's name, version and log, and the key to the log's line numbers.
+// The vertex shader is always full_screen.vert.glsl. If a shader does not compile or the two do not link, the error
+// contains the driver's name, version and log, and the key to the log's line numbers.
 #include "program.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// A linked GLSL program; what the driver says of a shader that does not compile becomes the error's text.
+// A linked GLSL program; the driver's message for a shader that does not compile becomes the error's text.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ public:
     Program& operator=(const Program&) = delete;
 
     void use() const;
-    // Uniforms of the program in use; a name that the compiler found unused is passed over.
+    // Uniforms of the program in use; names that the compiler found unused are ignored.
     void set(const char* name, int value) const { gl().Uniform1i(at(name), value); }
     void set(const char* name, std::uint32_t value) const { gl().Uniform1ui(at(name), value); }
     void set(const char* name, int x, int y) const { gl().Uniform2i(at(name), x, y); }

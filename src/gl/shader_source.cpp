@@ -1,5 +1,5 @@
-// Depth first: what a file includes goes before all of it, its #include lines become empty, and #line starts its own
-// numbering at 1000 k + 1, k its place in the order in which files were met.
+// Depth first: an included file goes before the text of the including file, whose #include lines become empty; #line
+// starts each file's numbering at 1000 k + 1, k its index in the order of first inclusion.
 #include "shader_source.h"
 
 #include <algorithm>

@@ -19,8 +19,8 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
 constexpr Two pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
 constexpr Two half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
-constexpr double third_of_half_pi = -0x1.f1976b7ed8fbcp-110;  // what pi/2 has beyond half_pi
-// pi/2 once more: 33 bits, 32 bits, the rest.
+constexpr double third_of_half_pi = -0x1.f1976b7ed8fbcp-110;  // the part of pi/2 beyond half_pi
+// pi/2 in parts: 33 bits, 32 bits, the rest.
 constexpr double upper = 0x1.921fb544p+0, middle = 0x1.0b4611a6p-34, lower = 0x1.3198a2e037073p-69;
 constexpr double round_magic = 0x1.8p52;
 
@@ -47,7 +47,7 @@ Reduced reduce(double x) {
 
 /// sin r for |r| <= pi/4.
 double sin_series(Two r) {
-    if (r.hi == 0) return r.hi;  // -0 stays
+    if (r.hi == 0) return r.hi;  // keeps -0
     const double z = r.hi * r.hi, w = z * z;
     const double even = -1.0 / 6 + w * (-1.0 / 5040 + w * (-1.0 / 39916800 + w * (-1.0 / 1307674368000)));
     const double odd = 1.0 / 120 + w * (1.0 / 362880 + w * (1.0 / 6227020800 + w * (1.0 / 355687428096000)));
@@ -111,7 +111,7 @@ Two root(Two a) {
 
 double other_side(double x) { return std::sqrt((1 - x) * (1 + x)); }
 
-/// A power of 2 that brings v > 0 near 1, or as near as a power of 2 can.
+/// Returns a power of 2 that brings v > 0 near 1, as far as possible.
 double scale_of(double v) {
     const std::uint64_t exponent = std::bit_cast<std::uint64_t>(v) >> 52;
     return std::bit_cast<double>((exponent > 2040       ? std::uint64_t{6}
@@ -165,7 +165,7 @@ double atan2(double y, double x) {
     if (x != x || y != y) return none;
     const double ay = std::fabs(y);
     double ax = std::fabs(x);
-    if (ay == 0 || ax == infinity || ay == infinity || ax == 0) {  // on an axis, or as good as
+    if (ay == 0 || ax == infinity || ay == infinity || ax == 0) {  // on an axis, up to rounding
         const bool corner = ax == infinity && ay == infinity, along_x = ay == 0 || (ax == infinity && !corner);
         const double lies = corner ? 0.25 * pi.hi : along_x ? 0 : half_pi.hi;
         const double behind = corner ? 0.75 * pi.hi : pi.hi - lies;
@@ -174,7 +174,7 @@ double atan2(double y, double x) {
     const double larger = ax > ay ? ax : ay, scale = scale_of(larger);
     const double sy = ay * scale;
     ax *= scale;
-    if (ax > 0 && sy / ax < 0x1p-400 && x > 0) return y / x;  // the angle is the quotient, whatever it rounds to
+    if (ax > 0 && sy / ax < 0x1p-400 && x > 0) return y / x;  // the angle is the quotient, with any rounding
     return std::copysign(angle(sy, std::copysign(ax, x)), y);
 }
 
@@ -190,7 +190,8 @@ double hypot(double x, double y, double z) {
     return root(product(a, a) + product(b, b) + product(c, c)).hi / scale;
 }
 
-// ---- exp, log and their kin, see functions.h.
+// ---- exp, log and related functions, see functions.h.
+//
 //
 //   e^x = 2^(k/32) e^r,  |r| <= ln 2 / 64:  a table of 2^(j/32) and six terms of the series.
 //   ln x = e ln 2 + ln c + 2 (s + s^3/3 + s^5/5 + ...),  s = (m - c)/(m + c),  x = 2^e m, c = j/32 the nearest to m.
@@ -200,10 +201,10 @@ namespace {
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr Two ln2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
-constexpr double ln2_upper = 0x1.62e42fefap-1;       // 36 bits of it: times a whole number < 2^17 it is exact
+constexpr double ln2_upper = 0x1.62e42fefap-1;       // 36 bits of it: its product with an integer < 2^17 is exact
 constexpr double ln2_lower = 0x1.cf79abc9e3b3ap-40;  // and the rest
 constexpr Two inverse_ln10 = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
-constexpr double whole_magic = 0x1.8p52;  // adding and subtracting it rounds to a whole number
+constexpr double whole_magic = 0x1.8p52;  // adding and subtracting it rounds to an integer
 constexpr int steps = 32;
 
 /// 2^(j/32): e^x = sum of x^k / k!.
@@ -245,7 +246,7 @@ struct Exponential {
     std::int64_t exponent;
     Two root;
     double p;
-    /// Where 2^exponent alone is more or less than a double holds: in two steps.
+    /// Scales in two steps if 2^exponent alone is outside the range of double.
     double scaled(double value) const {
         if (exponent > -1022 && exponent < 1024) return value * power_of_2(exponent);
         const std::int64_t half = exponent / 2;
@@ -254,7 +255,7 @@ struct Exponential {
     double value() const { return scaled(root.hi + (root.lo + root.hi * p)); }
 };
 
-/// k in 1/32 of a power of 2, r what is left.
+/// k in 1/32 of a power of 2, r the remainder.
 Exponential exponential(double k, double r) {
     const auto whole = static_cast<std::int64_t>(k);
     return {whole >> 5, roots[static_cast<std::size_t>(whole & (steps - 1))], growth(r)};
@@ -277,8 +278,8 @@ template <int bits = 27> double upper_part(double a) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & (~std::uint64_t{0} << bits));
 }
 
-/// s = (m - c + rest)/(m + c + rest), to twice the bits of a double: a rounded quotient and what it leaves over, in
-/// products so short that they are exact.
+/// s = (m - c + rest)/(m + c + rest), to twice the bits of a double: a rounded quotient and its remainder, in products
+/// short enough to be exact.
 template <bool with_rest> Two quotient(double m, double c, double rest) {
     const double d = m - c, high = upper_part(m) + c;
     double low = m - upper_part(m), small = 0;
@@ -328,7 +329,7 @@ template <bool with_rest> Two logarithm(double x, double rest = 0) {
     return ordered_sum(all.hi, all.lo + (whole.lo + small));
 }
 
-/// What a logarithm is where there is none to compute: 0, infinity and what is no number.
+/// Returns the special values of a logarithm: at 0, infinity and NaN.
 bool has_logarithm(double x, double& otherwise) {
     otherwise = x == 0 ? -unbounded : x > 0 ? x : no_number;
     return x > 0 && x < unbounded;
@@ -349,7 +350,7 @@ double expm1(double x) {
     if (!(x < 710)) return x == x ? unbounded : x;
     if (x < -40) return -1;
     if (std::fabs(x) < 0.1) {
-        if (x == 0) return x;  // -0 stays
+        if (x == 0) return x;  // keeps -0
         const double z = x * x;
         const double odd = 1.0 / 6 + z * (1.0 / 120 + z * (1.0 / 5040 + z * (1.0 / 362880)));
         const double even = 1.0 / 24 + z * (1.0 / 720 + z * (1.0 / 40320 + z * (1.0 / 3628800)));
@@ -367,7 +368,7 @@ namespace {
 /// ln(x + rest), rest at most ulp(x)/2.
 double rounded_logarithm(double x, double rest) {
     const Parts at = parts_of(x);
-    if (std::fabs(at.m - 1) < 0.05) {  // small beside its own terms
+    if (std::fabs(at.m - 1) < 0.05) {  // small against its own terms
         return (rest != 0 ? logarithm<true>(x, rest) : logarithm<false>(x)).hi;
     }
     const Two log_c = logs[at.row];
@@ -408,7 +409,7 @@ double pow(double x, double y) {
     }
     if (x == 0 || x == unbounded) return sign * ((x == 0) == (y < 0) ? unbounded : 0.0);
     if (x == 1) return sign;
-    const double within = y > 0x1p80 ? 0x1p80 : y < -0x1p80 ? -0x1p80 : y;  // beyond, every result is 0 or infinite
+    const double within = y > 0x1p80 ? 0x1p80 : y < -0x1p80 ? -0x1p80 : y;  // outside, every result is 0 or infinite
     return sign * exp(logarithm<false>(x) * within);
 }
 

@@ -1,7 +1,8 @@
-// Elementary functions of doubles from + - x / and sqrt alone, so that they are the same bits on every machine: a C
-// library picks its own by the processor, and the last bit differs.
+// Elementary functions of doubles from + - x / and sqrt alone, so that they have the same bits on every machine: a C
+// library selects its own by the processor, and the last bit differs.
 //
-//   function        range                        error, ULP (bounds that functions_test.cpp holds)
+//
+//   function        range                        error, ULP (bounds that functions_test.cpp tests)
 //   exp             all; > 0 from -745 on        0.54
 //   exp2            all                          0.54
 //   expm1           all                          0.75
@@ -16,10 +17,10 @@
 //   asin, acos      [-1, 1], else NaN            2
 //   hypot           all                          0.51
 //
-// An ULP is that of the exact value; a value under 2^-1022 may be off by one of 2^-1074 more. Zeros, infinities and NaN
-// go in and come out as in C.
+// An ULP is that of the exact value; a value below 2^-1022 may be off by one of 2^-1074 more. Zeros, infinities and NaN
+// are handled as in C.
 //
-// Each is one step of a table and a short series whose coefficients are 1/k! or 1/k; tables and whatever must not be
+// Each is one step of a table and a short series whose coefficients are 1/k! or 1/k; tables and values that must not be
 // rounded are kept in two doubles (two.h).
 #pragma once
 
@@ -37,7 +38,7 @@ double log10(double x);
 /// log(1 + x) without cancellation near 0.
 double log1p(double x);
 
-/// x^y; a negative x has a power for whole y alone.
+/// x^y; a negative x has a power only for integer y.
 double pow(double x, double y);
 /// x^n by squaring: for small n it is many times as fast as pow().
 constexpr double whole_power(double x, unsigned n) {
@@ -56,7 +57,7 @@ double tan(double x);
 struct SinCos {
     double sin, cos;
 };
-/// Both for little more than one.
+/// Both, for little more than the cost of one.
 SinCos sincos(double x);
 
 /// Inverse sine and cosine, radians; NaN outside [-1, 1].
@@ -65,7 +66,7 @@ double acos(double x);
 /// The angle of (x, y) from the x axis, in [-pi, pi].
 double atan2(double y, double x);
 
-/// The length of a vector, without overflow on the way.
+/// The length of a vector, without intermediate overflow.
 double hypot(double x, double y);
 double hypot(double x, double y, double z);
 

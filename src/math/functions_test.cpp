@@ -1,5 +1,5 @@
-// Every function against MPFR, which rounds correctly, over what its table in functions.h states: where callers are,
-// over all exponents, and where it is hard. The bounds here are those of the table.
+// Every function against MPFR, which rounds correctly, over the ranges of its table in functions.h: where it is used,
+// over all exponents, and at hard cases. The bounds here are those of the table.
 #include "math/functions.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ struct Row {
     std::vector<std::pair<double, double>> ranges;  // linear; an infinite end: every exponent
 };
 
-/// Evenly between a and b; with an infinite b: sign, exponent and mantissa at random.
+/// Draws evenly between a and b; for an infinite b, random sign, exponent and mantissa.
 double drawn(std::mt19937_64& bits, std::pair<double, double> range) {
     if (std::isinf(range.second)) {
         const double v = std::fabs(std::bit_cast<double>(bits()));
@@ -132,7 +132,7 @@ struct Pair {
     std::vector<std::array<std::pair<double, double>, 2>> ranges;
 };
 
-TEST(Functions, OfTwoArgumentsStayWithinTheErrorOfTheirTable) {
+TEST(Functions, TwoArgumentErrorsAreWithinTheTable) {
     const std::pair<double, double> any = {-infinity, infinity}, positive = {0, infinity};
     double (*length)(double, double) = hypot;
     const std::vector<Pair> table = {

@@ -1,5 +1,5 @@
 // Welch 1947 with the degrees of Welch and Satterthwaite, Holm 1979, Benjamini & Hochberg 1995 and, for dependent
-// tests, Benjamini & Yekutieli 2001. What has no spread at all is p = 1 where the means agree and 0 where they do not.
+// tests, Benjamini & Yekutieli 2001. Without any spread, p = 1 if the means are equal and 0 if not.
 #include "math/hypotheses.h"
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 #include "math/statistics.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Indices of the finite p values, rising.
+/// Returns the indices of the finite p values, ascending.
 std::vector<std::size_t> rising(std::span<const double> p) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -25,7 +25,7 @@ std::vector<std::size_t> rising(std::span<const double> p) {
     return order;
 }
 
-Welch judged(double difference, double se, double df) {
+Welch checked(double difference, double se, double df) {
     Welch w{difference, se, df, 1};
     if (!std::isfinite(difference) || !std::isfinite(se)) w.p = nan;
     else if (se > 0) w.p = two_sided_p(difference / se, df);
@@ -62,8 +62,8 @@ MeanInterval mean_interval(std::span<const double> values, double confidence) {
 MeanInterval count_interval(std::span<const double> counts, double of, double confidence) {
     MeanInterval out = mean_interval(counts, confidence);
     if (out.n < 2) return out;
-    const double trials = static_cast<double>(out.n) * of, p = out.mean / of;
-    const ShareInterval independent = binomial_interval(trials, std::round(p * trials), (1 - confidence) / 2);
+    const double check_cases = static_cast<double>(out.n) * of, p = out.mean / of;
+    const ShareInterval independent = binomial_interval(check_cases, std::round(p * check_cases), (1 - confidence) / 2);
     // |p' - p| = t se' at both ends, where the standard error of p' is that of p scaled as a binomial's, p' (1 - p').
     double low = p, high = p;
     if (p > 0 && p < 1) {
@@ -80,11 +80,11 @@ MeanInterval count_interval(std::span<const double> counts, double of, double co
 Welch welch_test(const MeanInterval& a, const MeanInterval& b) {
     const double va = a.se * a.se, vb = b.se * b.se, sum = va + vb;
     const double denominator = va * va / static_cast<double>(a.n - 1) + vb * vb / static_cast<double>(b.n - 1);
-    return judged(a.mean - b.mean, std::sqrt(sum), denominator > 0 ? sum * sum / denominator : 1);
+    return checked(a.mean - b.mean, std::sqrt(sum), denominator > 0 ? sum * sum / denominator : 1);
 }
 
 Welch paired_test(const MeanInterval& differences) {
-    return judged(differences.mean, differences.se, std::max(1.0, static_cast<double>(differences.n) - 1));
+    return checked(differences.mean, differences.se, std::max(1.0, static_cast<double>(differences.n) - 1));
 }
 
 double detectable(const Welch& test, double alpha) {
@@ -126,4 +126,4 @@ std::vector<bool> holm(std::span<const double> p, double alpha) {
     return out;
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

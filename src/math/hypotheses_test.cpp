@@ -1,4 +1,4 @@
-// Tests and corrections beside tables and published examples.
+// Tests and corrections against tables and published examples.
 #include "math/hypotheses.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 namespace {
 
 TEST(Hypotheses, KnowStudentsT) {
@@ -20,7 +20,7 @@ TEST(Hypotheses, KnowStudentsT) {
 }
 
 TEST(Hypotheses, AnIntervalOfCountsLiesBetween0AndAll) {
-    // Clopper & Pearson of 0 and of 4 in 400 (tables: 0 to 0.0092, 0.0027 to 0.0254), as counts a 100.
+    // Clopper & Pearson of 0 and of 4 in 400 (tables: 0 to 0.0092, 0.0027 to 0.0254), as counts per 100.
     const MeanInterval none = count_interval(std::vector<double>{0, 0, 0, 0}, 100, 0.95);
     EXPECT_EQ(none.low, 0);
     EXPECT_NEAR(none.high, 0.918, 1e-3);
@@ -37,7 +37,7 @@ TEST(Hypotheses, AnIntervalOfCountsLiesBetween0AndAll) {
     EXPECT_LT(mean_interval(std::vector<double>{0, 0, 0, 5}, 0.95).low, 0);
 }
 
-/// How often the interval of counts holds their expectation.
+/// Returns how often the interval of counts contains their expectation.
 template <class Count> double counts_covered(Count count, double expected) {
     std::mt19937_64 random(1);
     int held = 0;
@@ -53,10 +53,10 @@ template <class Count> double counts_covered(Count count, double expected) {
 
 TEST(Hypotheses, AnIntervalOfCountsHoldsTheirExpectation) {
     const double least = 0.95 - 3 * std::sqrt(0.95 * 0.05 / 2000);
-    for (const double p : {1e-4, 1e-3, 0.02, 0.5, 0.999})  // pixels by themselves
+    for (const double p : {1e-4, 1e-3, 0.02, 0.5, 0.999})  // independent pixels
         EXPECT_GE(counts_covered([&](auto& r) { return std::binomial_distribution(1024, p)(r); }, 1024 * p), least)
             << p;
-    for (const double p : {0.02, 0.2, 0.5})  // pixels that are fireflies sixteen at once
+    for (const double p : {0.02, 0.2, 0.5})  // fireflies of sixteen pixels at once
         EXPECT_GE(counts_covered([&](auto& r) { return 16 * std::binomial_distribution(64, p)(r); }, 1024 * p), least)
             << p;
 }
@@ -87,4 +87,4 @@ TEST(Hypotheses, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
 }
 
 }  // namespace
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -1,4 +1,4 @@
-// A handful of unknowns by least squares of rows that each ought to come to one.
+// A few unknowns by least squares of rows whose products should equal one.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
-/// Gauss's elimination, the largest pivot first; none where a pivot is below `least` of what stood there.
+/// Gauss elimination, the largest pivot first; empty if a pivot is below `least` of its original value.
 inline std::optional<std::vector<double>> solved(
     std::vector<std::vector<double>> a, std::vector<double> b, double least) {
     const std::size_t n = b.size();
@@ -35,13 +35,13 @@ inline std::optional<std::vector<double>> solved(
     return b;
 }
 
-/// x with x . row = 1 at most rows, by least squares: twice again without the tenth that is furthest off, `fewest`
-/// kept. None of rows that say next to the same (`least`, see solved()).
+/// x with x . row = 1 at most rows, by least squares, repeated twice without the tenth with the largest residuals,
+/// keeping at least `fewest`. Empty if the rows are nearly dependent (`least`, see solved()).
 inline std::optional<std::vector<double>> solved_for_one(
     std::span<const std::vector<double>> rows, std::size_t fewest, double least) {
     if (rows.size() < fewest || rows.empty()) return {};
     const std::size_t n = rows[0].size();
-    std::vector<std::pair<double, std::size_t>> at;  // how far off, and which row
+    std::vector<std::pair<double, std::size_t>> at;  // residual and row
     for (std::size_t k = 0; k < rows.size(); ++k) at.push_back({0, k});
     std::optional<std::vector<double>> x;
     for (int round = 0; round < 3; ++round) {
@@ -65,4 +65,4 @@ inline std::optional<std::vector<double>> solved_for_one(
     return x;
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -14,11 +14,11 @@ template <unsigned n> class Gauss {
 public:
     static constexpr std::size_t half = (n + 1) / 2;
 
-    /// The nodes in [0, 1), rising, and their weights; -x weighs what x does.
+    /// The nodes in [0, 1), ascending, and their weights; -x has the weight of x.
     static const std::array<double, half>& abscissa() { return rule().x; }
     static const std::array<double, half>& weights() { return rule().w; }
 
-    /// Integral of f over [a, b].
+    /// Returns the integral of f over [a, b].
     template <class Function> static auto integrate(Function&& f, double a, double b) {
         const double middle = 0.5 * (a + b), radius = 0.5 * (b - a);
         const Rule& r = rule();
@@ -62,11 +62,11 @@ private:
 }  // namespace crescent::math
 
 // ---- Integrals over an interval by two rules at once: Kronrod's, and the Gauss rule among its nodes (Piessens et al.
-// 1983, QUADPACK). Their difference bounds the error of the finer one, by far where the integrand is smooth.
+// 1983, QUADPACK); their difference bounds the error of the finer one, with a large margin if the integrand is smooth.
 
 namespace crescent::inline reference {
 
-/// Nodes from the middle outwards; each second one, from the middle on, is Gauss's too.
+/// Nodes from the middle outwards; every second one, from the middle on, is also Gauss's.
 template <std::size_t n> struct KronrodRule {
     std::array<double, n> x, kronrod;
     std::array<double, (n + 1) / 2> gauss;
@@ -90,11 +90,11 @@ inline constexpr KronrodRule<8> kronrod_15 = {
         0.129484966168869693270611432679082}};
 
 template <class V> struct TwoRules {
-    V fine, off;  // Kronrod's integral; less Gauss's
-    V spread;     // Gauss's less the middle's
+    V fine, off;  // Kronrod's integral; its difference from Gauss's
+    V spread;     // Gauss's minus the middle point's
 };
 
-/// f gives any V with V + V, V - V and double * V.
+/// f returns any V with V + V, V - V and double * V.
 template <std::size_t n, class F> auto by_two_rules(const KronrodRule<n>& rule, const F& f, double lo, double hi) {
     const double middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
     const auto first = f(middle);

@@ -1,4 +1,4 @@
-// n points are exact for polynomials up to degree 2n - 1, here on [-1, 2], and no further.
+// n points are exact for polynomials up to degree 2n - 1, here on [-1, 2], and not beyond.
 #include <gtest/gtest.h>
 
 #include "math/quadrature.h"

@@ -13,7 +13,7 @@ inline Vec3d spherical(double sin, double cos, double phi) {
     const SinCos around = sincos(phi);
     return {sin * around.cos, sin * around.sin, cos};
 }
-/// The vector of cos theta, in [-1, 1] but for rounding, and phi.
+/// The vector of cos theta, in [-1, 1] up to rounding, and phi.
 inline Vec3d spherical(double cos, double phi) {
     const double squared = 1 - cos * cos;
     return spherical(std::sqrt(squared > 0 ? squared : 0), cos, phi);

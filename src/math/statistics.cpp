@@ -1,4 +1,4 @@
-// Two passes: the mean, then powers of what each number differs from it by.
+// Two passes: the mean, then powers of each number's difference from it.
 #include "math/statistics.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 Spread spread(std::span<const double> x) {
     Spread s;
@@ -33,12 +33,12 @@ Spread spread(std::span<const double> x) {
 double johnson_t(const Spread& s, double expected) {
     const double d = s.mean - expected;
     if (!(s.sd > 1e-7 * std::fabs(expected)))
-        return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // every sample alike
+        return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // all samples are equal
     const double corrected = d + s.skew * s.sd / (6 * s.n) + s.skew / (3 * s.sd) * d * d;
     return corrected * std::sqrt(s.n) / s.sd;
 }
 
-// ---- Quantiles of a few numbers: sorted, and a straight line between two neighbours.
+// ---- Quantiles of a few numbers: sorted, with linear interpolation between two neighbours.
 
 double quantile(std::vector<double> values, double q) {
     ensure(!values.empty(), "a quantile of something");
@@ -51,8 +51,8 @@ double quantile(std::vector<double> values, double q) {
     return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
 }
 
-// ---- Counts of bins beside what is due in each: by Poisson's standard deviations, and by the chi-square over all of
-// them.
+// ---- Counts of bins compared with their expectations: by Poisson's standard deviations, and by the chi-square over
+// all of them.
 
 std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected) {
     const auto off = [&](std::size_t i) {
@@ -90,9 +90,9 @@ std::string rate_text(std::uint64_t hits, std::uint64_t of) {
 }
 
 // ---- Series and continued fractions of the incomplete gamma and beta functions (Abramowitz & Stegun 6.5.29, 6.5.31,
-// 26.5.8, the fractions by the method of Lentz), with what stands before them as a density in the form of C. Loader
-// 2000, "Fast and accurate computation of binomial probabilities": Stirling's error and the deviance keep every digit
-// where logarithms of gamma functions would cancel.
+// 26.5.8, the fractions by the method of Lentz). The factors before them are densities in the form of C. Loader 2000,
+// "Fast and accurate computation of binomial probabilities": Stirling's error and the deviance keep every digit where
+// logarithms of gamma functions would cancel.
 
 namespace {
 
@@ -134,7 +134,7 @@ double binomial_density(double a, double b, double x, double y) {
 
 double away_from_0(double x) { return std::fabs(x) < tiny ? tiny : x; }
 
-/// 1/(b + a1/(b1 + a2/(b2 + ...))): `step(k, a, b)` gives the k-th pair.
+/// 1/(b + a1/(b1 + a2/(b2 + ...))): `step(k, a, b)` sets the k-th pair.
 template <class Step> double fraction(double b, Step step) {
     double c = 1 / tiny, d = 1 / away_from_0(b), h = d;
     for (int k = 1; k < most_terms; ++k) {
@@ -175,7 +175,7 @@ double beta_fraction(double a, double b, double x, double y) {
     return binomial_density(a, b, x, y) * b / (a + b) * f;
 }
 
-/// Where a function that rises over [low, high] passes a value, to the last bit.
+/// Finds where an increasing function on [low, high] passes a value, to the last bit.
 template <class Function> double passes(Function f, double value, double low, double high) {
     for (;;) {
         const double middle = low + 0.5 * (high - low);
@@ -227,12 +227,12 @@ ShareInterval binomial_interval(double n, double k, double alpha) {
     return {low, high};
 }
 
-// ---- Hypergeometric probabilities by the ratio of neighbours from one end, so that no factorial is formed; binomial
+// ---- Hypergeometric probabilities by the ratio of neighbours from one end, so that no factorial is needed; binomial
 // tails by the incomplete beta function.
 
 double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::uint64_t nb) {
     const std::uint64_t k = ka + kb, low = k > nb ? k - nb : 0, high = std::min(k, na);
-    // P(i + 1)/P(i) = (na - i)(k - i) / ((i + 1)(nb - k + i + 1)). The largest is kept at 1: nothing overflows.
+    // P(i + 1)/P(i) = (na - i)(k - i) / ((i + 1)(nb - k + i + 1)). The largest is kept at 1, so nothing overflows.
     std::vector<double> weight{1};
     const auto d = [](std::uint64_t x) { return static_cast<double>(x); };
     for (std::uint64_t i = low; i < high; ++i) {
@@ -240,7 +240,7 @@ double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::u
         if (weight.back() > 1)
             for (const double top = weight.back(); double& w : weight) w /= top;
     }
-    constexpr double slack = 1 + 1e-9;  // outcomes that are equally likely differ by rounding
+    constexpr double slack = 1 + 1e-9;  // outcomes with equal probability differ by rounding
     const double seen = weight[ka - low] * slack;
     double all = 0, extreme = 0;
     for (const double w : weight) all += w, extreme += w <= seen ? w : 0;
@@ -255,4 +255,4 @@ double binomial_exact(std::uint64_t k, std::uint64_t n, double p) {
     return std::min(1.0, 2 * std::min(above, below));
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -1,4 +1,4 @@
-// Tails beside Boost.Math's, which come from other expansions.
+// Tails against Boost.Math's, which use other expansions.
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -10,13 +10,13 @@
 
 #include "math/statistics.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 namespace {
 
 constexpr double bound = 1e-12;
 
 void near(double ours, double theirs, const char* what, double a, double x) {
-    if (theirs < 1e-290) return;  // where a tail is but a few bits long
+    if (theirs < 1e-290) return;  // where a tail has only a few bits
     EXPECT_LE(std::fabs(ours / theirs - 1), bound)
         << what << '(' << a << ", " << x << "): " << ours << " beside " << theirs;
 }
@@ -59,7 +59,7 @@ TEST(Distributions, QuantilesAndIntervalsAreThoseOfBoost) {
 
 namespace {
 
-TEST(ExactTests, FisherIsTheHypergeometricProbabilityOfNoLikelierSplits) {
+TEST(ExactTests, FisherSumsNoLikelierSplits) {
     EXPECT_NEAR(fisher_exact(4, 4, 0, 4), 2.0 / 70, 1e-15);
     EXPECT_NEAR(fisher_exact(3, 4, 1, 4), 0.48571428571428565, 1e-12);
     EXPECT_NEAR(fisher_exact(1, 24, 0, 24), 1, 1e-12);
@@ -80,7 +80,7 @@ TEST(ExactTests, BinomialIsTwiceTheSmallerTail) {
 
 }  // namespace
 
-// ---- Quantiles of sets whose answer is seen at once.
+// ---- Quantiles of sets with an obvious answer.
 
 namespace {
 
@@ -102,4 +102,4 @@ TEST(Quantiles, AnOrderStatisticCountsFromTheSmallest) {
 }
 
 }  // namespace
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -8,11 +8,11 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline stats {
+namespace crescent::inline statistics {
 
 namespace {
 
-/// The mean of ln(1 - theta v), with one logarithm for a product of many factors: taken before the product leaves the
+/// The mean of ln(1 - theta v), with one logarithm for a product of many factors, taken before the product leaves the
 /// range of doubles (a factor is below 1e108 for any two floats).
 double mean_log1p(const std::vector<double>& x, double theta) {
     double sum = 0, product = 1;
@@ -25,7 +25,7 @@ double mean_log1p(const std::vector<double>& x, double theta) {
     return (sum + math::log(product)) / static_cast<double>(x.size());
 }
 
-/// Zhang & Stephens' posterior mean of theta = -k/sigma over a grid, x rising.
+/// Zhang & Stephens' posterior mean of theta = -k/sigma over a grid, x ascending.
 double posterior_theta(const std::vector<double>& x) {
     const double n = static_cast<double>(x.size());
     const int grid = 30 + static_cast<int>(std::sqrt(n));
@@ -53,14 +53,15 @@ template <class T> std::optional<Tail> fit(std::span<const T> largest) {
     const double threshold = static_cast<double>(largest.back());
     std::vector<double> x;
     for (std::size_t i = largest.size() - 1; i-- > 0;) x.push_back(static_cast<double>(largest[i]) - threshold);
-    const double spread = 1e-5 * std::fabs(threshold);  // float samples of one value differ by rounding alone
+    const double spread = 1e-5 * std::fabs(threshold);  // equal float samples differ only by rounding
     if (!std::isfinite(x.back()) || !(x.back() > spread)) return {};
     std::erase_if(x, [spread](double v) { return !(v > spread); });  // ties at the threshold
     if (x.size() < 5) return {};
     const double n = static_cast<double>(x.size());
     constexpr double prior = 10;  // pseudo-exceedances at k = 1/2
     const double k = (n * mean_log1p(x, posterior_theta(x)) + prior * 0.5) / (n + prior);
-    // The likelihood is regular for k > -1/2; below, what is left is the spread of the mean logarithm that k is.
+    // The likelihood is regular for k > -1/2; below, the standard error is the spread of the mean logarithm, which k
+    // is.
     return Tail{k, std::max(1 + k, -k) / std::sqrt(n), x.size()};
 }
 
@@ -82,4 +83,4 @@ std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
     return std::fabs(wide->k - deep->k) > 2 * math::hypot(wide->se, deep->se) ? deep : wide;
 }
 
-}  // namespace crescent::inline stats
+}  // namespace crescent::inline statistics

@@ -1,8 +1,9 @@
-// A number kept in two doubles, hi + lo with |lo| <= ulp(hi) / 2: about 106 bits, for what functions.h must not round.
+// A number kept in two doubles, hi + lo with |lo| <= ulp(hi) / 2: about 106 bits, for values that functions.h must not
+// round.
 //
-// T. J. Dekker 1971, "A floating-point technique for extending the available precision", Numer. Math. 18, and
-// D. E. Knuth, TAOCP 2, 4.2.2: sums and products of two doubles that lose nothing, from + - x alone.
-// Everything here is constexpr: the tables of functions.h are series that the compiler sums.
+// T. J. Dekker 1971, "A floating-point technique for extending the available precision", Numer. Math. 18, and D. E.
+// Knuth, TAOCP 2, 4.2.2: exact sums and products of two doubles, from + - x alone. Everything here is constexpr: the
+// compiler sums the series of the tables of functions.h.
 #pragma once
 
 namespace crescent::math {
@@ -11,13 +12,13 @@ struct Two {
     double hi, lo;
 };
 
-/// a + b without loss, for |a| >= |b| or a = 0 (Dekker).
+/// Returns a + b exactly, for |a| >= |b| or a = 0 (Dekker).
 constexpr Two ordered_sum(double a, double b) {
     const double s = a + b;
     return {s, b - (s - a)};
 }
 
-/// a + b without loss (Knuth).
+/// Returns a + b exactly (Knuth).
 constexpr Two sum(double a, double b) {
     const double s = a + b, from_b = s - a;
     return {s, (a - (s - from_b)) + (b - from_b)};
@@ -30,7 +31,7 @@ constexpr Two halves(double a) {
     return {hi, a - hi};
 }
 
-/// a b without loss where nothing overflows and the low part does not go under 2^-1022 (Dekker).
+/// Returns a b exactly if nothing overflows and the low part is not below 2^-1022 (Dekker).
 constexpr Two product(double a, double b) {
     const double p = a * b;
     const Two x = halves(a), y = halves(b);
@@ -56,7 +57,7 @@ constexpr Two operator*(Two a, Two b) {
     const Two p = product(a.hi, b.hi);
     return ordered_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
-/// The quotient of the leading parts, and what it leaves over, divided as well.
+/// Divides the leading parts, and then the remainder.
 constexpr Two operator/(Two a, Two b) {
     const double inverse = 1 / b.hi, q = a.hi * inverse;
     const Two p = product(q, b.hi);

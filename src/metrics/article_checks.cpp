@@ -1,6 +1,5 @@
-// What the note says of heavy tails is put to a measurement: quantiles of furnaces by n and by the resolution of u,
-// draws that fall outside the Phong arm's support, and how often a t-test rejects a mean that is right. Seeds are the
-// experiment's.
+// Tests what the article says of heavy tails: quantiles of furnaces by n and by the resolution of u, draws outside the
+// Phong sampler's support, and how often a t-test rejects a correct mean. Seeds are the experiment's.
 #include "metrics/article_checks.h"
 
 #include <algorithm>
@@ -18,20 +17,20 @@
 #include "render/estimator.h"
 #include "samplers/all.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
 namespace {
 
-/// What the heavy tail is shown on: the control shape's material as luminances, seen straight from above.
-struct FurnaceSubject {
+/// The case for the heavy tail: the control shape's material as luminances, seen from directly above.
+struct FurnaceCase {
     Surface surface;
     double s = 0, rho_d = 0, rho_s = 0;
     std::uint32_t seed = 0;
 
-    /// The cosine with R for u.
+    /// Returns the cosine with R for u.
     double cosine(double u) const { return math::exp(math::log(u) / (s + 1)); }
-    /// X of the combined furnace for u, R = n, where the angle about R does not matter: (cos/p) (rho_d/pi + rho_s lobe)
-    /// with p = (s+1)/(2 pi) u/cos and lobe = (s+2)/(2 pi) u/cos.
+    /// Returns X of the combined furnace for u, R = n, where the angle about R does not matter: (cos/p) (rho_d/pi +
+    /// rho_s lobe) with p = (s+1)/(2 pi) u/cos and lobe = (s+2)/(2 pi) u/cos.
     double weight(double u, double cos) const {
         const double diffuse = 2 * rho_d / (s + 1), lobe = rho_s * (s + 2) / (s + 1);
         return diffuse * (cos * cos / u) + lobe * cos;
@@ -39,25 +38,25 @@ struct FurnaceSubject {
 };
 
 constexpr std::size_t replicates = 256;
-const std::vector<std::uint64_t> furnace_rungs = {64, 256, 1024, 4096, 16384};
+const std::vector<std::uint64_t> furnace_sample_counts = {64, 256, 1024, 4096, 16384};
 
 FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, const std::vector<double>& means) {
     return {std::move(arithmetic), bits, n, quantile(means, 0.05), quantile(means, 0.25), quantile(means, 0.5),
         quantile(means, 0.75), quantile(means, 0.95)};
 }
 
-void float_furnace(const FurnaceSubject& subject, const std::string& isa, ProgressMonitor& monitor, Evidence& out) {
-    const ShadingPoints sites = furnace_sites(subject.surface, replicates);
-    for (std::uint64_t n : furnace_rungs) {
-        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &monitor.stop);
+void float_furnace(const FurnaceCase& adapter, const std::string& isa, ProgressMonitor& monitor, Evidence& out) {
+    const ShadingPoints shading_points = furnace_points(adapter.surface, replicates);
+    for (std::uint64_t n : furnace_sample_counts) {
+        const Moments m = estimate_points(shading_points, "phong", n, adapter.seed, isa, &monitor.stop);
         std::vector<double> means;
         for (std::size_t i = 0; i < replicates; ++i)
-            means.push_back((subject.rho_d / pi * m.g[i] + subject.rho_s * m.g_lobe[i]) / static_cast<double>(n));
+            means.push_back((adapter.rho_d / pi * m.g[i] + adapter.rho_s * m.g_lobe[i]) / static_cast<double>(n));
         out.furnace.push_back(quantiles("float32", 24, n, means));
     }
 }
 
-/// Resolutions of u in double precision that are shown beside each other.
+/// Resolutions of u in double precision that are compared.
 constexpr std::array<int, 3> resolutions = {24, 32, 53};
 
 /// u as an odd multiple of 2^-bits, from 64 random bits.
@@ -65,7 +64,7 @@ double unit_double(std::uint64_t h, int bits) {
     return static_cast<double>(h >> (64 - bits) | 1u) / static_cast<double>(std::uint64_t{1} << bits);
 }
 
-/// (1 + d)^k for many d. In u's last bits it takes a few terms of the series: the next one is under 1e-17.
+/// (1 + d)^k for many d. In u's last bits it needs a few terms of the series: the next one is below 1e-17.
 struct PowerNear1 {
     double k, second = (k - 1) / 2, third = (k - 2) / 3, fourth = (k - 3) / 4, fifth = (k - 4) / 5;
     double operator()(double d) const {
@@ -74,60 +73,63 @@ struct PowerNear1 {
     }
 };
 
-/// One draw of random bits serves every resolution, and one cosine: resolutions of a u differ by little.
-void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& monitor, Evidence& out) {
-    using Means = std::vector<std::vector<double>>;  // [rung][replicate]
-    const PowerNear1 root = {1 / (subject.s + 1)};
+/// One draw of random bits and one cosine serve every resolution, because resolutions of a u differ by little.
+void double_furnaces(const FurnaceCase& adapter, ProgressMonitor& monitor, Evidence& out) {
+    using Means = std::vector<std::vector<double>>;  // [sample count][replicate]
+    const PowerNear1 root = {1 / (adapter.s + 1)};
     std::array<Means, resolutions.size()> means;
-    means.fill(Means(furnace_rungs.size(), std::vector<double>(replicates)));
+    means.fill(Means(furnace_sample_counts.size(), std::vector<double>(replicates)));
     parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
         std::array<double, resolutions.size()> sums{};
         std::uint64_t j = 0;
-        for (std::size_t rung = 0; rung < furnace_rungs.size() && !monitor.stop; ++rung) {
-            for (; j < furnace_rungs[rung]; ++j) {
+        for (std::size_t sample_count = 0; sample_count < furnace_sample_counts.size() && !monitor.stop;
+            ++sample_count) {
+            for (; j < furnace_sample_counts[sample_count]; ++j) {
                 const auto h =
-                    draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
+                    draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, adapter.seed);
                 const std::uint64_t bits = std::uint64_t{h.x} << 32 | h.y;
-                const double finest = unit_double(bits, resolutions.back()), cos = subject.cosine(finest);
+                const double finest = unit_double(bits, resolutions.back()), cos = adapter.cosine(finest);
                 const double inverse = 1 / finest;
                 for (std::size_t i = 0; i < sums.size(); ++i) {
                     const double u = unit_double(bits, resolutions[i]);
-                    sums[i] += subject.weight(u, cos * root((u - finest) * inverse));
+                    sums[i] += adapter.weight(u, cos * root((u - finest) * inverse));
                 }
             }
-            for (std::size_t i = 0; i < sums.size(); ++i) means[i][rung][r] = sums[i] / static_cast<double>(j);
+            for (std::size_t i = 0; i < sums.size(); ++i) means[i][sample_count][r] = sums[i] / static_cast<double>(j);
         }
     });
     for (std::size_t i = 0; i < resolutions.size(); ++i)
-        for (std::size_t rung = 0; rung < furnace_rungs.size(); ++rung)
-            out.furnace.push_back(quantiles("float64", resolutions[i], furnace_rungs[rung], means[i][rung]));
+        for (std::size_t sample_count = 0; sample_count < furnace_sample_counts.size(); ++sample_count)
+            out.furnace.push_back(
+                quantiles("float64", resolutions[i], furnace_sample_counts[sample_count], means[i][sample_count]));
 }
 
-/// Draws by the cosine arm, asks the Phong arm for its density: where it is 0, Lambert's light is lost.
-LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
+/// Draws with the cosine sampler and evaluates the Phong sampler's density: where it is 0, Lambert's light is lost.
+LostSupport lost_support(const FurnaceCase& adapter, double theta_deg) {
     constexpr std::uint64_t n = 100'000;
     const double theta = theta_deg * pi / 180;
-    ShadingPoint<double> site{};
-    site.wo = {math::sin(theta), 0, math::cos(theta)};
-    site.s = subject.s;
-    const Cosine<double> cosine(site);
-    const Vec3<double> R = mirror(site.wo);
+    ShadingPoint<double> shading_point{};
+    shading_point.wo = {math::sin(theta), 0, math::cos(theta)};
+    shading_point.s = adapter.s;
+    const Cosine<double> cosine(shading_point);
+    const Vec3<double> R = mirror(shading_point.wo);
     std::uint64_t lost = 0;
     for (std::uint64_t j = 0; j < n; ++j) {
-        const Vec2<float> u = draw(subject.seed, 0, j);
-        const Vec3<double> wi = cosine.sample(site.wo, {static_cast<double>(u.x), static_cast<double>(u.y)}).wi;
-        lost += dot(wi, R) <= 0;  // the support of the Phong pdf, however small its power gets
+        const Vec2<float> u = draw(adapter.seed, 0, j);
+        const Vec3<double> wi =
+            cosine.sample(shading_point.wo, {static_cast<double>(u.x), static_cast<double>(u.y)}).wi;
+        lost += dot(wi, R) <= 0;  // the support of the Phong pdf, for any value of its power
     }
     const double p = static_cast<double>(lost) / static_cast<double>(n);
     return {theta_deg, p, std::sqrt(p * (1 - p) / static_cast<double>(n)), (1 - math::cos(theta)) / 2};
 }
 
-/// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
+/// Repeats a t-test of the Phong sampler on a Lambert surface against the known mean.
 FalseRejection false_rejection(
-    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, ProgressMonitor& monitor) {
+    const FurnaceCase& adapter, double s, double alpha, const std::string& isa, ProgressMonitor& monitor) {
     constexpr std::uint64_t n = 100'000;
     constexpr int runs = 128;
-    Surface lambert = subject.surface;
+    Surface lambert = adapter.surface;
     lambert.rho_d = {1, 1, 1}, lambert.rho_s = 0, lambert.s = s;
     FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
     std::vector<int> rejected(runs);
@@ -135,9 +137,9 @@ FalseRejection false_rejection(
     constexpr int share = 16;
     parallel_for(0, (runs + share - 1) / share, [&](int part) {
         const int first = part * share, count = std::min(share, runs - first);
-        ShadingPoints sites = furnace_sites(lambert, static_cast<std::size_t>(count));
-        for (std::uint32_t& pixel : sites.pixel) pixel += static_cast<std::uint32_t>(first);
-        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &monitor.stop);
+        ShadingPoints shading_points = furnace_points(lambert, static_cast<std::size_t>(count));
+        for (std::uint32_t& pixel : shading_points.pixel) pixel += static_cast<std::uint32_t>(first);
+        const Moments m = estimate_points(shading_points, "phong", n, adapter.seed, isa, &monitor.stop);
         for (int i = 0; i < count; ++i) {
             const std::size_t at = static_cast<std::size_t>(i);
             const double mean = m.g[at] / pi / static_cast<double>(n), off = mean - 1;
@@ -157,28 +159,28 @@ FalseRejection false_rejection(
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor) {
     Evidence out;
     if (!experiment.note_evidence || !why_no_evidence(experiment).empty()) return out;
-    FurnaceSubject subject;
-    subject.surface = furnace_surface(experiment, *evidence_shape(experiment), false);
-    subject.s = out.s = subject.surface.s;
-    subject.rho_d = out.rho_d = luminance(subject.surface.rho_d);
-    subject.rho_s = out.rho_s = subject.surface.rho_s;
-    subject.seed = experiment.seed;
+    FurnaceCase adapter;
+    adapter.surface = furnace_surface(experiment, *evidence_shape(experiment), false);
+    adapter.s = out.s = adapter.surface.s;
+    adapter.rho_d = out.rho_d = luminance(adapter.surface.rho_d);
+    adapter.rho_s = out.rho_s = adapter.surface.rho_s;
+    adapter.seed = experiment.seed;
     out.expected = out.rho_d + out.rho_s;
-    float_furnace(subject, isa, monitor, out);
-    double_furnaces(subject, monitor, out);
+    float_furnace(adapter, isa, monitor, out);
+    double_furnaces(adapter, monitor, out);
     for (int bits : resolutions) {
-        const double k = (subject.s - 1) / (subject.s + 1);
+        const double k = (adapter.s - 1) / (adapter.s + 1);
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
     out.lost.resize(11);  // from 0 to 75 degrees
     parallel_for(std::size_t{0}, out.lost.size(),
-        [&](std::size_t k) { out.lost[k] = lost_support(subject, 7.5 * static_cast<double>(k)); });
+        [&](std::size_t k) { out.lost[k] = lost_support(adapter, 7.5 * static_cast<double>(k)); });
     constexpr std::array exponents = {2.0, 3.0, 8.0, 32.0, 128.0};
     out.rejections.resize(exponents.size());
     parallel_for(std::size_t{0}, exponents.size(),
-        [&](std::size_t k) { out.rejections[k] = false_rejection(subject, exponents[k], out.alpha, isa, monitor); });
+        [&](std::size_t k) { out.rejections[k] = false_rejection(adapter, exponents[k], out.alpha, isa, monitor); });
     monitor.check();
     return out;
 }
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

@@ -1,15 +1,15 @@
-// Where theory knows the answer: lost shares, rejections by exponent, the medians of furnaces.
+// Comparisons with theory: lost shares, rejections by exponent, the medians of furnaces.
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "metrics/article_checks.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 namespace {
 
-/// A furnace's median lacks of the expected value about the part of the diffuse tail that n samples do not reach, rho_d
-/// n^-(1-k) with k = (s-1)/(s+1): 4 times that is out of reach.
+/// A furnace's median is below the expected value by about the part of the diffuse tail that n samples do not reach,
+/// rho_d n^-(1-k) with k = (s-1)/(s+1); returns 4 times that.
 double out_of_reach(const Evidence& e, const FurnaceQuantiles& q) {
     const double k = (e.s - 1) / (e.s + 1);
     return e.expected - 4 * e.rho_d * std::pow(static_cast<double>(q.n), -(1 - k));
@@ -21,8 +21,8 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
     ASSERT_FALSE(e.lost.empty());
     for (const LostSupport& l : e.lost) EXPECT_NEAR(l.measured, l.theory, 4 * l.se + 1e-9) << l.theta_R_deg;
     for (const FalseRejection& r : e.rejections) {
-        // A finite variance (s < 3) keeps close to the level of 1 %; where it is infinite the right mean is rejected
-        // the oftener the heavier the tail is, at s = 32 more often than not.
+        // With finite variance (s < 3) the rate stays near the level of 1 %; with infinite variance the correct mean is
+        // rejected more often the heavier the tail is, at s = 32 in more than half of the tests.
         const double least = r.s < 8 ? 0
             : r.s == 8               ? 0.03
                                      : 0.5,
@@ -43,4 +43,4 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
 }
 
 }  // namespace
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

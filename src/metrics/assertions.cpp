@@ -1,5 +1,5 @@
-// Both sides of a check are looked up in what was measured. What was not measured is NaN, and no comparison with NaN
-// holds. An RMSE that the reference's own error is a large part of is no evidence.
+// Both sides of an assertion are looked up in the measurements. What was not measured is NaN, and no comparison with
+// NaN holds. An RMSE dominated by the reference's own error cannot prove an assertion.
 #include "metrics/assertions.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include "metrics/compute.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -19,52 +19,52 @@ constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
 
 double of_run(const ParsedQuantity& q, const RunMetrics* run) {
     if (!run) return unmeasured;
-    if (q.region.empty()) return meter_value(*run, q.word);
+    if (q.region.empty()) return metric_value(*run, q.word);
     const RegionMetrics* region = run->region(q.region);
     if (!region) return unmeasured;
     if (q.word == "tail") return region->tail ? region->tail->k : unmeasured;
-    return meter_value(*run, q.word + "." + q.region);
+    return metric_value(*run, q.word + "." + q.region);
 }
 
 double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
     for (const FurnaceResult& furnace : metrics.furnaces)
-        if (furnace.name == q.subject)
+        if (furnace.name == q.adapter)
             return q.word == "furnace" ? furnace.measured : std::abs(furnace.measured - furnace.expected);
     return unmeasured;
 }
 
-QuantityOf subject_of(const std::string& word) {
+QuantityOf make_adapter(const std::string& word) {
     for (const QuantityWord& known : quantity_words())
-        if (known.word == word) return known.subject;
+        if (known.word == word) return known.adapter;
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
 }
 
-/// find(key): the run of that key, for who is of one.
+/// find(key): the run of that key, for quantities of one run.
 template <class Find> double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment,
     std::uint32_t seed, const PlateBytes& plate_bytes, const Find& find) {
     if (q.number) return *q.number;
-    switch (subject_of(q.word)) {
+    switch (make_adapter(q.word)) {
         case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
-        case QuantityOf::run: return of_run(q, find(RunKey{q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
+        case QuantityOf::run: return of_run(q, find(RunKey{q.adapter, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
         case QuantityOf::furnace: return of_furnace(q, metrics);
         case QuantityOf::compared: break;
         case QuantityOf::shape: {
-            const auto it = metrics.shape_pixels.find(q.subject);
+            const auto it = metrics.shape_pixels.find(q.adapter);
             return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
         }
         case QuantityOf::region: {
-            const Region* region = experiment.find_region(q.subject);
+            const Region* region = experiment.find_region(q.adapter);
             return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
         }
         case QuantityOf::plate: {
-            const auto it = plate_bytes.find(q.subject);
+            const auto it = plate_bytes.find(q.adapter);
             return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
         }
     }
     return unmeasured;
 }
 
-/// Is this no RMSE, or one that is long against the reference's own error in its region?
+/// Returns whether this is not an RMSE, or one that is large against the reference's own error in its region.
 bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, const Experiment& experiment) {
     if (q.word != "rmse") return true;
     const double s = q.s > 0 ? q.s : experiment.s();
@@ -76,25 +76,25 @@ bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, c
     return true;
 }
 
-/// What the checks of an experiment are held against.
+/// The values that assertions are compared with.
 struct Measurements {
     const Experiment& experiment;
     const Metrics& metrics;
     RunIndex runs;
     const PlateBytes& plate_bytes;
-    bool drawn;  // whether any plates were to be
+    bool drawn;  // whether plates were requested
 
     std::uint32_t own_seed() const { return metrics.series.empty() ? experiment.seed : metrics.series.front(); }
-    /// The seeds that a check is read at.
+    /// Returns the seeds at which an assertion is evaluated.
     std::vector<std::uint32_t> seeds(bool median) const {
         if (!median || runs.seeds().empty()) return {own_seed()};
         return metrics.series.empty() ? runs.seeds() : metrics.series;
     }
 };
 
-bool is_of_a_run(const ParsedQuantity& q) { return !q.number && subject_of(q.word) == QuantityOf::run; }
+bool is_of_a_run(const ParsedQuantity& q) { return !q.number && make_adapter(q.word) == QuantityOf::run; }
 
-/// Which seeds of the series a check needs and this run does not have; "" where none is missing.
+/// Returns which seeds of the series an assertion needs and this run does not have; "" if none is missing.
 std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
     const auto& series = of.metrics.series;
     if (!is_of_a_run(plan.check.left) && !is_of_a_run(plan.check.right)) return "";
@@ -105,9 +105,9 @@ std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
     return plan.median && series.size() > 1 ? "needs seeds 1 to " + std::to_string(series.size()) : "needs seed 1";
 }
 
-/// One side of a check: its value, and what is to be said of it.
+/// Evaluates one side of an assertion: its value and remarks.
 double side(ParsedQuantity q, bool over_seeds, const Measurements& of, AssertionResult& out) {
-    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may leave n out
+    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may omit n
     std::vector<double> values;
     for (const std::uint32_t seed : of.seeds(over_seeds))
         values.push_back(value_of(
@@ -115,11 +115,11 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& of, Assertion
     const double value = quantile(values, 0.5);
     if (!out.skipped.empty()) return value;
     out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
-    if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
+    if (!of.drawn && !q.number && make_adapter(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
     return value;
 }
 
-/// "plate_bytes(hero) > 0": what a run measures of it is above 0 wherever it ends.
+/// "plate_bytes(hero) > 0": always true for a run that completes.
 bool cannot_fail(const ParsedQuantity& left, const std::string& op, const ParsedQuantity& right) {
     const bool always_there = left.word == "plate_bytes" || left.word == "region_pixels";
     return !left.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");
@@ -133,7 +133,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
         [&](const RunKey& key) { return metrics.find(key.arm, key.n, key.s, key.seed); });
 }
 
-std::vector<AssertionResult> judge(
+std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
     const Measurements measurements{experiment, metrics, RunIndex(metrics.runs), plate_bytes, drawn};
     std::vector<AssertionResult> results;
@@ -154,4 +154,4 @@ std::vector<AssertionResult> judge(
     return results;
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

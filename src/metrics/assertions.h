@@ -1,4 +1,4 @@
-// Quantities of a check, looked up in what a run measured, and the verdict on every assertion of an experiment.
+// Looks up the quantities of an assertion in the measurements of a run, and evaluates every assertion of an experiment.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,21 @@
 #include "experiment/experiment.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 /// Bytes of every plate that was drawn, by its name.
 using PlateBytes = std::map<std::string, std::size_t>;
 
-/// The value of a quantity at `seed`, in the unit of its meter; NaN where it was not measured. A plate that is not in
-/// `plate_bytes` has 0 bytes.
+/// Returns the value of a quantity at `seed`, in the unit of its metric; NaN if it was not measured. A plate that is
+/// not in `plate_bytes` has 0 bytes.
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
     const PlateBytes& plate_bytes);
 
-/// One result for each assertion, in the experiment's order. over = "median" compares the median of each side over all
-/// seeds of the series (an even count: the mean of the middle two). A NaN on either side, at any of these seeds, fails.
-/// An assertion is skipped where it needs what this run does not have: a seed that it is read at (all of the series for
-/// a median, the experiment's own else; none where neither side is read off a film), or, with `drawn` = false, a plate.
-std::vector<AssertionResult> judge(
+/// Returns one result for each assertion, in the experiment's order. over = "median" compares the median of each side
+/// over all seeds of the series (for an even count, the mean of the middle two). A NaN on either side, at any of these
+/// seeds, fails. An assertion is skipped if it needs what this run does not have: a seed (all of the series for a
+/// median, else the experiment's own; none if neither side is read from a film), or, with `drawn` = false, a plate.
+std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

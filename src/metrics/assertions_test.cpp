@@ -1,11 +1,11 @@
-// Checks against made-up measurements whose right answers are plain.
+// Assertions on synthetic measurements with known answers.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 
 #include "metrics/assertions.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 namespace {
 
 Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
@@ -48,7 +48,7 @@ Metrics measured() {
 }
 
 bool verdict(const std::string& check, bool median = false, const Metrics& m = measured()) {
-    return judge(two_arms({{check, median}}), m, {{"hero", 1000}}).at(0).pass;
+    return evaluate_assertions(two_arms({{check, median}}), m, {{"hero", 1000}}).at(0).pass;
 }
 
 TEST(Quantities, AreReadFromTheRunTheyName) {
@@ -68,7 +68,7 @@ TEST(Quantities, AreReadFromTheRunTheyName) {
     EXPECT_FALSE(verdict("plate_bytes(rose) > 0"));
 }
 
-TEST(Assertions, OnAnRmseThatTheReferencesOwnErrorMayMakeDoNotPass) {
+TEST(Assertions, RmseWithinReferenceErrorDoesNotPass) {
     Metrics m = measured();
     m.references.resize(1);
     m.references[0].s = 32, m.references[0].region = "H", m.references[0].quadrature_error = 0.1,
@@ -76,26 +76,27 @@ TEST(Assertions, OnAnRmseThatTheReferencesOwnErrorMayMakeDoNotPass) {
     EXPECT_TRUE(verdict("rmse.H(a, n=4) < 1", false, m)) << "0.5 is five times the error";
     EXPECT_FALSE(verdict("rmse.H(a, n=16) < 1", false, m)) << "0.125 is not";
     EXPECT_FALSE(verdict("rmse.H(a, n=16) < rmse.H(a, n=4)", false, m));
-    const AssertionResult told = judge(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
-    EXPECT_FALSE(told.reference_good);
-    EXPECT_NE(told.text.find("not good enough"), std::string::npos) << told.text;
+    const AssertionResult describe = evaluate_assertions(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
+    EXPECT_FALSE(describe.reference_good);
+    EXPECT_NE(describe.text.find("not good enough"), std::string::npos) << describe.text;
 }
 
 TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
     EXPECT_FALSE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)"));
     EXPECT_TRUE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)", true));
-    const auto result = judge(two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}}), measured(), {}).at(0);
+    const auto result =
+        evaluate_assertions(two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}}), measured(), {}).at(0);
     EXPECT_EQ(result.measured, 0.25);
     EXPECT_EQ(result.bound, 1);
     EXPECT_EQ(result.text, "rmse.H(b, n=4) < rmse.H(a, n=4) (medians over seeds)");
 }
 
-TEST(Assertions, AreSkippedWhereASeedThatTheyNeedWasNotRun) {
+TEST(Assertions, AreSkippedWithoutTheSeedsTheyNeed) {
     const auto all = two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}, {"fireflies(a) == 5", false},
         {"furnace(white) == 0.27", true}, {"region_pixels(H) == 8", false}, {"1 > furnace(white)", true}});
     const auto skipped = [&](const Metrics& m) {
         std::vector<std::string> out;
-        for (const AssertionResult& a : judge(all, m, {})) {
+        for (const AssertionResult& a : evaluate_assertions(all, m, {})) {
             out.push_back(a.skipped);
             EXPECT_TRUE(a.pass != !a.skipped.empty()) << a.name;
             EXPECT_FALSE(a.failed()) << a.name;
@@ -125,4 +126,4 @@ TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
 }
 
 }  // namespace
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -1,4 +1,4 @@
-// A meter is a reader of pixels, one by one, and then a value: the two lists of meters are expanded to readers here.
+// A metric reads pixels one by one and then returns a value; the two lists of metrics are expanded to readers here.
 // Sums in double. Bands are quantiles over seeds, 5, 50 and 95 %; slopes are least squares of log RMSE on log N.
 #include "metrics/compute.h"
 
@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "math/statistics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -18,7 +18,7 @@ std::size_t index_of(int i, int j, int width) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
 }
 
-/// Mean of f(pixel) over a box, row by row.
+/// Returns the mean of f(pixel) over a box, row by row.
 template <class Call> double box_mean(int width, const Box& box, Call&& f) {
     double sum = 0;
     for (int j = box.y0; j <= box.y1; ++j)
@@ -115,10 +115,10 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
     return m;
 }
 
-std::vector<MeterName> meter_names(const Experiment& experiment) {
-    std::vector<MeterName> names;
-#define CRESCENT_NAME(meter, Type) \
-    for (const Region& region : experiment.regions) names.push_back({#meter "." + region.name, &Type::info});
+std::vector<MetricName> metric_names(const Experiment& experiment) {
+    std::vector<MetricName> names;
+#define CRESCENT_NAME(metric, Type) \
+    for (const Region& region : experiment.regions) names.push_back({#metric "." + region.name, &Type::info});
     CRESCENT_REGION_METRICS(CRESCENT_NAME)
 #undef CRESCENT_NAME
     const RunMetrics none;
@@ -128,33 +128,33 @@ std::vector<MeterName> meter_names(const Experiment& experiment) {
     return names;
 }
 
-double meter_value(const RunMetrics& run, const std::string& meter) {
-    const std::size_t dot = meter.find('.');
+double metric_value(const RunMetrics& run, const std::string& metric) {
+    const std::size_t dot = metric.find('.');
     std::optional<double> found;
     const auto look = [&](std::string_view name, const MetricInfo&, auto value) {
-        if (name == std::string_view(meter).substr(0, dot)) found = static_cast<double>(value);
+        if (name == std::string_view(metric).substr(0, dot)) found = static_cast<double>(value);
     };
     if (dot == std::string::npos) for_each_metric(run, look);
-    else if (const RegionMetrics* region = run.region(meter.substr(dot + 1))) for_each_metric(*region, look);
+    else if (const RegionMetrics* region = run.region(metric.substr(dot + 1))) for_each_metric(*region, look);
     ensure(found.has_value(), "a meter of the list, of a region that was measured");
     return *found;
 }
 
 namespace {
 
-std::vector<double> over_seeds(const std::vector<RunMetrics>& runs, const RunKey& key, const std::string& meter) {
+std::vector<double> over_seeds(const std::vector<RunMetrics>& runs, const RunKey& key, const std::string& metric) {
     std::vector<double> values;
     for (const RunMetrics& run : runs)
         if (run.key.arm == key.arm && run.key.n == key.n && run.key.s == key.s)
-            values.push_back(meter_value(run, meter));
+            values.push_back(metric_value(run, metric));
     return values;
 }
 
-/// RMSE and var read the second moment; where the tail of the samples is heavy it has no expectation.
-bool heavy(const RunMetrics& run, const std::string& meter) {
-    const std::size_t dot = meter.find('.');
+/// RMSE and var depend on the second moment, which has no expectation if the tail of the samples is heavy.
+bool heavy(const RunMetrics& run, const std::string& metric) {
+    const std::size_t dot = metric.find('.');
     if (dot == std::string::npos) return false;
-    const RegionMetrics* region = run.region(meter.substr(dot + 1));
+    const RegionMetrics* region = run.region(metric.substr(dot + 1));
     return region && region->tail && region->tail->heavy();
 }
 
@@ -165,16 +165,16 @@ std::vector<SeedSpread> bands(
     std::vector<SeedSpread> out;
     for (const RunMetrics& run : runs) {
         if (run.key.seed != experiment.seed) continue;
-        for (const auto& [meter, info] : meter_names(experiment)) {
+        for (const auto& [metric, info] : metric_names(experiment)) {
             if (run.key.n < 2 && info->from_two_samples) continue;
-            const std::vector<double> values = over_seeds(runs, run.key, meter);
+            const std::vector<double> values = over_seeds(runs, run.key, metric);
             SeedSpread b;
             b.key = run.key;
-            b.meter = meter;
-            b.measured = meter_value(run, meter);
+            b.metric = metric;
+            b.measured = metric_value(run, metric);
             b.band = {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
-                static_cast<int>(values.size()), heavy(run, meter)};
-            if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, meter);
+                static_cast<int>(values.size()), heavy(run, metric)};
+            if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, metric);
             if (b.published) {
                 const auto below =
                     std::count_if(values.begin(), values.end(), [&](double v) { return v < *b.published; });
@@ -189,10 +189,10 @@ std::vector<SeedSpread> bands(
 namespace {
 
 struct Line {
-    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN where there are none
+    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN if there are none
 };
 
-/// Least squares of log y on log x.
+/// Fits log y against log x by least squares.
 Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y) {
     const double count = static_cast<double>(n.size());
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -245,4 +245,4 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     return out;
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

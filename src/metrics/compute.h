@@ -1,4 +1,4 @@
-// Films -> numbers. Every sum runs in double over pixels in storage order, so equal films give equal numbers.
+// Computes metrics of films. Every sum runs in double over pixels in storage order, so equal films give equal numbers.
 #pragma once
 
 #include <utility>
@@ -8,36 +8,36 @@
 #include "metrics/metrics.h"
 #include "render/film.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
-/// All meters of one film against the reference, tails apart.
+/// Returns all metrics of one film against the reference, without tails.
 RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
     const ShapeMap& shapes);
 
-/// Root mean square of the difference of two Y planes over a box, and of one plane.
+/// Returns the root mean square of the difference of two Y planes over a box, and of one plane.
 double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
 double rms(const std::vector<float>& a, int width, const Box& box);
 
-/// How far two references of one exponent are apart in a region, and what that does to the RMSE of any of the films;
-/// the quadrature's part alone where there is no note's. `used` is the one that the meters use.
+/// Compares two references of one exponent in a region, and the effect on the RMSE of any of the films; only the
+/// quadrature's part if the article's reference is missing. `used` is the one that the metrics use.
 ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
 
-/// A meter of the list as it stands in a band: rmse.<region>, ..., fireflies, ...
-struct MeterName {
+/// The name of a metric of the list in a band: rmse.<region>, ..., fireflies, ...
+struct MetricName {
     std::string name;
     const MetricInfo* info;
 };
-/// Those that have a spread over seeds, those of the regions first.
-std::vector<MeterName> meter_names(const Experiment& experiment);
-/// The value of any meter of the list by its name. Throws Bug where there is none.
-double meter_value(const RunMetrics& run, const std::string& meter);
+/// Returns those that have a spread over seeds, those of the regions first.
+std::vector<MetricName> metric_names(const Experiment& experiment);
+/// Returns the value of any metric of the list by its name. Throws Bug if there is none.
+double metric_value(const RunMetrics& run, const std::string& metric);
 
-/// Spread over seeds of every meter of every run at the published seed.
+/// Returns the spread over seeds of every metric of every run at the published seed.
 std::vector<SeedSpread> bands(
     const Experiment& experiment, const std::vector<RunMetrics>& runs, const Published* published);
 
-/// Ladders of RMSE for every arm with at least two rungs, in every region.
+/// Returns ladders of RMSE for every arm with at least two sample counts, in every region.
 std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMetrics>& runs);
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

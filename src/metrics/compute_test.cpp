@@ -1,4 +1,4 @@
-// On films of a few pixels whose meters are worked out by hand, and on tails whose index is known.
+// Films of a few pixels whose metrics are computed by hand, and tails with a known index.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,10 +11,10 @@
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 namespace {
 
-/// The tail of n Pareto samples u^-k.
+/// Returns the tail of n Pareto samples u^-k.
 std::optional<Tail> pareto_tail(double k, std::uint32_t seed, std::uint64_t n = 20000) {
     std::vector<double> x;
     for (std::uint64_t j = 0; j < n; ++j) x.push_back(std::pow(static_cast<double>(draw(seed, 0, j).x), -k));
@@ -23,7 +23,7 @@ std::optional<Tail> pareto_tail(double k, std::uint32_t seed, std::uint64_t n = 
     return fit_tail(std::span<const double>(x));
 }
 
-TEST(TailIndex, RecoversTheExponentOfAParetoWithinItsStandardError) {
+TEST(TailIndex, RecoversTheExponentOfAPareto) {
     for (double k : {0.2, 0.5, 0.778, 0.939}) {
         int outside = 0;
         for (std::uint32_t seed = 0; seed < 40; ++seed) {
@@ -34,7 +34,7 @@ TEST(TailIndex, RecoversTheExponentOfAParetoWithinItsStandardError) {
     }
 }
 
-TEST(TailIndex, CallsABoundedDistributionLightAndAConstantNoTailAtAll) {
+TEST(TailIndex, BoundedIsLightAndConstantHasNoTail) {
     std::vector<float> x;
     for (std::uint64_t j = 0; j < 20000; ++j) x.push_back(draw(1, 0, j).x);
     std::sort(x.begin(), x.end(), std::greater<>());
@@ -45,7 +45,7 @@ TEST(TailIndex, CallsABoundedDistributionLightAndAConstantNoTailAtAll) {
     EXPECT_FALSE(fit_tail(std::span<const float>(std::vector<float>(3, 3.0f))).has_value());
 }
 
-TEST(TailIndex, OfPooledSamplesLooksPastTheStepToTheLitOnes) {
+TEST(TailIndex, PooledFitIgnoresTheStepToLitSamples) {
     std::vector<float> mixed, heavy;
     for (std::uint64_t j = 0; j < 500'000; ++j) {
         const Vec2<float> u = draw(2, 0, j);
@@ -56,7 +56,7 @@ TEST(TailIndex, OfPooledSamplesLooksPastTheStepToTheLitOnes) {
         std::sort(x->begin(), x->end(), std::greater<>());
         x->resize(tail_length(500'000) + 1);
     }
-    EXPECT_TRUE(fit_tail(std::span<const float>(mixed))->heavy());  // what the customary threshold makes of it
+    EXPECT_TRUE(fit_tail(std::span<const float>(mixed))->heavy());  // the fit at the usual threshold
     EXPECT_FALSE(fit_pooled_tail(mixed)->heavy());
     EXPECT_TRUE(fit_pooled_tail(heavy)->heavy());
 }
@@ -67,7 +67,7 @@ TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
     EXPECT_EQ(tail_length(10000), 300u);
 }
 
-/// A film of 4 x 2 pixels, one of them a miss, with known numbers in it.
+/// A film of 4 x 2 pixels, one of them without geometry, with known numbers.
 struct Known {
     Film film{4, 2, 10};
     ReferenceFilm reference{4, 2, 32};
@@ -76,14 +76,14 @@ struct Known {
     Known() {
         experiment.regions = {{"left", {0, 0, 1, 1}, {}}};
         for (std::size_t at = 0; at < 7; ++at) film.y[at] = reference.y[at] = 1;
-        film.y[0] = 3;    // residual 2: no firefly at k = 4
+        film.y[0] = 3;    // residual 2: not a firefly at k = 4
         film.y[2] = 5.5;  // residual 4.5: a firefly
         film.var[0] = 0.8f;
         film.horizon[3] = 7;
     }
 };
 
-TEST(Meters, ReadEveryNumberOffTheFloatFilm) {
+TEST(Metrics, ReadEveryNumberOffTheFloatFilm) {
     const Known k;
     const RunMetrics run = measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes);
     EXPECT_DOUBLE_EQ(run.region("left")->rmse, 1);  // sqrt(4 / 4)
@@ -95,7 +95,7 @@ TEST(Meters, ReadEveryNumberOffTheFloatFilm) {
     EXPECT_DOUBLE_EQ(run.rmse_frame, std::sqrt((4 + 4.5 * 4.5) / 8));
 }
 
-TEST(Meters, ShareTheHorizonAmongTheDirectionsThatWereDrawn) {
+TEST(Metrics, HorizonShareIsOfAllDrawnDirections) {
     Known k;
     k.film.directions = 2;
     EXPECT_DOUBLE_EQ(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).horizon_frac, 7.0 / 140);
@@ -109,13 +109,13 @@ RunMetrics measured(const Experiment& e, const std::string& arm) {
         e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", monitor)[0], reference, shape_map(scene));
 }
 
-TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {
+TEST(Metrics, DoNotDependOnTheOrderOfShapesAndLights) {
     Experiment e = test::small_scene(), other = e;
     std::rotate(other.shapes.begin(), other.shapes.begin() + 1, other.shapes.end());
     std::swap(other.disks[0], other.disks[1]);
     for (const std::string& arm : test::all_arms()) {
         if (arm.starts_with("light-") || arm.starts_with("mis-"))
-            other.disks = e.disks;  // u chooses among them in order
+            other.disks = e.disks;  // u selects among them in order
         const RunMetrics a = measured(e, arm), b = measured(other, arm);
         EXPECT_NEAR(a.y_mean / b.y_mean, 1, 1e-6) << arm;
         EXPECT_NEAR(a.rmse_frame / b.rmse_frame, 1, 1e-5) << arm;
@@ -127,31 +127,31 @@ TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {
     }
 }
 
-TEST(Meters, OfOneSampleHaveNoVariance) {
+TEST(Metrics, OfOneSampleHaveNoVariance) {
     Known k;
     k.film.n = 1;
     const RunMetrics run = measure(k.experiment, {"a", 1, 32, 0}, k.film, k.reference, k.shapes);
     EXPECT_TRUE(std::isnan(run.region("left")->var));
-    for (const SeedSpread& band : bands(k.experiment, {run}, nullptr)) EXPECT_NE(band.meter, "var.left");
+    for (const SeedSpread& band : bands(k.experiment, {run}, nullptr)) EXPECT_NE(band.metric, "var.left");
 }
 
-TEST(Meters, ANaNInTheFilmShowsInTheNumber) {
+TEST(Metrics, ANaNInTheFilmShowsInTheNumber) {
     Known k;
     k.film.y[1] = std::nanf("");
     EXPECT_TRUE(
         std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
 }
 
-/// One arm with three rungs; seed k's RMSE falls as N^slopes[k].
+/// Returns one arm with three sample counts; seed k's RMSE falls as N^slopes[k].
 std::vector<Ladder> ladders_falling_as(
-    const std::vector<double>& slopes, const std::vector<std::uint64_t>& rungs = {4, 16, 64}) {
+    const std::vector<double>& slopes, const std::vector<std::uint64_t>& sample_counts = {4, 16, 64}) {
     Experiment e;
     e.seed = 1;
-    e.arms = {{"a", "cosine", rungs, {}}};
+    e.arms = {{"a", "cosine", sample_counts, {}}};
     e.regions = {{"r", {0, 0, 1, 1}, {}}};
     std::vector<RunMetrics> runs;
     for (std::size_t k = 0; k < slopes.size(); ++k)
-        for (const std::uint64_t n : rungs) {
+        for (const std::uint64_t n : sample_counts) {
             RunMetrics run;
             run.key = {"a", n, e.s(), static_cast<std::uint32_t>(k + 1)};
             run.regions = {{"r", 8 * std::pow(static_cast<double>(n), slopes[k]), 0, 4, {}}};
@@ -166,7 +166,7 @@ TEST(Ladders, FitTheSlopeOfAPowerLaw) {
     EXPECT_NEAR(ladder.high - ladder.low, 0, 1e-6);
 }
 
-TEST(Ladders, HaveTheSlopeOfTheSeedTheyStandBesideAndTheBandOfAll) {
+TEST(Ladders, SlopeIsOfTheFirstSeedAndBandOfAll) {
     const Ladder ladder = ladders_falling_as({-0.2, -0.5, -0.6})[0];
     EXPECT_NEAR(ladder.slope, -0.2, 1e-12);
     EXPECT_NEAR(ladder.low, -0.59, 1e-12);
@@ -180,4 +180,4 @@ TEST(Ladders, OfTwoRungsAndOneSeedHaveNoInterval) {
 }
 
 }  // namespace
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

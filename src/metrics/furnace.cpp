@@ -1,5 +1,5 @@
-// A white sky of radiance 1 over one surface seen from straight above: the mean of X is its albedo. One pixel's
-// samples, all kept, for the tail.
+// A sky of radiance 1 over one surface seen from directly above: the mean of X is its albedo. All samples of one pixel
+// are kept, for the tail.
 #include "metrics/furnace.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "render/estimator.h"
 #include "render/reference/lobe_albedo.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -27,7 +27,7 @@ std::optional<Tail> tail_of(std::vector<float> x) {
 }  // namespace
 
 FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
-    ProgressMonitor& monitor, const OutsideSamplers& outside) {
+    ProgressMonitor& monitor, const ExternalSamplers& outside) {
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
@@ -35,30 +35,30 @@ FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan,
     ensure(shape != nullptr, "a furnace's shape is known");
     const bool lobe_only = plan.part == FurnacePart::lobe;
     const Surface surface = furnace_surface(experiment, *shape, lobe_only);
-    const ShadingPoints sites = furnace_sites(surface, 1);
+    const ShadingPoints shading_points = furnace_points(surface, 1);
     FurnaceDraws out;
     out.samples.resize(plan.n);
-    const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed,
-        isa, &monitor.stop, out.samples.data());
+    const Moments m = estimate_points(shading_points, {arm->sampler, external_of(outside, arm->name)}, plan.n,
+        experiment.seed, isa, &monitor.stop, out.samples.data());
     const double n = static_cast<double>(plan.n);
-    FurnaceResult& meter = out.meter;
-    meter.name = plan.name, meter.arm = plan.arm, meter.part = lobe_only ? "lobe" : "combined", meter.n = plan.n;
+    FurnaceResult& metric = out.metric;
+    metric.name = plan.name, metric.arm = plan.arm, metric.part = lobe_only ? "lobe" : "combined", metric.n = plan.n;
     const double rho_d = luminance(surface.rho_d);
     const double albedo = surface.rho_s > 0 ? lobe_albedo(surface.brdf, surface.s, surface.alpha, 1.0) : 0;
-    meter.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
-    meter.expected = rho_d + surface.rho_s * albedo;
-    meter.se = plan.n > 1 ? std::sqrt(m.spread[0] / (n * (n - 1))) : 0;
-    meter.bad = m.bad[0];
+    metric.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
+    metric.expected = rho_d + surface.rho_s * albedo;
+    metric.se = plan.n > 1 ? std::sqrt(m.spread[0] / (n * (n - 1))) : 0;
+    metric.bad = m.bad[0];
     return out;
 }
 
 FurnaceResult read_furnace(FurnaceDraws draws) {
-    draws.meter.tail = tail_of(std::move(draws.samples));
-    return draws.meter;
+    draws.metric.tail = tail_of(std::move(draws.samples));
+    return draws.metric;
 }
 
 std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& monitor, const OutsideSamplers& outside) {
+    ProgressMonitor& monitor, const ExternalSamplers& outside) {
     std::vector<FurnaceResult> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
         out.push_back(read_furnace(draw_furnace(experiment, plan, isa, monitor, outside)));
@@ -68,8 +68,8 @@ std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Publishe
     return out;
 }
 
-// ---- Sites at the origin with the world's axes for a frame, under a fill of radiance 1 and no other light. Each has
-// its own index of a pixel, so its own random numbers.
+// ---- Shading points at the origin with the world's axes as frame, under a fill of radiance 1 and no other light; each
+// has its own pixel index, so its own random numbers.
 
 Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only) {
     Surface surface = surface_of(shape.material, scene.s());
@@ -77,30 +77,31 @@ Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_on
     return surface;
 }
 
-ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
-    ShadingPoints sites;
-    sites.lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
-    sites.count = count;
+ShadingPoints furnace_points(const Surface& surface, std::size_t count, double cos_o) {
+    ShadingPoints shading_points;
+    shading_points.lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
+    shading_points.count = count;
     const auto fill = [&](std::vector<float>& array, double value) { array.assign(count, static_cast<float>(value)); };
-    for (std::size_t i = 0; i < count; ++i) sites.pixel.push_back(static_cast<std::uint32_t>(i));
-    sites.shape.assign(count, 0);
-    fill(sites.wox, std::sqrt(1 - cos_o * cos_o)), fill(sites.woy, 0), fill(sites.woz, cos_o);
-    fill(sites.s, surface.s), fill(sites.alpha, surface.alpha);
-    fill(sites.diffuse, luminance(surface.rho_d)), fill(sites.rho_s, surface.rho_s);
-    for (auto* zero :
-        {&sites.px, &sites.py, &sites.pz, &sites.ty, &sites.tz, &sites.bx, &sites.bz, &sites.nx, &sites.ny})
+    for (std::size_t i = 0; i < count; ++i) shading_points.pixel.push_back(static_cast<std::uint32_t>(i));
+    shading_points.shape.assign(count, 0);
+    fill(shading_points.wox, std::sqrt(1 - cos_o * cos_o)), fill(shading_points.woy, 0),
+        fill(shading_points.woz, cos_o);
+    fill(shading_points.s, surface.s), fill(shading_points.alpha, surface.alpha);
+    fill(shading_points.diffuse, luminance(surface.rho_d)), fill(shading_points.rho_s, surface.rho_s);
+    for (auto* zero : {&shading_points.px, &shading_points.py, &shading_points.pz, &shading_points.ty,
+             &shading_points.tz, &shading_points.bx, &shading_points.bz, &shading_points.nx, &shading_points.ny})
         fill(*zero, 0);
-    for (auto* one : {&sites.tx, &sites.by, &sites.nz}) fill(*one, 1);
-    fill(sites.fill_d, luminance(surface.rho_d) / pi + 0.0);  // never -0
-    fill(sites.fill_s, surface.rho_s);
-    sites.lambert.assign(count, {surface.rho_d[0] / pi, surface.rho_d[1] / pi, surface.rho_d[2] / pi});
-    sites.rho_s_exact.assign(count, surface.rho_s);
-    sites.tint.assign(count, surface.tint);
-    sites.pad();
-    return sites;
+    for (auto* one : {&shading_points.tx, &shading_points.by, &shading_points.nz}) fill(*one, 1);
+    fill(shading_points.fill_d, luminance(surface.rho_d) / pi + 0.0);  // never -0
+    fill(shading_points.fill_s, surface.rho_s);
+    shading_points.lambert.assign(count, {surface.rho_d[0] / pi, surface.rho_d[1] / pi, surface.rho_d[2] / pi});
+    shading_points.rho_s_exact.assign(count, surface.rho_s);
+    shading_points.tint.assign(count, surface.tint);
+    shading_points.pad();
+    return shading_points;
 }
 
-// ---- Four million samples over the region's pixels, 256 a pixel at most; of them all the largest.
+// ---- Draws four million samples over the region's pixels, at most 256 per pixel, and keeps the largest of all.
 
 TailPlan tail_plan(const Box& box) {
     constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
@@ -118,4 +119,4 @@ std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::
     return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, box, plan.kept, isa, monitor, drawn));
 }
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

@@ -1,5 +1,5 @@
-// White furnaces: L_i = 1 everywhere and R = n, so that the answer is known: rho_d + rho_s, or rho_s for the lobe
-// alone.
+// White furnaces: L_i = 1 everywhere and R = n, so that the expected value is known: rho_d + rho_s, or rho_s for the
+// lobe alone.
 #pragma once
 
 #include <optional>
@@ -15,44 +15,45 @@
 #include "scene/scene.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
-/// What a furnace drew: its meter but for the tail, and every X.
+/// The draws of a furnace: its metric except the tail, and every X.
 struct FurnaceDraws {
-    FurnaceResult meter;
+    FurnaceResult metric;
     std::vector<float> samples;
 };
-/// One furnace of the experiment in two steps, between which a page may answer its reader; `plan` may have another n.
+/// Computes one furnace of the experiment in two steps, between which a page may handle input; `plan` may have another
+/// n.
 FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
-    ProgressMonitor& monitor, const OutsideSamplers& outside = {});
+    ProgressMonitor& monitor, const ExternalSamplers& outside = {});
 FurnaceResult read_furnace(FurnaceDraws draws);
 
-/// Every furnace of the experiment, measured. Throws Interrupted when the monitor says stop.
+/// Returns every furnace of the experiment, measured. Throws Interrupted if the monitor requests a stop.
 std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& monitor, const OutsideSamplers& outside = {});
+    ProgressMonitor& monitor, const ExternalSamplers& outside = {});
 
-// ---- Surface points in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless
-// told otherwise.
+// ---- Surface points in a white furnace: L_i = 1 over the whole hemisphere, no disk, by default seen from directly
+// above.
 
-/// The material of a shape, with the scene's own s where it has none; lobe_only drops rho_d.
+/// Returns the material of a shape, with the scene's own s if it has none; lobe_only drops rho_d.
 Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only);
 
-/// `count` alike sites, each with random numbers of its own. X = (cos/p) f.
-ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double cos_o = 1);
+/// Returns `count` equal shading points, each with its own random numbers. X = (cos/p) f.
+ShadingPoints furnace_points(const Surface& surface, std::size_t count, double cos_o = 1);
 
-// ---- The tail of one arm's samples in a box of the image.
+// ---- The tail index of one arm's samples in a box of the image.
 
-/// How a box is read: n samples a pixel, about four million in all, of which the `kept` largest tell; kept is 0 where
-/// too few spread.
+/// How a box is sampled: n samples per pixel, about four million in all, of which the `kept` largest are used; kept is
+/// 0 if too few vary.
 struct TailPlan {
     std::uint64_t n = 0;
     std::size_t kept = 0;
 };
 TailPlan tail_plan(const Box& box);
 
-/// The tail index of one arm's samples X in a box, read off as tail_plan() says; none where too few spread. May throw
+/// Returns the tail index of one arm's samples X in a box, as tail_plan() defines; none if too few vary. May throw
 /// Interrupted.
 std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const Box& box,
     const std::string& isa, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

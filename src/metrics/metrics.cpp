@@ -1,11 +1,11 @@
-// Runs are found one by one; run_index.h finds them by a table where there are many.
+// Runs are found one by one; RunIndex finds them by a table if there are many.
 #include "metrics/metrics.h"
 
 #include <algorithm>
 #include <functional>
 #include <unordered_set>
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 const RegionMetrics* RunMetrics::region(const std::string& name) const {
     const auto at =
@@ -21,7 +21,7 @@ const RunMetrics* Metrics::find(const std::string& arm, std::uint64_t n, double 
 
 bool Metrics::all_hold() const { return std::ranges::none_of(assertions, &AssertionResult::failed); }
 
-// ---- A hash table from arm, n, s and seed to the run; 0 and -0 are one s.
+// ---- A hash table from arm, n, s and seed to the run; 0 and -0 are the same s.
 
 std::size_t RunIndex::Hash::operator()(const RunKey& key) const {
     std::size_t h = std::hash<std::string>()(key.arm);
@@ -45,4 +45,4 @@ const RunMetrics* RunIndex::find(const RunKey& key) const {
     return at == runs_.end() ? nullptr : at->second;
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -1,4 +1,4 @@
-// Everything a run measured, as plain data: what the report prints and the assertions read.
+// The measurements of a run, as plain data: printed by the report and read by the assertions.
 #pragma once
 
 #include <cstdint>
@@ -12,29 +12,29 @@
 #include "render/film.h"
 #include "render/film_metrics/all.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
-#define CRESCENT_FIELD(name, Type) MeterOf<Type> name{};
-/// What is measured of one film in one region: a field for each meter of the list.
+#define CRESCENT_FIELD(name, Type) MetricOf<Type> name{};
+/// The metrics of one film in one region: a field for each metric of the list.
 struct RegionMetrics {
     std::string region;
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
-    std::uint64_t pixels = 0;  // geometry pixels in the box count alike with misses: |box|
+    std::uint64_t pixels = 0;  // geometry pixels in the box count the same as misses: |box|
     std::optional<Tail> tail;  // of the samples X of the region; published seed only
 };
 
-/// All that is measured of one film; of the whole frame a field for each meter of the list.
+/// The metrics of one film; for the whole frame a field for each metric of the list.
 struct RunMetrics {
     RunKey key;
     std::vector<RegionMetrics> regions;
     CRESCENT_FRAME_METRICS(CRESCENT_FIELD)
 
-    /// Null where no region has that name.
+    /// Returns null if no region has that name.
     const RegionMetrics* region(const std::string& name) const;
 };
 #undef CRESCENT_FIELD
 
-/// Calls f(name, info, value) for each meter of a region, or of the frame, in the order of the list.
+/// Calls f(name, info, value) for each metric of a region, or of the frame, in the order of the list.
 template <class F> void for_each_metric(const RegionMetrics& of, F&& f) {
 #define CRESCENT_CALL(name, Type) f(std::string_view(#name), Type::info, of.name);
     CRESCENT_REGION_METRICS(CRESCENT_CALL)
@@ -48,13 +48,13 @@ template <class F> void for_each_metric(const RunMetrics& of, F&& f) {
 struct Band {
     double q05 = 0, median = 0, q95 = 0;
     int seeds = 0;
-    bool heavy = false;  // the tail is too heavy for the interval to mean anything
+    bool heavy = false;  // the tail is too heavy for a meaningful interval
 };
 
 /// One number of one run over all seeds: "rmse.H" of "cosine n=64 s=32".
 struct SeedSpread {
     RunKey key;           // seed: the published one
-    std::string meter;    // rmse.<region>, ..., fireflies, ...: see meter_names()
+    std::string metric;   // rmse.<region>, ..., fireflies, ...: see metric_names()
     double measured = 0;  // at the published seed
     Band band;
     std::optional<double> published;
@@ -62,7 +62,8 @@ struct SeedSpread {
 };
 
 /// Least squares of log RMSE against log N at the published seed: RMSE ~ N^slope. Interval: 5-95 % of the same fit over
-/// seeds, or the fit's own 90 % with one seed. NaN: nothing to say, as where an RMSE is 0 or two rungs have one seed.
+/// seeds, or the fit's own 90 % with one seed. NaN: no interval, for example if an RMSE is 0, or two sample counts with
+/// one seed.
 struct Ladder {
     std::string arm, region;
     double s = 0;
@@ -72,7 +73,7 @@ struct Ladder {
     bool heavy = false;
 };
 
-/// One white furnace: what an arm reads, and what it should.
+/// One white furnace: an arm's value, and the expected one.
 struct FurnaceResult {
     std::string name, arm, part;
     std::uint64_t n = 0;
@@ -83,39 +84,39 @@ struct FurnaceResult {
     std::optional<double> published;
 };
 
-/// One assertion of the file, judged.
+/// The result of one assertion of the file.
 struct AssertionResult {
     std::string name;
     bool pass = false;
     double measured = 0, bound = 0;
     std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
-    // Where not, an RMSE in it is no longer than a few errors of the reference: it does not pass.
+    // False if an RMSE in it is not larger than a few errors of the reference; the assertion then does not pass.
     bool reference_good = true;
-    bool cannot_fail = false;  // true of every run that ends: a plate that was drawn has bytes
-    std::string skipped{};     // why it was not judged, so that it neither holds nor fails; "": it was
+    bool cannot_fail = false;  // true for every run that completes: a plate that was drawn has bytes
+    std::string skipped{};     // why it was skipped, so that it neither holds nor fails; "": it was evaluated
     bool failed() const { return !pass && skipped.empty(); }
 };
 
-/// How good the references are in a region at an exponent, and how far the note's is from the quadrature.
+/// The quality of the references in a region at an exponent, and the difference of the article's from the quadrature.
 struct ReferenceQuality {
     double s = 0;
     std::string region;
-    std::optional<double> rms_difference;      // of Y; here and below: none where the note's was not computed
-    std::optional<double> rms_standard_error;  // what the note's reference says of itself
+    std::optional<double> rms_difference;      // of Y; here and below: none if the article's was not computed
+    std::optional<double> rms_standard_error;  // stated by the article's reference
     double quadrature_error = 0;               // rms of the quadrature's own stated error
     std::optional<double>
-        max_relative_rmse_change;  // largest relative change of any arm's RMSE here if the note's reference is used
-    double error_share = 0;        // of the reference that the meters use: its own error over the smallest RMSE here
+        max_relative_rmse_change;  // largest relative change of any arm's RMSE if the article's reference is used
+    double error_share = 0;        // of the reference that the metrics use: its own error over the smallest RMSE here
 };
 
-/// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares
-/// 1/16.
+/// The largest share of an RMSE that the reference's own error may have: at a quarter the RMSE is up to 3 % too large,
+/// in squares 1/16.
 inline constexpr double most_error_share = 0.25;
 
-/// Every number of a run, as metrics.json holds them.
+/// The numbers of a run, as in metrics.json.
 struct Metrics {
     std::vector<RunMetrics> runs;       // every arm, n, s, seed
-    std::vector<std::uint32_t> series;  // every seed of the experiment, of which `runs` may have a part; empty: theirs
+    std::vector<std::uint32_t> series;  // every seed of the experiment, of which `runs` may have a part; empty: those
     std::vector<SeedSpread> bands;
     std::vector<Ladder> ladders;
     std::vector<FurnaceResult> furnaces;
@@ -124,24 +125,24 @@ struct Metrics {
     std::map<std::string, std::uint64_t> shape_pixels;
     std::map<std::string, std::string> film_hashes;  // "phong n=64 s=32" -> hash
     std::uint64_t geometry_pixels = 0;
-    std::optional<std::uint32_t> published_seed;  // of the published figures, where it is known
+    std::optional<std::uint32_t> published_seed;  // of the published values, if known
 
-    /// Null where there is no such run.
+    /// Returns null if there is no such run.
     const RunMetrics* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
-    /// Whether no assertion failed; one that was skipped does not.
+    /// Returns whether no assertion failed; skipped ones do not fail.
     bool all_hold() const;
 };
 
-// ---- Runs by key, for who looks up many of them.
+// ---- An index of runs by key, for many look-ups.
 
-/// Made once of runs that stay where they are.
+/// Built once; the runs must not move.
 class RunIndex {
 public:
-    /// Of runs that outlive it.
+    /// The runs must outlive it.
     explicit RunIndex(const std::vector<RunMetrics>& runs);
-    /// Null where there is no such run.
+    /// Returns null if there is no such run.
     const RunMetrics* find(const RunKey& key) const;
-    /// The seeds that were run, in the order of the runs.
+    /// Returns the seeds that were run, in the order of the runs.
     const std::vector<std::uint32_t>& seeds() const { return seeds_; }
 
 private:
@@ -152,4 +153,4 @@ private:
     std::vector<std::uint32_t> seeds_;
 };
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

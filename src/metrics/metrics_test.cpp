@@ -1,9 +1,9 @@
-// On 24 runs of two arms, two n, two s and three seeds, which are in no order.
+// 24 runs of two arms, two n, two s and three seeds, in no order.
 #include <gtest/gtest.h>
 
 #include "metrics/metrics.h"
 
-namespace crescent::inline meters {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -33,4 +33,4 @@ TEST(RunIndex, TellsSeedsInTheOrderOfTheRuns) {
     EXPECT_TRUE(RunIndex({}).seeds().empty());
 }
 
-}  // namespace crescent::inline meters
+}  // namespace crescent::inline metrics

@@ -1,5 +1,6 @@
-// The note's reference: the lobe under the fill by the lobe's own arm, each light by area, both by the kernels, added
-// up. Its error is the standard error, and all of a lobe's light where so few samples would meet it that none may have.
+// The article's reference: the lobe under the fill by the lobe's own sampler, each light by area, both by the kernels,
+// added. Its error is the standard error, plus all of a lobe's light if so few samples would meet it that there may be
+// none.
 #include "metrics/monte_carlo_reference.h"
 
 #include <algorithm>
@@ -11,14 +12,14 @@
 #include "render/estimator.h"
 #include "render/reference/reference.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
 namespace {
 
-/// The same sites with lights that turn X into the wanted part: light k by itself, or the fill on the lobe alone. The
-/// other lights still stand before it, but carry nothing and are never aimed at.
+/// Returns the same shading points with lights that turn X into the requested part: light k alone, or the fill on the
+/// lobe alone. The other lights still hide what is behind them, but have radiance 0 and are never aimed at.
 ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size_t k) {
-    ShadingPoints sites = all;
+    ShadingPoints shading_points = all;
     const auto tinted = [&](const Rgb& light, std::size_t i) {
         const Rgb& tint = all.tint[i];
         return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
@@ -26,37 +27,37 @@ ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size
     const auto alone = [&](auto& light, const auto& as_it_was, bool this_one) {
         light.power = this_one ? 1 : 0;
         for (auto* array : {&light.d, &light.s}) std::fill(array->begin(), array->end(), 0.0f);
-        for (std::size_t i = 0; this_one && i < sites.pixel.size(); ++i) {
+        for (std::size_t i = 0; this_one && i < shading_points.pixel.size(); ++i) {
             light.d[i] =
-                as_it_was.d[i] - sites.fill_d[i];  // L_key - L_fill: the light stands in for the fill behind it
+                as_it_was.d[i] - shading_points.fill_d[i];  // L_key - L_fill: the light replaces the fill behind it
             const double full = tinted(scene.lights()[k].radiance, i), over = full - tinted(scene.fill(), i);
-            light.s[i] =
-                full > 0 ? static_cast<float>(static_cast<double>(as_it_was.s[i]) * over / full) : -sites.fill_s[i];
+            light.s[i] = full > 0 ? static_cast<float>(static_cast<double>(as_it_was.s[i]) * over / full)
+                                  : -shading_points.fill_s[i];
         }
     };
-    for (std::size_t j = 0; j < sites.disks.size(); ++j) alone(sites.disks[j], all.disks[j], j == k);
-    for (std::size_t j = 0; j < sites.others.size(); ++j)
-        alone(sites.others[j], all.others[j], sites.disks.size() + j == k);
-    for (auto* array : {&sites.fill_d, &sites.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
-    return sites;
+    for (std::size_t j = 0; j < shading_points.disks.size(); ++j) alone(shading_points.disks[j], all.disks[j], j == k);
+    for (std::size_t j = 0; j < shading_points.others.size(); ++j)
+        alone(shading_points.others[j], all.others[j], shading_points.disks.size() + j == k);
+    for (auto* array : {&shading_points.fill_d, &shading_points.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
+    return shading_points;
 }
 
 ShadingPoints only_lobe(const ShadingPoints& all) {
-    ShadingPoints sites = all;
-    sites.disks.clear(), sites.others.clear();
-    std::fill(sites.fill_d.begin(), sites.fill_d.end(), 0.0f);
-    return sites;
+    ShadingPoints shading_points = all;
+    shading_points.disks.clear(), shading_points.others.clear();
+    std::fill(shading_points.fill_d.begin(), shading_points.fill_d.end(), 0.0f);
+    return shading_points;
 }
 
 double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0; }
 
-/// The centre of light k from site i, in its local frame, and the radius of a ball that holds it.
-std::pair<Vec3d, double> ball_of(const ShadingPoints& sites, std::size_t i, std::size_t k) {
-    if (k < sites.disks.size()) {
-        const DiskArrays& disk = sites.disks[k];
+/// Returns the centre of light k from shading point i, in its local frame, and the radius of a ball that contains it.
+std::pair<Vec3d, double> ball_of(const ShadingPoints& shading_points, std::size_t i, std::size_t k) {
+    if (k < shading_points.disks.size()) {
+        const DiskArrays& disk = shading_points.disks[k];
         return {{disk.cx[i], disk.cy[i], disk.cz[i]}, static_cast<double>(disk.radius)};
     }
-    const LightArrays& from = sites.others[k - sites.disks.size()];
+    const LightArrays& from = shading_points.others[k - shading_points.disks.size()];
     LocalLight<double> light;
     light.a = {from.numbers[0][i], from.numbers[1][i], from.numbers[2][i]};
     for (std::size_t n = 0; n < light.number.size(); ++n) light.number[n] = static_cast<double>(from.numbers[9 + n][i]);
@@ -65,12 +66,14 @@ std::pair<Vec3d, double> ball_of(const ShadingPoints& sites, std::size_t i, std:
     return {light.a, radius};
 }
 
-/// May the lobe of site i peak in light k, and be so narrow against it that fewer than ten of n samples would meet it?
-bool may_be_missed(const ShadingPoints& sites, std::size_t i, std::size_t k, double n) {
-    const auto [c, radius] = ball_of(sites, i, k);
-    const Vec3d wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
-    const LobeInfo& lobe = lobe_info(static_cast<LobeKind>(sites.lobe));
-    const double s = lobe.exponent(static_cast<double>(sites.s[i]), static_cast<double>(sites.alpha[i]));
+/// Returns whether the lobe of shading point i may peak in light k, and be so narrow that fewer than ten of n samples
+/// would meet it.
+bool may_be_missed(const ShadingPoints& shading_points, std::size_t i, std::size_t k, double n) {
+    const auto [c, radius] = ball_of(shading_points, i, k);
+    const Vec3d wo = {shading_points.wox[i], shading_points.woy[i], shading_points.woz[i]};
+    const LobeInfo& lobe = lobe_info(static_cast<LobeKind>(shading_points.lobe));
+    const double s =
+        lobe.exponent(static_cast<double>(shading_points.s[i]), static_cast<double>(shading_points.alpha[i]));
     const double across = lobe.about_mirror ? 1 : wo.z, far = std::sqrt(dot(c, c));
     const double off = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
     const bool peak_is_near = off < math::atan2(radius, far) + 8 / std::sqrt(s);
@@ -78,51 +81,54 @@ bool may_be_missed(const ShadingPoints& sites, std::size_t i, std::size_t k, dou
         n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
 }
 
-/// The note's reference over one group of sites.
+/// Computes the article's reference over one group of shading points.
 class MonteCarloPixels {
 public:
-    MonteCarloPixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& sites,
+    MonteCarloPixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& shading_points,
         const std::vector<std::uint32_t>& seeds, const std::string& isa, ProgressMonitor& monitor)
-        : scene_(scene), sites_(sites) {
+        : scene_(scene), shading_points_(shading_points) {
         const ReferencePlan& plan = experiment.reference;
-        if (sites.lobe >= 0)
-            lobe_ = estimate_sites(only_lobe(sites), lobe_info(static_cast<LobeKind>(sites.lobe)).own_arm,
-                plan.lobe_spp, seeds[0], isa, &monitor.stop);
+        if (shading_points.lobe >= 0)
+            lobe_ = estimate_points(only_lobe(shading_points),
+                lobe_info(static_cast<LobeKind>(shading_points.lobe)).own_arm, plan.lobe_spp, seeds[0], isa,
+                &monitor.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         light_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.lights().size(); ++k)
-            lights_.push_back(estimate_sites(
-                only_light(scene, sites, k), "light-area", plan.disk_spp, seeds[k + 1], isa, &monitor.stop));
+            lights_.push_back(estimate_points(
+                only_light(scene, shading_points, k), "light-area", plan.disk_spp, seeds[k + 1], isa, &monitor.stop));
     }
 
     void write(std::size_t i, ReferenceFilm& film) const {
         const Rgb& fill = scene_.fill();
-        const double lobe = sites_.lobe >= 0 ? lobe_.g_lobe[i] / lobe_n_ : 0;
-        const double rho_s = sites_.rho_s_exact[i];
-        const Rgb& tint = sites_.tint[i];
+        const double lobe = shading_points_.lobe >= 0 ? lobe_.g_lobe[i] / lobe_n_ : 0;
+        const double rho_s = shading_points_.rho_s_exact[i];
+        const Rgb& tint = shading_points_.tint[i];
         const auto tinted = [&](const Rgb& light) {
             return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
         };
         Rgb out{};
-        double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.spread[i], lobe_n_) : 0;
-        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (pi * sites_.lambert[i][c] + rho_s * tint[c] * lobe);
+        double variance = shading_points_.lobe >= 0 ? variance_of_mean(lobe_.spread[i], lobe_n_) : 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = fill[c] * (pi * shading_points_.lambert[i][c] + rho_s * tint[c] * lobe);
         for (std::size_t k = 0; k < lights_.size(); ++k) {
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
                 part[c] = (scene_.lights()[k].radiance[c] - fill[c]) *
-                    (sites_.lambert[i][c] * lights_[k].light_g[k][i] + rho_s * tint[c] * lights_[k].light_g_lobe[k][i]);
+                    (shading_points_.lambert[i][c] * lights_[k].light_g[k][i] +
+                        rho_s * tint[c] * lights_[k].light_g_lobe[k][i]);
                 out[c] += part[c] / light_n_;
             }
             variance += variance_of_mean(lights_[k].spread[i], light_n_);
-            if (sites_.lobe >= 0 && may_be_missed(sites_, i, k, light_n_))
+            if (shading_points_.lobe >= 0 && may_be_missed(shading_points_, i, k, light_n_))
                 variance += sqr(rho_s * (tinted(scene_.lights()[k].radiance) - tinted(fill)));
         }
-        store_pixel(film, sites_.pixel[i], out, std::sqrt(variance));
+        store_pixel(film, shading_points_.pixel[i], out, std::sqrt(variance));
     }
 
 private:
     const Scene& scene_;
-    const ShadingPoints& sites_;
+    const ShadingPoints& shading_points_;
     Moments lobe_;
     std::vector<Moments> lights_;
     double lobe_n_ = 1, light_n_ = 1;
@@ -132,7 +138,7 @@ private:
 
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     constexpr std::uint32_t salt = 0x4ef1ce;
-    constexpr std::uint32_t longest_series = 4096;  // the most that an experiment's `seeds` can be
+    constexpr std::uint32_t longest_series = 4096;  // the largest value of an experiment's `seeds`
     const auto drawn_from = [&](std::uint32_t seed) {
         for (std::uint32_t a = 0; a < longest_series; ++a)
             if (seed_of(experiment.seed, a) == seed) return true;
@@ -154,16 +160,17 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
         [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < views.size(); ++e) {
                 const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
-                for (const ShadingPoints& sites : *groups) {
-                    if (e > 0 && sites.lobe < 0) {
-                        for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
+                for (const ShadingPoints& shading_points : *groups) {
+                    if (e > 0 && shading_points.lobe < 0) {
+                        for (std::size_t i = 0; i < shading_points.count; ++i)
+                            copy_pixel(films[0], films[e], shading_points.pixel[i]);
                         continue;
                     }
-                    const MonteCarloPixels pixels(views[e].scene(), experiment, sites, seeds, isa, monitor);
-                    for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
+                    const MonteCarloPixels pixels(views[e].scene(), experiment, shading_points, seeds, isa, monitor);
+                    for (std::size_t i = 0; i < shading_points.count; ++i) pixels.write(i, films[e]);
                 }
             }
         });
 }
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

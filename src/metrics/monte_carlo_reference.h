@@ -1,6 +1,6 @@
-// The published recipe for a reference: analytic Lambert x fill, the lobe x fill by sampling the lobe, the lights by
-// next-event estimation, on streams that no arm has; states its standard error per pixel, and all that a lobe may hold
-// where it is too narrow for that many samples on a light.
+// The published method for a reference: analytic Lambert x fill, the lobe x fill by sampling the lobe, the lights by
+// next-event estimation, on streams that no arm uses. It states its standard error per pixel, plus the whole
+// contribution of a lobe that is too narrow for that many samples on a light.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 #include "render/film.h"
 #include "render/tiles.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 
-/// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from, however
-/// many seeds are run.
+/// Returns seed k of the article's reference: hashed from its own, and different from those of the experiment's arms
+/// for any number of seeds.
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
-/// One film a view, which are the same but for their exponents, see views_at. `experiment`: whose reference it is; says
-/// how many samples, and which seeds. `checkpoint` keeps finished tiles.
+/// Returns one film per view; the views differ only in their exponents, see views_at. `experiment` gives the sample
+/// counts and seeds. `checkpoint` keeps finished tiles.
 std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
     const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

@@ -10,10 +10,10 @@
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline studies {
+namespace crescent::inline metrics {
 namespace {
 
-/// Standard errors between the two references, over the whole image.
+/// Returns the standard errors between the two references, over the whole image.
 double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
@@ -27,11 +27,9 @@ double references_apart(const Experiment& experiment) {
     return std::fabs(difference) / std::sqrt(variance);
 }
 
-TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
-    EXPECT_LT(references_apart(test::small_scene()), 4);
-}
+TEST(Estimator, ArticleReferenceMatchesTheQuadrature) { EXPECT_LT(references_apart(test::small_scene()), 4); }
 
-TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
+TEST(Estimator, DiskBehindAnotherIsHiddenFromBoth) {
     Experiment experiment = test::small_scene();
     DiskLight& near = experiment.disks[0];
     DiskLight& far = experiment.disks[1];
@@ -49,7 +47,7 @@ TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     EXPECT_GT(darker, 100);
 }
 
-/// Correlation of what two films are off by, over the pixels that see a shape.
+/// Returns the correlation of the errors of two films, over the pixels that see a shape.
 double correlation(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& truth) {
     double aa = 0, bb = 0, ab = 0;
     for (std::size_t at = 0; at < truth.size(); ++at) {
@@ -59,7 +57,7 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, con
     return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
-TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
+TEST(Estimator, ArticleReferenceSharesNoRandomStream) {
     Experiment experiment = test::small_scene();
     experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
     const Scene scene(experiment);
@@ -77,4 +75,4 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
 }
 
 }  // namespace
-}  // namespace crescent::inline studies
+}  // namespace crescent::inline metrics

@@ -1,5 +1,5 @@
-// Each mark is one SVG element, placed by the axes' shares of the frame. Lines and bands are cut off by an inner <svg>;
-// names at the ends of lines are kept 13 pixels apart.
+// Each mark is one SVG element, placed by the axes' shares of the frame. Lines and bands are clipped by an inner <svg>;
+// names at the ends of lines are at least 13 pixels apart.
 #include "output/charts.h"
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 #include "math/functions.h"
 #include "output/format.h"
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
-// ---- Linear axes tick at 1, 2 or 5 times a power of ten, four to eight steps long. Log axes tick at those numbers of
-// a table that its row for their length in decades has.
+// ---- Linear axes have ticks at 1, 2 or 5 times a power of ten, with four to eight steps; log axes have ticks from the
+// row of a table for their length in decades.
 
 double Axis::share(double x) const {
     if (log) return x > 0 ? math::log(x / low) / math::log(high / low) : 0;
@@ -208,7 +208,7 @@ std::string Chart::axes() const {
             middle, escape(y_.label));
 }
 
-std::string Chart::framed() const {  // an inner svg hides what leaves it
+std::string Chart::framed() const {  // an inner svg hides what is outside
     const double w = width_ - left_margin - right_margin, h = height_ - top_margin - bottom_margin;
     return fmt::format(
         "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left_margin,
@@ -246,4 +246,4 @@ std::string strip_svg(const Strip& s) {
         w, h, w, h, words, marks);
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

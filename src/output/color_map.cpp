@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 namespace {
 
@@ -282,4 +282,4 @@ Srgb8 turbo(double t) {
     return out;
 }
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

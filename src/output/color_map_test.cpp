@@ -1,10 +1,10 @@
-// Eleven published entries; all 256 by their second differences, 2 at most; small steps between, both ends, NaN.
+// Eleven published entries; all 256 by their second differences, at most 2; small steps between, both ends, NaN.
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "output/color_map.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 namespace {
 
 TEST(Turbo, HasThePublishedEntries) {
@@ -17,7 +17,7 @@ TEST(Turbo, HasThePublishedEntries) {
     for (const auto& p : published) EXPECT_EQ(turbo(p.entry / 255.0), p.colour) << "entry " << p.entry;
 }
 
-// A wrong digit in any of the 768 bytes bends a channel by more than rounding does.
+// A wrong digit in any of the 768 bytes changes the second difference by more than rounding does.
 TEST(Turbo, BendsNoMoreThanRoundingAllows) {
     for (int i = 1; i < 255; ++i) {
         Srgb8 a = turbo((i - 1) / 255.0), b = turbo(i / 255.0), c = turbo((i + 1) / 255.0);
@@ -36,4 +36,4 @@ TEST(Turbo, GoesInSmallStepsAndClamps) {
 }
 
 }  // namespace
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <fmt/format.h>
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 namespace {
 
 bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 
-/// Where the code point number `count` begins.
+/// Returns the offset of code point number `count`.
 std::size_t offset_of(std::string_view text, std::size_t count) {
     std::size_t seen = 0;
     for (std::size_t i = 0; i < text.size(); ++i)
@@ -43,8 +43,8 @@ std::string figures(double x, int digits) {
 
 std::string compact(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : shortest(x); }
 
-std::string figures_of(std::string_view meter, double x) {
-    if (meter == "fireflies" && std::isfinite(x))
+std::string figures_of(std::string_view metric, double x) {
+    if (metric == "fireflies" && std::isfinite(x))
         return fmt::format("{}", 2 * x == std::floor(2 * x) ? x : std::round(x));
     return figures(x);
 }
@@ -81,7 +81,7 @@ std::string plural(std::uint64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-// ---- Finite doubles go in as JSON numbers, others as the words of shortest(); nlohmann::json writes them.
+// ---- Finite doubles are written as JSON numbers, others as the words of shortest(), by nlohmann::json.
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(shortest(x)); }
 
@@ -93,7 +93,7 @@ Json numbers(const std::vector<double>& all) {
 
 std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-// ---- Three bytes make 24 bits and four digits; one or two left over make two or three digits, and "=" fills up.
+// ---- Three bytes make 24 bits and four digits; one or two left over make two or three digits, padded with "=".
 
 std::string base64(const std::vector<unsigned char>& bytes) {
     static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -108,4 +108,4 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return out;
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

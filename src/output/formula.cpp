@@ -1,5 +1,5 @@
-// Recursive descent turns TeX into a tree of nodes; the tree is written out as MathML elements, or as Pango markup with
-// brackets where a fraction on one line needs them. Values are put into the tree in place of letters.
+// Recursive descent turns TeX into a tree of nodes; the tree is written as MathML elements, or as Pango markup with
+// brackets where a fraction on one line needs them. Values replace letters in the tree.
 #include "output/formula.h"
 
 #include <cctype>
@@ -13,7 +13,7 @@ namespace crescent::formula {
 
 namespace {
 
-/// A piece of a formula. Its parts: of a row all, of a fraction two, of a root one, of a script base, sub and sup.
+/// A piece of a formula. Its parts: for a row all, for a fraction two, for a root one, for a script base, sub and sup.
 struct Node {
     Kind kind = Kind::row;
     std::string text{};  // UTF-8
@@ -25,7 +25,7 @@ class Reader {
 public:
     explicit Reader(std::string_view tex) : tex_(tex) {}
 
-    /// Up to `end` (0: to the end of the text), which is taken.
+    /// Reads up to `end` (0: to the end of the text), including it.
     Node row(char end = 0) {
         Node out;
         for (;;) {
@@ -135,7 +135,7 @@ bool is_sign(const Node& n, std::string_view text) { return n.kind == Kind::sign
 
 std::string as_pango(const Node& n);
 
-/// Numerator or denominator on one line: in brackets where what stands beside it would bind closer.
+/// Numerator or denominator on one line: in brackets if a neighbour would bind closer.
 std::string beside_slash(const Node& n, bool below) {
     const Node& only = n.kind == Kind::row && n.parts.size() == 1 ? n.parts[0] : n;
     bool brackets = below && only.kind == Kind::row && only.parts.size() > 1;
@@ -169,7 +169,7 @@ std::string as_pango(const Node& n) {
         case Kind::root: return "√(" + as_pango(n.parts[0]) + ")";
         case Kind::script: {
             std::string out = as_pango(n.parts[0]);
-            const bool positive_part = is_sign(n.parts[1], "+");  // (x)_+ : plates say where p is 0 by the picture
+            const bool positive_part = is_sign(n.parts[1], "+");  // (x)_+ : plates show where p is 0
             if (!n.parts[1].empty() && !positive_part) out += element("sub", as_pango(n.parts[1]));
             if (!n.parts[2].empty()) out += element("sup", as_pango(n.parts[2]));
             return out;

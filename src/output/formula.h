@@ -1,7 +1,7 @@
 // Formulas are written once, in a small part of TeX, and set in two ways: as presentation MathML (MathML Core) for
 // pages and as one line of Pango markup for plates. Letters, digits, + - = < > , ; / ( ) and
 //   \frac{a}{b}  \sqrt{a}  x_i  x^2  {group}  \lvert a \rvert  \mathrm{word}  \,  \cdot  \le  \infty  \propto
-//   \cos \sin \tan \exp \ln \log \min \max  and Greek letters by name: the list is in base/formula_words.h.
+//   \cos \sin \tan \exp \ln \log \min \max  and Greek letters by name: the list is in this file.
 #pragma once
 
 #include <array>
@@ -10,29 +10,29 @@
 
 namespace crescent::formula {
 
-/// The inside of a <math> element. Throws Bug for TeX that is not of the part above.
+/// Returns the inside of a <math> element. Throws Bug for other TeX.
 std::string mathml(std::string_view tex);
 
-/// Numbers that stand for a letter and for that letter + 1, as Pango markup.
+/// Numbers for a letter and for that letter + 1, as Pango markup.
 struct Value {
     char letter = 0;
     std::string number{}, plus_one{};
 };
-/// One line of Pango markup, fractions as a/b: "(s+1)/(2π) (ω·R)<sup>s</sup>", with {'s', "32", "33"} in place of s
-/// "33/(2π) (ω·R)<sup>32</sup>".
+/// Returns one line of Pango markup, fractions as a/b: "(s+1)/(2π) (ω·R)<sup>s</sup>", with {'s', "32", "33"} in place
+/// of s "33/(2π) (ω·R)<sup>32</sup>".
 std::string pango(std::string_view tex, const Value& value = {});
 
-/// Words with formulas between dollar signs as HTML: "about the normal $n$" -> "about the normal
+/// Returns words with formulas between dollar signs as HTML: "about the normal $n$" -> "about the normal
 /// <math><mi>n</mi></math>".
 std::string html(std::string_view words);
 
-// ---- The words and signs of the formulas that base/formula.h sets, and whether a formula is made of them: what arms
-// and lobes state is held to it where it is compiled.
+// ---- The words and signs of formulas, and a compile-time check whether a formula consists of them, used for the
+// formulas of samplers and lobes.
 
-/// What a piece of a formula is.
+/// The kind of a piece of a formula.
 enum class Kind { letter, number, sign, word, space, row, paren, bars, fraction, root, script };
 
-/// \name, and the UTF-8 that it is set as.
+/// \name, and the UTF-8 that represents it.
 struct Word {
     std::string_view name, text;
     Kind kind;
@@ -90,7 +90,8 @@ inline constexpr std::string_view signs = "+-=<>,;/";
 constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// No word that is not known, no other sign, every bracket closed, nothing left out at the end. What passes can be set.
+/// Checks that every word and sign is known, every bracket closed, nothing missing at the end. A formula that passes
+/// can be set.
 class Checker {
 public:
     constexpr explicit Checker(std::string_view tex) : tex_(tex) {}
@@ -143,9 +144,9 @@ private:
     std::size_t at_ = 0;
 };
 
-/// A formula that can be set.
+/// Returns whether a formula can be set.
 constexpr bool is_formula(std::string_view tex) { return Checker(tex).holds(); }
-/// Words in which every formula between dollar signs can be set.
+/// Returns whether every formula between dollar signs can be set.
 constexpr bool has_formulas(std::string_view words_and_tex) {
     for (bool tex = false;; tex = !tex) {
         const std::size_t end = words_and_tex.find('$');

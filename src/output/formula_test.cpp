@@ -1,5 +1,5 @@
-// Both ways to set a formula against markup written out by hand; that what is not in the list is a Bug, and is known
-// for one where it is compiled; that every word of the list can be set.
+// Both ways to set a formula against markup written out by hand; a formula outside the list is a Bug, also at compile
+// time; every word of the list can be set.
 #include "output/formula.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Formulas, StandOnOneLineOfPango) {
     EXPECT_EQ(pango(R"(w_i=\frac{p_i}{p_1+p_2})"), "w<sub>i</sub> = p<sub>i</sub>/(p<sub>1</sub> + p<sub>2</sub>)");
 }
 
-TEST(Formulas, TakeNumbersInPlaceOfALetterAndOfItsSuccessor) {
+TEST(Formulas, TakeNumbersForALetterAndItsSuccessor) {
     const char* tex = R"(\frac{s+1}{2\pi}\,(\omega\cdot R)_+^s)";
     EXPECT_EQ(pango(tex), "(s+1)/(2π) (ω·R)<sup>s</sup>");
     EXPECT_EQ(pango(tex, {'s', "32", "33"}), "33/(2π) (ω·R)<sup>32</sup>");
@@ -38,7 +38,7 @@ TEST(Formulas, OfWordsThatAreNotKnownAreABug) {
     EXPECT_THROW(mathml("(a"), Bug);
 }
 
-TEST(Formulas, ThatCannotBeSetAreKnownWhereTheyAreCompiled) {
+TEST(Formulas, InvalidOnesAreDetectedAtCompileTime) {
     for (const char* tex :
         {R"(\unknown)", "(a", "a^", R"(\frac{a})", R"(\mathrm{a)", "a!", R"(\lvert a)", "a)", "{a"}) {
         EXPECT_THROW(mathml(tex), Bug) << tex;

@@ -1,5 +1,5 @@
-// Strings put together by {fmt}. A table opens a <tbody> at its first row and at each group; heading cells say by
-// `scope` what they head, and a true minus is set before digits alone.
+// Strings composed by {fmt}. A table opens a <tbody> at its first row and at each group; heading cells declare their
+// `scope`, and a true minus is set only before digits.
 #include "output/html.h"
 
 #include <fmt/format.h>
@@ -78,9 +78,9 @@ std::string Table::str() const {
 
 }  // namespace crescent::html
 
-// ---- One template, filled by name; contents and sections are written in one walk over the sections that have html.
+// ---- One template, filled by name; contents and sections are written in one pass over the sections that have html.
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 namespace {
 
@@ -134,7 +134,7 @@ std::string page_html(const PageFrame& frame, const std::vector<PageSection>& se
 }
 
 // ---- CSS in one string: custom properties for light, dark and paper, then text, tables, figures and the classes of
-// charts. Lengths mostly in rem, in charts in pixels.
+// charts; lengths mostly in rem, in charts in pixels.
 
 // Colours of c0..c5: Okabe and Ito's palette for colour-blind readers, darkened for light ground and lightened for
 // dark.
@@ -248,4 +248,4 @@ svg .median { stroke: var(--c1); stroke-width: 2; } svg .meas { color: var(--c1)
 }
 )css";
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

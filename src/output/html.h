@@ -1,5 +1,5 @@
 // XHTML-compatible HTML5 in small pieces: every tag is closed, every attribute quoted, every name escaped. A function
-// that takes `html` passes it on as it is; one that takes `text` escapes it.
+// that takes `html` passes it on unchanged; one that takes `text` escapes it.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ std::string number(std::string_view text);
 /// A number in a sentence keeps its digits together and in tabular figures.
 inline std::string value(std::string_view text) { return element("span", "class=\"v\"", number(text)); }
 
-/// "heavy tail", set apart where an interval would stand.
+/// "heavy tail", in the place of an interval.
 std::string heavy_tail();
 
 /// One cell; `head` makes it a row's heading, `number` aligns it to the right.
@@ -43,18 +43,18 @@ struct Cell {
     int rows = 1;    // rowspan
     int across = 1;  // colspan
 };
-/// Cells of words, of a figure, and a heading of rows.
+/// Cells of words, of a number, and a heading of rows.
 Cell words(std::string html);
 Cell figure(std::string_view text);  // number(), right-aligned; "" becomes an en dash
 Cell heading(std::string html, int rows = 1);
 
-/// A table that scrolls by itself on a narrow screen and is never cut across pages inside a row.
+/// A table that scrolls separately on a narrow screen and is never cut inside a row on paper.
 class Table {
 public:
     Table(std::string caption_html, std::vector<Cell> head)
         : caption_(std::move(caption_html)), head_(std::move(head)) {}
     void row(const std::vector<Cell>& cells);
-    /// A heading across the table; the rows that follow belong to it.
+    /// Adds a heading across the table for the rows that follow.
     void group(std::string_view html);
     bool empty() const { return rows_ == 0; }
     std::string str() const;
@@ -69,16 +69,16 @@ private:
 
 }  // namespace crescent::html
 
-// ---- The frame of every page of crescent's: head, title, contents, sections, footer; one style sheet, light and dark,
-// on paper and on a telephone.
+// ---- The frame of every page: head, title, contents, sections, footer; one style sheet, light and dark, on paper and
+// on small screens.
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 struct PageSection {
-    std::string id, title, html;  // a section whose html is empty has nothing to say and is left out
+    std::string id, title, html;  // a section with empty html is omitted
 };
 
-/// Parts named `html` and `text` as in pages/html.h: the former are passed on, the latter escaped.
+/// Parts named `html` and `text` as above: the former are passed on, the latter escaped.
 struct PageFrame {
     std::string title_text, kicker_text, version_text;
     std::string lead_html;    // under the title
@@ -93,7 +93,7 @@ std::string page_html(const PageFrame& frame, const std::vector<PageSection>& se
 // ---- The style sheet of the report: one column of about seventy characters, tables and figures a little wider, light
 // and dark, and paper.
 
-/// Holds no '<' and no '&', so that it may stand in XHTML as it is.
+/// Contains no '<' and no '&', so that it is valid in XHTML.
 extern const char* const style_sheet;
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -1,5 +1,5 @@
 // One <testsuites> around one <testsuite>: counts by state, properties, then the cases in their order. Times are in
-// seconds to a thousandth and stand only where a case has one; a suite's is their sum.
+// seconds to a thousandth and are written only if a case has one; a suite's is their sum.
 #include "output/junit.h"
 
 #include <fmt/format.h>
@@ -8,11 +8,11 @@
 
 #include "base/text.h"
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 namespace {
 
-/// The element that says how a case ended, "" where it passed.
+/// Returns the element for the outcome of a case, "" if it passed.
 std::string outcome(const JunitCase& c) {
     const char* tag = c.state == JunitCase::State::failed ? "failure"
         : c.state == JunitCase::State::error              ? "error"
@@ -56,4 +56,4 @@ std::string junit_text(const JunitSuite& suite) {
     return out + "  </testsuite>\n</testsuites>\n";
 }
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

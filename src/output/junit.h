@@ -1,4 +1,4 @@
-// junit.xml for build servers: one suite, of a run, a judgement or a comparison.
+// junit.xml for build servers: one suite, of a run, a result or a comparison.
 #pragma once
 
 #include <optional>
@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline pages {
+namespace crescent::inline output {
 
 struct JunitCase {
     enum class State { passed, failed, error, skipped };
 
     std::string group, name;
     State state = State::passed;
-    std::string message, text;      // of all but what passed; text: in full, "" where the message is all
-    std::optional<double> seconds;  // where it varies from run to run and is asked for all the same
+    std::string message, text;      // of all except passed cases; text: in full, "" if the message is all
+    std::optional<double> seconds;  // if it varies from run to run and is still requested
 };
 
 struct JunitSuite {
@@ -23,7 +23,7 @@ struct JunitSuite {
     std::vector<JunitCase> cases;
 };
 
-/// The file. Any text may stand in it: it is escaped here. Equal suites give equal bytes.
+/// Returns the file. Any text is allowed in it: it is escaped here. Equal suites give equal bytes.
 std::string junit_text(const JunitSuite& suite);
 
-}  // namespace crescent::inline pages
+}  // namespace crescent::inline output

@@ -7,7 +7,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr double start = 0.8 - fresnel;
 constexpr double desaturation = 0.15;
 
 // Linear values at which round(255 srgb_encode) steps from k - 1 to k, and for each of 1024 equal steps of the linear
-// range the byte at its lower end: two or three comparisons then settle any value.
+// range the byte at its lower end: two or three comparisons then determine any value.
 struct Thresholds {
     std::array<double, 257> step;
     std::array<unsigned char, 1025> first;
@@ -82,4 +82,4 @@ Srgb8 photograph(const Rgb& radiance, double exposure) {
     return {srgb_byte(mapped[0]), srgb_byte(mapped[1]), srgb_byte(mapped[2])};
 }
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

@@ -1,32 +1,32 @@
-// The display chain, linear Rec.709 radiance -> 8-bit sRGB: exposure, Khronos PBR Neutral, IEC 61966-2-1.
-// Photographs go through it; no meter does.
+// Tone mapping, linear Rec.709 radiance -> 8-bit sRGB: exposure, Khronos PBR Neutral, IEC 61966-2-1. Used for
+// photographs, never for metrics.
 #pragma once
 
 #include <array>
 
 #include "base/vec.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 
-/// 8-bit sRGB, as it stands in a PNG.
+/// 8-bit sRGB, as in a PNG.
 using Srgb8 = std::array<unsigned char, 3>;
 
-/// Khronos PBR Neutral: linear Rec.709 >= 0 (1: diffuse white) -> linear in [0, 1]. Hue is kept up to a
-/// desaturation of what is far above white. Source: KhronosGroup/ToneMapping, PBR_Neutral, "The specification", 2024.
+/// Khronos PBR Neutral: linear Rec.709 >= 0 (1: diffuse white) -> linear in [0, 1]. Hue is kept, except for a
+/// desaturation of values far above white. Source: KhronosGroup/ToneMapping, PBR_Neutral, "The specification", 2024.
 Rgb neutral(const Rgb& colour);
 
 /// IEC 61966-2-1:1999 opto-electronic transfer: linear -> encoded, both in [0, 1] (clamped).
 double srgb_encode(double linear);
 /// Its inverse: encoded -> linear, both in [0, 1] (clamped).
 double srgb_decode(double encoded);
-/// round(255 srgb_encode(linear)), without a power: a comparison with the 255 exact thresholds.
+/// Returns round(255 srgb_encode(linear)) by comparison with the 255 exact thresholds, without a power.
 unsigned char srgb_byte(double linear);
 
-/// The colour that stands for a pixel that is not a number: pure magenta, which Neutral never yields from a lit scene.
+/// The colour of a pixel that is NaN: pure magenta, which Neutral never yields from a lit scene.
 inline constexpr Srgb8 not_a_number_colour{255, 0, 255};
 
-/// srgb_byte(neutral(exposure * radiance)) per channel; negative radiance counts as 0, a value that is not finite is
-/// `not_a_number_colour`.
+/// Returns srgb_byte(neutral(exposure * radiance)) per channel; negative radiance counts as 0, a value that is not
+/// finite gives `not_a_number_colour`.
 Srgb8 photograph(const Rgb& radiance, double exposure);
 
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

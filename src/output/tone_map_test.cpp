@@ -1,12 +1,12 @@
-// sRGB against values of the standard, bytes against the rounded encoding; Neutral against values worked out from its
-// specification, and that greys rise and hues stay; photographs of NaN, infinite and negative radiance.
+// sRGB against values of the standard, bytes against the rounded encoding; Neutral against values computed from its
+// specification, monotonic greys and constant hues; photographs of NaN, infinite and negative radiance.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 
 #include "output/tone_map.h"
 
-namespace crescent::inline color {
+namespace crescent::inline output {
 namespace {
 
 TEST(Srgb, EncodesTheValuesOfTheStandard) {
@@ -37,7 +37,7 @@ TEST(Srgb, AByteIsTheRoundedEncoding) {
     EXPECT_EQ(srgb_byte(std::nan("")), 0);
 }
 
-TEST(Neutral, BelowTheStartOfCompressionItTakesAwayFourPerCent) {
+TEST(Neutral, SubtractsFourPerCentBelowCompression) {
     Rgb out = neutral({0.5, 0.3, 0.2});
     EXPECT_DOUBLE_EQ(out[0], 0.46);
     EXPECT_DOUBLE_EQ(out[1], 0.26);
@@ -45,7 +45,7 @@ TEST(Neutral, BelowTheStartOfCompressionItTakesAwayFourPerCent) {
     EXPECT_NEAR(neutral({0.8, 0.8, 0.8})[0], 0.76, 1e-12);
 }
 
-TEST(Neutral, TheToeIsAParabolaThatMeetsTheLineAtEightPerCent) {
+TEST(Neutral, ToeIsAParabolaUpToEightPerCent) {
     EXPECT_DOUBLE_EQ(neutral({0, 0, 0})[0], 0);
     EXPECT_NEAR(neutral({0.04, 0.04, 0.04})[0], 0.01, 1e-12);  // 6.25 x^2
     EXPECT_NEAR(neutral({0.08, 0.08, 0.08})[0], 0.04, 1e-12);
@@ -82,7 +82,7 @@ TEST(Photograph, IsExposureThenNeutralThenSrgb) {
     EXPECT_EQ(c[2], std::lround(255 * srgb_encode(0.16)));
 }
 
-TEST(Photograph, ShowsWhatIsNotANumberAndTakesNegativeLightForNone) {
+TEST(Photograph, NaNIsMagentaAndNegativeLightIsZero) {
     constexpr double inf = std::numeric_limits<double>::infinity();
     EXPECT_EQ(photograph({0, std::nan(""), 0}, 1), not_a_number_colour);
     EXPECT_EQ(photograph({0, 0, inf}, 1), not_a_number_colour);
@@ -90,4 +90,4 @@ TEST(Photograph, ShowsWhatIsNotANumberAndTakesNegativeLightForNone) {
 }
 
 }  // namespace
-}  // namespace crescent::inline color
+}  // namespace crescent::inline output

@@ -1,6 +1,6 @@
-// Bodies of every size that the schema permits, as kernels test them in single precision, against long double: rays
+// Bodies of every size that the schema permits, tested by the kernels in single precision against long double: rays
 // that begin near a surface or an edge of a large body, and rays to small bodies far away. Lengths in m. Kinds without
-// a form here (`Crosses`, `Draw::body`) are left to every_body_test.cpp, at sizes of about 1 m.
+// a form here (`Crosses`, `Draw::body`) are tested in every_body_test.cpp, at sizes of about 1 m.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 #include "render/disk_hit.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 using Long = long double;
@@ -27,7 +27,7 @@ Long dot_of(Vec3l a, Vec3l b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec3l cross_of(Vec3l a, Vec3l b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 Vec3l long_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
-/// Does the body's surface cross x + t d, d unit, for a t in (lo, hi)?
+/// Returns whether the body's surface crosses x + t d, d unit, for some t in (lo, hi).
 struct Crosses {
     Vec3l x, d;
     Long lo, hi;
@@ -68,7 +68,7 @@ struct Crosses {
     bool operator()(const shapes::Plane& o) const { return in(on_plane(long_of(o.point), long_of(o.normal))); }
 };
 
-/// The kinds that have a form here, by their indices among Bodies.
+/// Returns the indices among Bodies of the kinds that have a form here.
 std::vector<std::size_t> known_bodies() {
     std::vector<std::size_t> out;
     for (std::size_t kind = 0; kind < Bodies::count; ++kind)
@@ -89,12 +89,12 @@ public:
         return {r * std::cos(phi), y, r * std::sin(phi)};
     }
     Vec3d near(Vec3d p, double far) { return p + between(0, far) * direction(); }
-    /// An inner point of an edge of length 1, or one of its ends, or its middle.
+    /// Returns an inner point of an edge of length 1, one of its ends, or its middle.
     double along() {
         const int kind = static_cast<int>(between(0, 4));
         return kind == 0 ? 0 : kind == 1 ? 1 : kind == 2 ? 0.5 : between(0, 1);
     }
-    /// A body of a kind and size with p on it: on its edge, where it has one, half of the time.
+    /// Returns a body of a kind and size with p on it; in half of the cases p lies on its edge, if it has one.
     Bodies::Any body(std::size_t kind, double size, Vec3d p) {
         Bodies::Any out = Bodies::make(kind);
         const Vec3d n = direction();
@@ -121,8 +121,8 @@ private:
 Vec3<float> single(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 Vec3d exact(Vec3<float> v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
 
-/// How often a kernel and long double differ on rays from o = origin + offset along d to a light at `distance`, of
-/// those that mean the same from anywhere within `tolerance` of o.
+/// Counts the rays from o = origin + offset along d to a light at `distance` on which a kernel and long double differ.
+/// Only rays with the same result from all points within `tolerance` of o count.
 struct Count {
     int rays = 0, hidden = 0, off = 0;
 
@@ -191,4 +191,4 @@ TEST(BodiesInKernels, ThatAreSmallAndFarHideWhatTheyHide) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

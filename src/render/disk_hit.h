@@ -1,14 +1,14 @@
-// Which light a direction meets first, and whether something stands before it. Local frame for the disks, world
-// for the occluders; templates over the number type, the same bits for every pack width.
+// Finds the light that a direction meets first, and whether a body blocks it. Disks are in the local frame, occluders
+// in the world. Templates over the number type give the same bits for every pack width.
 #pragma once
 
 #include "render/shading_points.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
-/// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where no emitting side does,
-/// r2 < 0 and nothing meets it.
+/// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. If no emitting side faces it, r2
+/// < 0 and no ray meets the disk.
 template <class F> struct FacingDisk {
     Vec3<F> c, n;  // from the surface to the centre; the normal
     F k, r2;       // c.n; radius squared
@@ -23,16 +23,16 @@ template <class F> struct FacingDisk {
     }
 };
 
-/// Does w meet the disk? With v = w.n the ray meets its plane at (k/v) w, so |k w - v c| <= r |v| needs no division;
-/// the distance, where it does, is k/v.
+/// Returns whether w meets the disk. With v = w.n the ray meets its plane at (k/v) w, so |k w - v c| <= r |v| needs no
+/// division. If it meets the disk, the distance is k/v.
 template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, Vec3<F> w, F& v) {
     v = dot(w, disk.n);
     const Vec3<F> off = w * disk.k - disk.c * v;
     return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
 }
 
-/// As meets_disk for what an arm drew: where it aimed at disk k it knows whether it meets it. `alone`: there is no
-/// other.
+/// Like meets_disk, for a drawn direction. A sampler that aimed at disk k already knows the result. `alone`: the scene
+/// has no other disk.
 template <class F, class D>
 CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
     if constexpr (requires { drawn.met; }) {
@@ -47,7 +47,7 @@ CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, 
     }
 }
 
-/// As meets_disk for a light that is no disk, at index k of all; t: how far it is.
+/// Like meets_disk, for a light of another kind, at index k of all lights. Sets t to its distance.
 template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, const D& drawn, std::size_t k, F& t) {
     MaskOf<F> met = drawn.wi.x > drawn.wi.x, shines = met;
     with_light_kind(light.kind, [&]<class Kind>() {
@@ -61,18 +61,19 @@ template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, co
     return met;
 }
 
-/// Disks on one ray: the nearer is met, and of two as near as rounding can tell the one that stands first in the file.
+/// Compares two disks on one ray: the nearer one is met. If rounding cannot order them, the first one in the file is
+/// met.
 template <class F> CRESCENT_INLINE MaskOf<F> is_nearer(F t, F than) { return t < than * number<F>(1 - 1e-5); }
 
-/// A cone from the surface that holds a disk: a first, cheap question to a direction. It never excludes one that meets
-/// the disk, for directions that are unit to 1e-6.
+/// A cone from the surface that contains a disk, used as a first, cheap test of a direction. It never excludes a
+/// direction that meets the disk, if the direction is unit to 1e-6.
 template <class F> struct DiskCone {
     Vec3<F> axis;
-    F cos;  // of its half-angle, less what rounding can do; 2 where no emitting side faces the surface
+    F cos;  // of its half-angle, minus the rounding error; 2 if no emitting side faces the surface
 
     DiskCone() = default;
     explicit DiskCone(const FacingDisk<F>& disk) { *this = DiskCone(disk.c, disk.r2, !(disk.r2 < number<F>(0))); }
-    /// Of a ball about c.
+    /// Makes the cone of a sphere around c.
     DiskCone(Vec3<F> c, F r2, MaskOf<F> shines) {
         const F one = number<F>(1), d2 = dot(c, c);
         const auto outside = d2 > r2;
@@ -86,8 +87,9 @@ template <class F> struct DiskCone {
 
 template <class F> Vec3<F> broadcast(const std::array<float, 3>& a) { return {F(a[0]), F(a[1]), F(a[2])}; }
 
-/// Does the body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from
-/// either end it does not: a body that touches the surface point or the light hides nothing there.
+/// Returns whether the body's surface crosses the ray o + t d before a light at `distance`. Crossings within 1e-5 of
+/// the distance from either end do not count, so a body that touches the surface point or the light hides nothing
+/// there.
 template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
     const F lo = distance * number<F>(1e-5), hi = distance * number<F>(1 - 1e-5);
     const PackedBody<F> packed = {
@@ -101,4 +103,4 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
     return out;
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

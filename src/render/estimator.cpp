@@ -1,5 +1,5 @@
-// A kernel gives sums over a tile's sites for each rung; they become pixels here. Tiles go to threads in any order, and
-// what they write does not meet: the same bits however many threads there are.
+// A kernel returns sums over a tile's shading points for each sample count; this file turns them into pixels. Threads
+// take tiles in any order and write to separate pixels, so the bits do not depend on the number of threads.
 #include "render/estimator.h"
 
 #include <algorithm>
@@ -14,27 +14,28 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
-    std::vector<std::byte> memory(memory_of_light * call.sites->light_count());
+    std::vector<std::byte> memory(memory_of_light * call.shading_points->light_count());
     call.memory = memory.data();
-    if (arm.outside) return estimate_outside(*arm.outside, call);
+    if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
-    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.sites->lobe + 1)](call);
+    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.shading_points->lobe + 1)](
+        call);
 }
 
-/// Sums of one site over its film's n samples -> the film's pixel.
+/// Converts the sums of one shading point over its film's n samples to the film's pixel.
 class FilmResolve {
 public:
-    FilmResolve(const Scene& scene, const ShadingPoints& sites, const Moments& m, Film& film)
-        : scene_(scene), sites_(sites), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
+    FilmResolve(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film)
+        : scene_(scene), shading_points_(shading_points), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
 
     void pixel(std::size_t i) const {
-        const std::size_t at = sites_.pixel[i];
+        const std::size_t at = shading_points_.pixel[i];
         const Rgb mean = radiance(i);
         const double y = luminance(mean);
         film_.r[at] = static_cast<float>(mean[0]);
@@ -49,7 +50,7 @@ public:
     }
 
 private:
-    /// x / n: by a product, which is faster, where that has the same bits.
+    /// Returns x / n, by the faster product if that has the same bits.
     double over_n(double x) const { return is_power_of_2_ ? x * inverse_n_ : x / n_; }
 
     Rgb radiance(std::size_t i) const {
@@ -67,14 +68,14 @@ private:
         for (std::size_t c = 0; c < 3; ++c) {
             diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
             lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
-            const double lobes = sites_.rho_s_exact[i] * (sites_.tint[i][c] * lobe[c]);
-            out[c] = over_n(sites_.lambert[i][c] * diffuse[c] + lobes);
+            const double lobes = shading_points_.rho_s_exact[i] * (shading_points_.tint[i][c] * lobe[c]);
+            out[c] = over_n(shading_points_.lambert[i][c] * diffuse[c] + lobes);
         }
         return out;
     }
 
     const Scene& scene_;
-    const ShadingPoints& sites_;
+    const ShadingPoints& shading_points_;
     const Moments& m_;
     Film& film_;
     double n_, inverse_n_ = 1 / n_;
@@ -83,9 +84,9 @@ private:
 
 }  // namespace
 
-void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film) {
-    const FilmResolve finish(scene, sites, moments, film);
-    for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
+void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film) {
+    const FilmResolve finish(scene, shading_points, moments, film);
+    for (std::size_t i = 0; i < shading_points.count; ++i) finish.pixel(i);
 }
 
 void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
@@ -93,7 +94,7 @@ void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, 
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         if (monitor.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
         const double units = work(k);
-        if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
+        if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be incomplete
         monitor.advance(units);
         if (checkpoint) checkpoint->add(k, units);
     });
@@ -112,20 +113,20 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));
     PerThread<std::vector<Moments>> scratch(
-        [&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
+        [&] { return std::vector<Moments>(n.size()); });  // reused by all tiles of a thread
     for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
         const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
-        for (const ShadingPoints& sites : *groups) {
-            for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
-            run_kernel(isa, arm, {&sites, n, seed, moments, &monitor.stop, nullptr});
+        for (const ShadingPoints& shading_points : *groups) {
+            for (Moments& m : moments) m.resize(shading_points.pixel.size(), shading_points.light_count());
+            run_kernel(isa, arm, {&shading_points, n, seed, moments, &monitor.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
-                resolve_film(view.scene(), sites, moments[r], films[r]);
+                resolve_film(view.scene(), shading_points, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
-                    moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
+                    moments[r].bad.begin() + static_cast<std::ptrdiff_t>(shading_points.count), std::uint64_t{0});
             }
-            samples += static_cast<double>(sites.count) * static_cast<double>(n.back());
+            samples += static_cast<double>(shading_points.count) * static_cast<double>(n.back());
         }
         return samples;
     });
@@ -147,23 +148,23 @@ ShapeMap shape_map(const Scene& scene) {
     return map;
 }
 
-Moments estimate_sites(const ShadingPoints& sites, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
+Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
-    moments[0].resize(sites.pixel.size(), sites.light_count());
-    const std::array<std::uint64_t, 1> rungs = {n};
-    run_kernel(isa, arm, {&sites, rungs, seed, moments, stop, samples});
+    moments[0].resize(shading_points.pixel.size(), shading_points.light_count());
+    const std::array<std::uint64_t, 1> sample_counts = {n};
+    run_kernel(isa, arm, {&shading_points, sample_counts, seed, moments, stop, samples});
     return std::move(moments[0]);
 }
 
 namespace {
 
-/// The largest `count` of what many threads give, whatever their order.
+/// Keeps the largest `count` values of all threads; the result does not depend on their order.
 class Largest {
 public:
     explicit Largest(std::size_t count) : count_(count) {}
 
-    /// Changes `samples`. NaN is counted by the kernels and has no size.
+    /// Changes `samples`. Drops NaN, which the kernels count.
     void add(std::vector<float>& samples) {
         const float least = least_.load(std::memory_order_relaxed);
         const std::size_t drawn = samples.size();
@@ -187,7 +188,8 @@ public:
 private:
     std::size_t count_;
     Mutex lock_;
-    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // nothing up to this is among them any more
+    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // values up to this one are no longer among
+                                                                          // the largest
     std::vector<float> all_;
     std::uint64_t drawn_ = 0;
 };
@@ -201,10 +203,10 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
         tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
     Largest largest(count);
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
+        for (const ShadingPoints& shading_points : shading_points_of(scene, tiles[k], nullptr)) {
             if (monitor.stop.load(std::memory_order_relaxed)) return;
-            std::vector<float> samples(sites.count * n);
-            estimate_sites(sites, arm, n, seed, isa, &monitor.stop, samples.data());
+            std::vector<float> samples(shading_points.count * n);
+            estimate_points(shading_points, arm, n, seed, isa, &monitor.stop, samples.data());
             largest.add(samples);
         }
     });
@@ -213,31 +215,31 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
     return std::move(largest).in_order();
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render
 
-// ---- The draws of many sites are fetched in one batch, and then handed one after another to the scalar kernel as if
-// an arm had drawn them. A draw that cannot be used becomes a NaN pdf, which kernels count as bad.
+// ---- Fetches the draws of many shading points in one batch and passes them to the scalar kernel one by one; an
+// unusable draw becomes a NaN pdf, which kernels count as bad.
 
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
-/// Rows that are fetched at once, which stay in a core's cache; a site of more samples is fetched in parts. The same
-/// for any number of threads.
+/// Number of rows fetched at once: they fit a core's cache. A shading point with more samples is fetched in parts. Does
+/// not depend on the number of threads.
 constexpr std::uint64_t longest_batch = 8192;
 
-/// The arm of the kernels: hands out what was drawn, sample after sample.
+/// The sampler of these kernels: returns the fetched draws, sample after sample.
 template <class F> struct Prefetched {
     mutable const Drawn<F>* next;
     explicit Prefetched(const Drawn<F>* first) : next(first) {}
     Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> /*u*/) const { return *next++; }
 };
 
-/// Usable are a direction of unit length to 1e-4 and a pdf that is above 0 and finite also in single precision, in
-/// which the estimate is made. pdf 0: nothing was drawn.
+/// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
+/// precision, in which the estimate is computed. pdf 0: nothing was drawn.
 Drawn<float> usable(const Vec3<double>& wi, double p) {
     if (p == 0) return {{0, 0, 1}, {0}};
     const double length2 = wi.x * wi.x + wi.y * wi.y + wi.z * wi.z;
@@ -247,8 +249,8 @@ Drawn<float> usable(const Vec3<double>& wi, double p) {
     return {{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}, {pdf}};
 }
 
-/// Appends the random numbers of `n` samples of a pixel from `first` on, `count` a sample: the first two are those of
-/// every arm, the rest come from blocks that no arm uses.
+/// Appends the random numbers of `n` samples of a pixel from `first` on, `count` per sample. The first two are those of
+/// every built-in sampler; the rest come from blocks that no built-in sampler uses.
 void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, std::uint64_t n, std::size_t count,
     std::vector<double>& u) {
     const std::size_t from = u.size();
@@ -261,7 +263,7 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
             if (k + 1 < count) row[1] = static_cast<double>(unit_float<float>(y));
             row += count;
         };
-        for (std::uint64_t j = first; j < first + n;) {  // as crescent::draw(), two samples from one hash
+        for (std::uint64_t j = first; j < first + n;) {  // like crescent::draw(): two samples from one hash
             const auto h = draws<std::uint32_t>(pixel, static_cast<std::uint32_t>(j >> 1), block, seed);
             if (!(j & 1)) put(h.x, h.y), ++j;
             if (j < first + n) put(h.z, h.w), ++j;
@@ -269,44 +271,46 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
     }
 }
 
-using SiteKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
+using PointKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
 
-template <class L> void estimate_site(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
-    scalar::LightRoom<float> room(*call.sites, call.memory);
+template <class L> void estimate_point(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
+    scalar::LightRoom<float> room(*call.shading_points, call.memory);
     scalar::estimate_pack<Prefetched<float>, L, scalar::Lights<float>, float>(
         call, at, room, [&](const ShadingPoint<float>&) { return Prefetched<float>(drawn); });
 }
 
 /// [lobe + 1]
-template <template <class> class... L> constexpr std::array<SiteKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
-    return {estimate_site<NoLobe<float>>, estimate_site<L<float>>...};
+template <template <class> class... L> constexpr std::array<PointKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
+    return {estimate_point<NoLobe<float>>, estimate_point<L<float>>...};
 }
 
 }  // namespace
 
-void estimate_outside(const ExternalSampler& sampler, const KernelCall& call) {
-    const ShadingPoints& sites = *call.sites;
-    const std::uint64_t n = call.rungs.back();
+void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
+    const ShadingPoints& shading_points = *call.shading_points;
+    const std::uint64_t n = call.sample_counts.back();
     const auto numbers = static_cast<std::size_t>(sampler.numbers());
-    const SiteKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(sites.lobe + 1)];
-    const std::uint64_t sites_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
-    std::vector<OutsideRun> runs;
+    const PointKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(shading_points.lobe + 1)];
+    const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
+    std::vector<ExternalRun> runs;
     std::vector<double> u, pdf;
     std::vector<Vec3<double>> wi;
     std::vector<Drawn<float>> drawn;
-    for (std::size_t i = 0; i < sites.count; i += sites_a_batch) {
-        const std::size_t end = std::min<std::size_t>(sites.count, i + sites_a_batch);
+    for (std::size_t i = 0; i < shading_points.count; i += points_a_batch) {
+        const std::size_t end = std::min<std::size_t>(shading_points.count, i + points_a_batch);
         drawn.clear();
         for (std::uint64_t first = 0; first < n; first += longest_batch) {
             if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
             const std::uint64_t count = std::min(longest_batch, n - first);
             runs.clear(), u.clear();
             for (std::size_t at = i; at < end; ++at) {
-                const Vec3<double> wo{double(sites.wox[at]), double(sites.woy[at]), double(sites.woz[at])};
+                const Vec3<double> wo{
+                    double(shading_points.wox[at]), double(shading_points.woy[at]), double(shading_points.woz[at])};
                 runs.push_back({wo,
-                    {double(sites.s[at]), double(sites.alpha[at]), double(sites.diffuse[at]), sites.rho_s_exact[at]},
+                    {double(shading_points.s[at]), double(shading_points.alpha[at]), double(shading_points.diffuse[at]),
+                        shading_points.rho_s_exact[at]},
                     static_cast<std::size_t>(count)});
-                add_numbers(sites.pixel[at], call.seed, first, count, numbers, u);
+                add_numbers(shading_points.pixel[at], call.seed, first, count, numbers, u);
             }
             wi.resize(runs.size() * count), pdf.resize(wi.size());
             sampler.draw({runs, u}, {wi, pdf});
@@ -316,4 +320,4 @@ void estimate_outside(const ExternalSampler& sampler, const KernelCall& call) {
     }
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,4 +1,4 @@
-// Films are compared by their hashes, on a scene of 67 x 45 pixels: no whole number of packs or tiles.
+// Films are compared by their hashes, on a scene of 67 x 45 pixels, which is not a multiple of the pack or tile size.
 #include "render/estimator.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 using test::all_arms;
@@ -24,7 +24,7 @@ std::vector<std::string> hashes(const std::vector<Film>& films) {
     return out;
 }
 
-TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
+TEST(SameBits, EveryArmOnEveryInstructionSet) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     for (const std::string& arm : all_arms()) {
@@ -34,7 +34,7 @@ TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
     }
 }
 
-TEST(SameBitsLaw, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
+TEST(SameBits, EveryLobeOnEveryInstructionSet) {
     ProgressMonitor monitor;
     for (const LobeInfo& lobe : lobe_infos()) {
         const Scene scene(
@@ -47,7 +47,7 @@ TEST(SameBitsLaw, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
     }
 }
 
-TEST(SameBitsLaw, AnyNumberOfThreadsGivesTheSameFilms) {
+TEST(SameBits, AnyNumberOfThreadsGivesTheSameFilms) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     const auto want = hashes(estimate_films(scene, "phong", {33}, 3, "", monitor));
@@ -57,7 +57,7 @@ TEST(SameBitsLaw, AnyNumberOfThreadsGivesTheSameFilms) {
     }
 }
 
-TEST(SameBitsLaw, NoticesAnotherSeedAndAnotherSampleCount) {
+TEST(SameBits, NoticesAnotherSeedAndAnotherSampleCount) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     const auto want = hashes(estimate_films(scene, "cosine", {32}, 3, "", monitor));
@@ -73,14 +73,15 @@ TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
         EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", monitor)[0]), hash(film)) << "n = " << film.n;
 }
 
-/// Samples of every site of the test scene beside the moments that the kernel made of them.
-TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
+/// The samples of every shading point of the test scene are compared with the moments that the kernel computed from
+/// them.
+TEST(Moments, MatchTheSamplesAtManySamples) {
     const Scene scene(test::small_scene());
     constexpr std::uint64_t n = 65536;
-    for (ShadingPoints sites : sites_of(scene, {30, 20, 34, 23}, nullptr)) {
-        std::vector<float> x(sites.count * n);
-        const Moments m = estimate_sites(sites, "cosine", n, 5, "", nullptr, x.data());
-        for (std::size_t i = 0; i < sites.count; ++i) {
+    for (ShadingPoints shading_points : shading_points_of(scene, {30, 20, 34, 23}, nullptr)) {
+        std::vector<float> x(shading_points.count * n);
+        const Moments m = estimate_points(shading_points, "cosine", n, 5, "", nullptr, x.data());
+        for (std::size_t i = 0; i < shading_points.count; ++i) {
             float largest = 0;
             for (std::uint64_t j = 0; j < n; ++j) largest = std::max(largest, x[i * n + j]);
             EXPECT_NEAR(m.spread[i] / test::spread_of({x.data() + i * n, n}), 1, 1e-6);
@@ -114,17 +115,17 @@ TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
     EXPECT_GT(above_n, 0u);  // a pair of directions may meet a light twice
 }
 
-TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
+TEST(Films, VarianceIsNaNForNaNAndZeroForZeros) {
     const Scene scene(test::small_scene());
-    const ShadingPoints sites = sites_of(scene, {30, 20, 34, 23}, nullptr).front();
+    const ShadingPoints shading_points = shading_points_of(scene, {30, 20, 34, 23}, nullptr).front();
     Moments moments;
-    moments.resize(sites.pixel.size(), sites.disks.size());
+    moments.resize(shading_points.pixel.size(), shading_points.disks.size());
     moments.spread[0] = moments.g[0] = std::nan("");
     moments.bad[0] = 1;
     Film film(67, 45, 8);
-    resolve_film(scene, sites, moments, film);
-    EXPECT_TRUE(std::isnan(film.var[sites.pixel[0]]));
-    EXPECT_EQ(film.var[sites.pixel[1]], 0);
+    resolve_film(scene, shading_points, moments, film);
+    EXPECT_TRUE(std::isnan(film.var[shading_points.pixel[0]]));
+    EXPECT_EQ(film.var[shading_points.pixel[1]], 0);
 }
 
 TEST(Estimator, StopsWhenAsked) {
@@ -134,7 +135,7 @@ TEST(Estimator, StopsWhenAsked) {
     EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", monitor), Interrupted);
 }
 
-/// Asks to stop a little after the work has begun, from another thread, as a signal does.
+/// Requests a stop from another thread shortly after the work has begun, as a signal does.
 TEST(Estimator, StopsInMidWorkWithinATile) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
@@ -149,15 +150,16 @@ TEST(Estimator, StopsInMidWorkWithinATile) {
     other.join();
 }
 
-TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
+TEST(LargestSamples, MatchTheSamplesInDescendingOrder) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     constexpr std::uint64_t n = 40;
     const Box box = {0, 0, scene.image().width - 1, scene.image().height - 1};  // many tiles
     std::vector<float> all;
-    for (const ShadingPoints& sites : sites_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
-        std::vector<float> x(sites.count * n);
-        estimate_sites(sites, "phong", n, 4, "", nullptr, x.data());
+    for (const ShadingPoints& shading_points :
+        shading_points_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
+        std::vector<float> x(shading_points.count * n);
+        estimate_points(shading_points, "phong", n, 4, "", nullptr, x.data());
         all.insert(all.end(), x.begin(), x.end());
     }
     std::sort(all.begin(), all.end(), std::greater<>());
@@ -168,7 +170,7 @@ TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     EXPECT_EQ(largest, all);
 }
 
-TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {
+TEST(InstructionSets, UnknownNameSuggestsTheNearest) {
     try {
         kernels_for("avx3");
         FAIL();
@@ -178,4 +180,4 @@ TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,5 +1,6 @@
-// Every kind of body agrees with itself, newcomers included: what it hides from a point, the kernels' shadow test, and
-// its extent are held against where a camera's ray meets it. Bodies of about 1 m with parameters at random; m.
+// Tests that every kind of body agrees with itself, newly added kinds included: what it hides from a point, the
+// kernels' shadow test and its extent are compared with the point where a camera ray meets it. Bodies of about 1 m with
+// random parameters; m.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +8,7 @@
 
 #include "render/disk_hit.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 class Drawn {
@@ -15,7 +16,7 @@ public:
     explicit Drawn(unsigned seed) : next_(seed) {}
     double between(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(next_); }
     Vec3d place(double far) { return {between(-far, far), between(-far, far), between(-far, far)}; }
-    /// Parameters that say nothing impossible of each other.
+    /// Parameters that do not contradict each other.
     template <class Kind> Kind body() {
         for (;;) {
             Kind out;
@@ -35,11 +36,11 @@ private:
     std::mt19937 next_;
 };
 
-/// Does a camera's ray meet it between two parts of the way d?
+/// Returns whether a camera ray meets it between the fractions lo and hi of the way d.
 bool crosses(const auto& body, Vec3d x, Vec3d d, double lo, double hi) {
     return body.intersect(x + lo * d, d).t < hi - lo;
 }
-/// As crosses; nothing where a step of 1e-5 to a side, or along the way, makes another answer of it.
+/// Like crosses; empty if a step of 1e-5 sideways or along the way changes the result.
 std::optional<bool> surely_crosses(const auto& body, Vec3d x, Vec3d d) {
     constexpr double step = 1e-5;
     const auto [lo, hi] = before_light;
@@ -56,7 +57,7 @@ template <class Call> void for_each_body(Call&& f) {
     [&]<class... Kind>(KindList<Kind...>) { (f.template operator()<Kind>(), ...); }(Bodies{});
 }
 
-TEST(EveryBody, HidesOfAnEdgeWhatACamerasRaysMeetItBefore) {
+TEST(EveryBody, HiddenEdgePartsMatchCameraRays) {
     for_each_body([]<class Kind>() {
         Drawn draw(3);
         int hidden = 0, seen = 0, off = 0;
@@ -77,7 +78,7 @@ TEST(EveryBody, HidesOfAnEdgeWhatACamerasRaysMeetItBefore) {
     });
 }
 
-TEST(EveryBody, BlocksInKernelsWhatACamerasRaysMeetItBefore) {
+TEST(EveryBody, KernelShadowsMatchCameraRays) {
     for_each_body([]<class Kind>() {
         Drawn draw(4);
         int hidden = 0, seen = 0, off = 0;
@@ -100,7 +101,7 @@ TEST(EveryBody, BlocksInKernelsWhatACamerasRaysMeetItBefore) {
     });
 }
 
-TEST(EveryBody, HasItsPointsWithinItsExtentAndItsAzimuths) {
+TEST(EveryBody, PointsAreWithinExtentAndAzimuths) {
     for_each_body([]<class Kind>() {
         Drawn draw(5);
         int met = 0;
@@ -110,7 +111,7 @@ TEST(EveryBody, HasItsPointsWithinItsExtentAndItsAzimuths) {
             const Vec3d axis = normalize(draw.place(1)), from = draw.place(2);
             const double t = body.intersect(x, d).t;
             EXPECT_TRUE(t < never || !body.holds(x)) << Kind::name << "::holds a point that a ray leaves unmet";
-            if (!(t < 1e3)) continue;  // of an infinite one, what is near
+            if (!(t < 1e3)) continue;  // an infinite body is tested only near the camera
             ++met;
             const Vec3d p = x + t * d;
             EXPECT_LE(std::fabs(dot(axis, p - body.middle())), body.half_extent(axis) * (1 + 1e-9) + 1e-9)
@@ -124,4 +125,4 @@ TEST(EveryBody, HasItsPointsWithinItsExtentAndItsAzimuths) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,5 +1,6 @@
-// Slices point into the film's planes, rows from the last to the first by a negative stride: nothing is copied, nothing
-// compressed. OpenEXR's number of threads belongs to the process and is set under a lock while a file is written.
+// Slices point into the film's planes, with a negative stride from the last row to the first, so nothing is copied.
+// Nothing is compressed. OpenEXR's number of threads is global to the process and is set under a lock while a file is
+// written.
 #include "render/exr.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -14,7 +15,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 
 namespace {
 
@@ -39,7 +40,7 @@ std::vector<Channel> channels_of(const ReferenceFilm& f) {
 template <class AnyFilm>
 Imf::Header header_of(const std::string& name, const AnyFilm& film, const Attributes& attributes) {
     Imf::Header header(film.width, film.height);
-    header.compression() = Imf::NO_COMPRESSION;  // noise hardly compresses
+    header.compression() = Imf::NO_COMPRESSION;  // noise is hardly compressible
     header.setName(name);
     header.setType(Imf::SCANLINEIMAGE);
     for (const Channel& c : channels_of(film)) header.channels().insert(c.name, Imf::Channel(c.type));
@@ -47,7 +48,7 @@ Imf::Header header_of(const std::string& name, const AnyFilm& film, const Attrib
     return header;
 }
 
-/// Films run bottom-up: the last row comes first, strides run backwards.
+/// Films are stored bottom-up and the file top-down, so the last row comes first and strides are negative.
 template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
     Imf::FrameBuffer buffer;
     const auto row = static_cast<std::ptrdiff_t>(film.width) * 4;
@@ -58,8 +59,8 @@ template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
     return buffer;
 }
 
-/// OpenEXR reads and writes on threads of its own, of which a process has one set: as many as on_threads() allows while
-/// one file is written, then as many as there were.
+/// OpenEXR reads and writes on its own threads, one set per process. Sets their number to that of on_threads() while
+/// one file is written, then restores it.
 class ExrThreads {
 public:
     ExrThreads() : guard_(lock()), before_(Imf::globalThreadCount()) {
@@ -105,4 +106,4 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
     write_parts(path, parts, attributes);
 }
 
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

@@ -1,4 +1,5 @@
-// Films as OpenEXR: one file an arm and exponent, one part a rung, 32-bit float, scanlines top-down as viewers expect.
+// Films as OpenEXR: one file per sampler and exponent, one part per sample count, 32-bit float, scanlines top-down as
+// viewers expect.
 //   R G B            mean radiance, W/(sr m^2), linear Rec.709
 //   luminance.Y      mean luminance X;  second_moment.Y  mean of X^2;  variance.Y  variance of the mean of X
 //   largest.Y        largest single X;  horizon.Y, hits.Y  counts (unsigned)
@@ -11,9 +12,9 @@
 
 #include "render/film.h"
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 
-/// What goes into the header as string attributes: (name, text).
+/// String attributes of the header: (name, text).
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 /// Writes films (part name, film) to one file. Throws OutputError.
@@ -22,4 +23,4 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
     const Attributes& attributes);
 
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

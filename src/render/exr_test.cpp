@@ -1,4 +1,4 @@
-// What is written as OpenEXR, read back: channels by name, rows from the bottom, every value, the attributes.
+// Reads written OpenEXR files back: channels by name, rows from the bottom, every value, the attributes.
 #include "render/exr.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -15,12 +15,12 @@
 #include <limits>
 #include <set>
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 namespace {
 
 constexpr int width = 5, height = 3;
 
-/// Rows from the top, as the file has them.
+/// Returns rows from the top, in the order of the file.
 template <class T>
 std::vector<T> channel(const std::string& path, int part, const std::string& name, Imf::PixelType type) {
     Imf::MultiPartInputFile file(path.c_str());
@@ -33,7 +33,7 @@ std::vector<T> channel(const std::string& path, int part, const std::string& nam
     return rows;
 }
 
-/// Other numbers in every pixel of every plane; among them what a float can hold at its ends.
+/// Returns a film with different numbers in every pixel of every plane, including the smallest and largest floats.
 Film counting_film() {
     Film film(width, height, 16);
     float next = 0.125f;
@@ -81,7 +81,7 @@ TEST_F(Exr, AFilmReadBackIsTheFilm) {
     expect_plane(second.r, channel<float>(path, 1, "R", Imf::FLOAT), "second part");
 }
 
-TEST_F(Exr, HasTheChannelsPartsAndAttributesThatItsHeaderStates) {
+TEST_F(Exr, HasTheDocumentedChannelsAndAttributes) {
     const Film film = counting_film();
     write_exr(path, {{"n16", &film}, {"n64", &film}}, {{"crescent.experiment", "0123456789abcdef"}});
     const Imf::MultiPartInputFile file(path.c_str());
@@ -109,4 +109,4 @@ TEST_F(Exr, AReferenceReadBackIsTheReference) {
 }
 
 }  // namespace
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

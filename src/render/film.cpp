@@ -1,5 +1,5 @@
-// The hash is XXH3-64 over the bytes of the planes r, g, b, y, second_moment, var, largest, horizon, light_hits, of a
-// reference r, g, b, y, error; sizes, n and bad samples are not in it.
+// The hash is XXH3-64 over the bytes of the planes r, g, b, y, second_moment, var, largest, horizon, light_hits; for a
+// reference, of r, g, b, y, error. It does not include sizes, n and bad samples.
 #include "render/film.h"
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 #include "render/film.h"
 
-namespace crescent::inline films {
+namespace crescent::inline render {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(
 
 std::string hash(const ReferenceFilm& film) { return hash_of(reference_bytes<const std::byte>(film)); }
 
-}  // namespace crescent::inline films
+}  // namespace crescent::inline render

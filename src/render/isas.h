@@ -1,7 +1,7 @@
-// The instruction sets that kernels are made for: the one list. kernels.cmake reads it too: it makes kernel_NAME.cpp
-// for each of its processor's sets, with -mFEATURE for every feature that is named here.
+// The list of instruction sets with kernels. kernels.cmake reads it too: it makes kernel_NAME.cpp for each set of the
+// target processor, with -mFEATURE for every feature that is named here.
 //
-// isa(name, what a machine must have), in rising order of speed; scalar, which needs nothing, stands before them all.
+// isa(name, what a machine must have), in rising order of speed; scalar, which needs nothing, comes before all of them.
 #pragma once
 
 // clang-format off: one a line
@@ -26,5 +26,5 @@
 #define CRESCENT_ISAS(isa)
 #endif
 #ifndef CRESCENT_MACHINE_HAS
-#define CRESCENT_MACHINE_HAS(feature) true  // what it was compiled for, it has
+#define CRESCENT_MACHINE_HAS(feature) true  // required by the compiler flags
 #endif

@@ -1,5 +1,5 @@
-// The instruction sets are the list of isas.h, each compiled in a file of its own; which of them run here is asked of
-// the machine once.
+// Each instruction set of isas.h is compiled in a file of its own; the machine is queried once for those that it
+// supports.
 #include "render/kernel.h"
 
 #include "base/errors.h"
@@ -7,21 +7,21 @@
 #include "render/isas.h"
 #include "samplers/all.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 KernelTable scalar_kernels();
 #define CRESCENT_DECLARE(name, needs) KernelTable name##_kernels();
 CRESCENT_ISAS(CRESCENT_DECLARE)
 #undef CRESCENT_DECLARE
 
-void Moments::resize(std::size_t sites, std::size_t lights) {
-    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(sites);
+void Moments::resize(std::size_t shading_points, std::size_t lights) {
+    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(shading_points);
     for (auto* sums : {&light_g, &light_g_lobe}) {
         sums->resize(lights);
-        for (std::vector<double>& of_light : *sums) of_light.resize(sites);
+        for (std::vector<double>& of_light : *sums) of_light.resize(shading_points);
     }
-    largest.resize(sites);
-    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(sites);
+    largest.resize(shading_points);
+    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(shading_points);
 }
 
 namespace {
@@ -29,7 +29,7 @@ namespace {
 struct Isa {
     const char* name;
     bool here;
-    KernelTable (*kernels)();  // compiled for this set: called where the machine has it alone
+    KernelTable (*kernels)();  // compiled for this set: called only if the machine has it
 };
 
 const std::vector<Isa>& built() {
@@ -91,4 +91,4 @@ int arm_index(std::string_view sampler) {
     return found;
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,8 +1,11 @@
-// The SIMD core's contract: one arm, one BRDF, one tile's sites in; raw moments at every rung out.
+// The interface of the SIMD kernels: input is one sampler, one BRDF and one tile's shading points; output is raw
+// moments at every sample count.
+//
 //
 //   X = f L_i cos / p     with   f = rho_d/pi + rho_s lobe   and   L_i one of few constants (the fill, each light),
 //
-// so RGB means follow from sums of g = cos/p and of g * lobe per emitter; only Y needs its square and its largest.
+// so RGB means follow from sums of g = cos/p and of g * lobe per emitter; only Y needs its square and its largest
+// value.
 #pragma once
 
 #include <array>
@@ -18,49 +21,50 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
-/// Moments of n samples, one entry a site; sums are kept in double.
+/// Moments of n samples, one entry per shading point; sums are kept in double.
 struct Moments {
     std::vector<double> g, g_lobe;                           // sum of g and of g * lobe over all samples
     std::vector<std::vector<double>> light_g, light_g_lobe;  // over the samples that met light k, disks first
     std::vector<double> spread;                              // sum of (X - mean X)^2
     std::vector<float> largest;                              // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
-    /// Entries that are new are 0; kernels write all of them.
-    void resize(std::size_t sites, std::size_t lights);
+    /// New entries are 0; kernels write all of them.
+    void resize(std::size_t shading_points, std::size_t lights);
 };
 
-/// What a kernel needs for each light of a scene, in bytes.
+/// Memory that a kernel needs for each light of a scene, in bytes.
 inline constexpr std::size_t memory_of_light = 4096;
 
-/// One call of a kernel: an arm's samples 0 to the last rung at all sites, one after another. Sites and memory belong
-/// to the caller, who may make calls on several threads, each with its own `out` and `memory`.
+/// One call of a kernel: samples 0 to the last sample count of a sampler at all shading points, one after another.
+/// Shading points and memory belong to the caller, who may make calls on several threads, each with its own `out` and
+/// `memory`.
 struct KernelCall {
-    const ShadingPoints* sites = nullptr;
-    std::span<const std::uint64_t> rungs;  // ascending
+    const ShadingPoints* shading_points = nullptr;
+    std::span<const std::uint64_t> sample_counts;  // ascending
     std::uint32_t seed = 0;
-    std::span<Moments> out;  // one a rung, sized to the padded count
+    std::span<Moments> out;  // one per sample count, sized to the padded count
     const std::atomic<bool>* stop = nullptr;
-    float* samples = nullptr;     // where not null: every X, sample k of site i at i * n + k
-    std::byte* memory = nullptr;  // memory_of_light bytes for each of the sites' lights
+    float* samples = nullptr;     // if not null: every X, sample k of shading point i at i * n + k
+    std::byte* memory = nullptr;  // memory_of_light bytes for each of the shading points' lights
 };
 
 using Kernel = void (*)(const KernelCall&);
 
-/// The kernels of one instruction set, [arm in the list's order][lobe + 1].
+/// The kernels of one instruction set, [index of the sampler in its list][lobe + 1].
 struct KernelTable {
     std::string_view isa;
     std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count> kernels;
 };
 
-/// The instruction sets of isas.h that this machine can run, best last.
+/// Returns the instruction sets of isas.h that this machine can run, best last.
 std::vector<std::string> isas();
-/// All that this build has kernels for, for messages: "scalar, sse4, avx2, avx512".
+/// Returns all instruction sets of this build, for messages: "scalar, sse4, avx2, avx512".
 std::string all_isas();
-/// The table for a name of isas(); "" means the best. Throws InputError for an unknown or unsupported name.
+/// Returns the table for a name of isas(); "" means the best. Throws InputError for an unknown or unsupported name.
 const KernelTable& kernels_for(const std::string& isa);
-/// Index in the list of arms, or -1.
+/// Returns the index in the list of samplers, or -1.
 int arm_index(std::string_view sampler);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

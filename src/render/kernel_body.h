@@ -1,8 +1,8 @@
-// The estimator, once, for any number type: lanes are pixels, samples follow one another, one pass gives every rung.
-// Included once an instruction set by kernel_<isa>.cpp, in that set's own namespace.
+// The estimator for any number type: lanes are pixels, samples follow one another, one pass gives every sample count.
+// kernel_<isa>.cpp includes it once for each instruction set, in that set's own namespace.
 //
-// Sums run in float over at most 16 samples (relative error < 1e-6) and in double from there on. Blocks begin at
-// multiples of 16 whatever the rungs, so a rung is the same prefix whichever other rungs are asked for.
+// Sums run in float over at most 16 samples (relative error < 1e-6) and in double after that. Blocks begin at multiples
+// of 16 for all sample counts, so the result at a sample count does not depend on the other sample counts.
 #pragma once
 
 #include <concepts>
@@ -12,25 +12,25 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
 
-/// What a kernel asks of a scene's emitters beside the fill: room in its memory, the emitters as one pack of pixels
-/// sees them, what a sample gathers from them on top of the fill, and totals in double of what was gathered.
+/// What a kernel needs from a scene's emitters other than the fill: room in its memory, the emitters as one pack of
+/// pixels sees them, what a sample gathers from them on top of the fill, and totals in double.
 template <class E, class F>
 concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t, typename E::Room&> &&
     std::constructible_from<typename E::Totals, typename E::Room&> &&
-    requires(E emitters, const E& seen, ShadingPoint<F>& site, typename E::Totals totals, Moments& out) {
+    requires(E emitters, const E& seen, ShadingPoint<F>& shading_point, typename E::Totals totals, Moments& out) {
         { seen.first() } -> std::same_as<typename E::First>;
-        seen.show(site);
+        seen.show(shading_point);
         totals.take(emitters);
         totals.write(seen, out);
     };
 
-/// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
-/// only samples that meet an emitter touch, so that it can live in registers.
+/// The sums of one pack of pixels: those of the current block and those over all samples. Sums that only samples which
+/// meet an emitter change are kept elsewhere, so that these can stay in registers.
 template <class F> struct RunningSums {
     F g = number<F>(0), g_lobe = number<F>(0);
     F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
@@ -40,8 +40,8 @@ template <class F> struct RunningSums {
     UintOf<F> horizon{0u}, bad{0u};
 };
 
-/// A pack's constants that every sample reads. By value, so that they stay in registers: what `gather` can reach must
-/// be loaded again after each call.
+/// A pack's constants that every sample reads. Passed by value, so that they stay in registers: what `gather` can reach
+/// must be loaded again after each call.
 template <class E, class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s;
@@ -49,25 +49,26 @@ template <class E, class F> struct Constants {
     typename E::First first;
 };
 
-/// One pack of pixels: its emitters and the step that takes one sample.
+/// One pack of pixels: its emitters and the function that takes one sample.
 template <class A, class L, class E, class F> struct Lane : E {
     static_assert(Emitters<E, F>);
     using U = UintOf<F>;
-    using E::sites, E::at;
-    ShadingPoint<F> site;
+    using E::shading_points, E::at;
+    ShadingPoint<F> shading_point;
 
     Lane(const ShadingPoints& all, std::size_t first, typename E::Room& room) : E(all, first, room) {
-        site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
-            load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at)};
-        this->show(site);
+        shading_point = {load_lanes<F>(shading_points.wox, shading_points.woy, shading_points.woz, at),
+            load_lanes<F>(shading_points.s, at), load_lanes<F>(shading_points.alpha, at),
+            load_lanes<F>(shading_points.diffuse, at), load_lanes<F>(shading_points.rho_s, at)};
+        this->show(shading_point);
     }
 
     Constants<E, F> constants() const {
-        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at),
-            load_lanes<F>(sites.pixel, at), this->first()};
+        return {shading_point.wo, load_lanes<F>(shading_points.fill_d, at), load_lanes<F>(shading_points.fill_s, at),
+            load_lanes<F>(shading_points.pixel, at), this->first()};
     }
 
-    /// X of one drawn direction, adding what it carries to the sums.
+    /// Returns X of one drawn direction and adds its contribution to the sums.
     template <class D> [[gnu::always_inline]] F accumulate(
         RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
@@ -97,7 +98,7 @@ template <class A, class L, class E, class F> struct Lane : E {
                                   : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
             const auto a = arm.template sample_technique<0>(c.wo, u);
             const auto b = arm.template sample_technique<1>(c.wo, v);
-            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
+            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // sums depend on the order
             x = x + accumulate(to, c, brdf, b, arm.template weight<1>(c.wo, b));
         } else {
             x = accumulate(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
@@ -106,16 +107,17 @@ template <class A, class L, class E, class F> struct Lane : E {
         to.off = to.off + off;
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
-        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
-        // arises from nothing that a site holds (shading_points.cpp).
+        // Only NaN, infinite and negative numbers have bits from 0x7f800000 up. -0, which is not negative, cannot arise
+        // from the values of a shading point (shading_points.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
-        if (call.samples) record_sample(x, call.samples, j, call.rungs.back());
+        if (call.samples) record_sample(x, call.samples, j, call.sample_counts.back());
     }
 
     void record_sample(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
         float lanes[Lanes<F>::count];
         store(x, lanes);
-        for (std::size_t l = 0; l < Lanes<F>::count && at + l < sites.count; ++l) samples[(at + l) * n + j] = lanes[l];
+        for (std::size_t l = 0; l < Lanes<F>::count && at + l < shading_points.count; ++l)
+            samples[(at + l) * n + j] = lanes[l];
     }
 };
 
@@ -124,7 +126,7 @@ template <class F> struct Totals {
     static constexpr std::size_t count = Lanes<F>::count;
     double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
 
-    /// Takes the block's sums over and clears them.
+    /// Adds the block's sums and clears them.
     void take(RunningSums<F>& p) {
         add_lanes(p.g, g);
         add_lanes(p.g_lobe, g_lobe);
@@ -132,7 +134,7 @@ template <class F> struct Totals {
         add_lanes(p.square, square);
         p.g = p.g_lobe = p.off = p.square = number<F>(0);
     }
-    /// Takes the second moment about the mean of the n samples so far from here on, where the block's sums are clear.
+    /// Moves the pivot of the second moment to the mean of the n samples so far. Requires that the block's sums are 0.
     [[gnu::noinline]] F turn(F about, double n) {
         float pivot[count];
         store(about, pivot);
@@ -146,7 +148,7 @@ template <class F> struct Totals {
         }
         return load_as<F>(pivot);
     }
-    /// Sum of (X - mean X)^2 over the n samples of the blocks and of the one that is not full.
+    /// Writes the sum of (X - mean X)^2 over the n samples of the full blocks and of the partial one.
     void spread(const RunningSums<F>& p, double n, double* out) const {
         double first[count];
         add_lanes(p.off, off, first);
@@ -158,8 +160,9 @@ template <class F> struct Totals {
     }
 };
 
-template <class E, class F> [[gnu::noinline]] void write_rung(const E& emitters, const typename E::Totals& emitted,
-    const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
+template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& emitters,
+    const typename E::Totals& emitted, const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n,
+    Moments& out) {
     const std::size_t at = emitters.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
@@ -170,35 +173,36 @@ template <class E, class F> [[gnu::noinline]] void write_rung(const E& emitters,
     store(p.bad, out.bad.data() + at);
 }
 
-/// One pack of pixels through all its samples; make(site) gives the arm.
+/// Runs one pack of pixels through all its samples; make(shading point) returns the sampler.
 template <class A, class L, class E, class F, class Make>
 void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
     using U = UintOf<F>;
-    Lane<A, L, E, F> lane(*call.sites, at, room);
+    Lane<A, L, E, F> lane(*call.shading_points, at, room);
     RunningSums<F> gathered;
     Totals<F> totals;
     typename E::Totals emitted(room);
-    const A arm = make(lane.site);
-    const L brdf(lane.site.s, lane.site.alpha);
+    const A arm = make(lane.shading_point);
+    const L brdf(lane.shading_point.s, lane.shading_point.alpha);
     const Constants<E, F> c = lane.constants();
-    const std::uint64_t n = call.rungs.back();
-    std::size_t rung = 0;
+    const std::uint64_t n = call.sample_counts.back();
+    std::size_t sample_count = 0;
     for (std::uint64_t j = 0; j < n;) {
         const std::uint64_t block_end = (j / block_length + 1) * block_length;
-        const std::uint64_t end = block_end < call.rungs[rung] ? block_end : call.rungs[rung];
+        const std::uint64_t end =
+            block_end < call.sample_counts[sample_count] ? block_end : call.sample_counts[sample_count];
         while (j < end) {
             const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
             if (!(j & 1)) {
                 lane.step(gathered, c, arm, brdf, h, false, j, call);
-                if (j == 0) {  // X - pivot was X, the pivot being 0
+                if (j == 0) {  // X - pivot is X because the pivot is 0
                     gathered.pivot = gathered.off;
                     gathered.off = gathered.square = number<F>(0);
                 }
                 if (++j == end) break;
             }
             lane.step(gathered, c, arm, brdf, h, true, j, call);
-            if (j == 1) {  // X_1 - X_0 is the sum so far; about the smaller of the two it is its size, and the square
-                           // is the same
+            if (j == 1) {  // X_1 - X_0 is the sum so far; relative to the smaller of the two it is its size, and the
+                           // square is unchanged
                 gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
                 gathered.off = abs(gathered.off);
             }
@@ -211,17 +215,19 @@ void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& roo
                 gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
         }
-        if (j == call.rungs[rung]) write_rung<E>(lane, emitted, gathered, totals, j, call.out[rung++]);
+        if (j == call.sample_counts[sample_count])
+            write_sample_count<E>(lane, emitted, gathered, totals, j, call.out[sample_count++]);
     }
 }
 
 template <class A, class L, class E, class F> void estimate(const KernelCall& call) {
-    typename E::Room room(*call.sites, call.memory);
-    for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
-        estimate_pack<A, L, E, F>(call, at, room, [](const ShadingPoint<F>& site) { return A(site); });
+    typename E::Room room(*call.shading_points, call.memory);
+    for (std::size_t at = 0; at < call.shading_points->count; at += Lanes<F>::count)
+        estimate_pack<A, L, E, F>(
+            call, at, room, [](const ShadingPoint<F>& shading_point) { return A(shading_point); });
 }
 
-/// One arm's kernels, [lobe + 1].
+/// The kernels of one sampler, [lobe + 1].
 template <class F, template <class> class A, template <class> class... L>
 constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
     return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};
@@ -231,4 +237,4 @@ template <class F, template <class> class... A> constexpr KernelTable kernels_of
 }
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

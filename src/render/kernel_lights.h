@@ -1,6 +1,6 @@
-// Emitters that can be counted: one pack of pixels before the lights, what a sample that may meet one finds, and what
-// is gathered from those that do. The kernel takes its emitters as a policy (Emitters in kernel_body.h); this is the
-// one for lights of constant radiance, whose sums are kept by light. Included by kernel_body.h alone.
+// Emitters that can be counted: one pack of pixels before the lights, and what samples gather from those that they
+// meet. The kernel takes its emitters as a policy (Emitters in kernel_body.h); this is the one for lights of constant
+// radiance, whose sums are kept per light. Included only by kernel_body.h.
 #pragma once
 
 #include <new>
@@ -8,7 +8,7 @@
 #include "render/disk_hit.h"
 #include "render/kernel.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace CRESCENT_ISA {
 
 template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
@@ -20,7 +20,7 @@ template <class F> Vec3<F> load_lanes(
     return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
 }
 
-/// The part that samples which meet a light add to.
+/// Sums that change only for samples that meet a light.
 template <class F> struct LightHitSums {
     F* light_g;
     F* light_g_lobe;
@@ -28,7 +28,7 @@ template <class F> struct LightHitSums {
     bool any = false;  // in the current block
 };
 
-/// Room for the lights of one pack of pixels, in the memory that a kernel is called with.
+/// Room for the lights of one pack of pixels, in the memory passed to a kernel.
 template <class F> struct LightRoom {
     std::size_t count;
     LocalDisk<F>* disks;
@@ -38,11 +38,11 @@ template <class F> struct LightRoom {
     F *met_g, *met_g_lobe;
     double *total_g, *total_g_lobe;  // lane l of light k at k * lanes + l
 
-    LightRoom(const ShadingPoints& sites, std::byte* at)
-        : count(sites.light_count()),
-          disks(take<LocalDisk<F>>(at, sites.disks.size())),
-          facing(take<FacingDisk<F>>(at, sites.disks.size())),
-          others(take<LocalLight<F>>(at, sites.others.size())),
+    LightRoom(const ShadingPoints& shading_points, std::byte* at)
+        : count(shading_points.light_count()),
+          disks(take<LocalDisk<F>>(at, shading_points.disks.size())),
+          facing(take<FacingDisk<F>>(at, shading_points.disks.size())),
+          others(take<LocalLight<F>>(at, shading_points.others.size())),
           cones(take<DiskCone<F>>(at, count)),
           met_g(take<F>(at, count)),
           met_g_lobe(take<F>(at, count)),
@@ -68,20 +68,20 @@ private:
 
 template <class F> struct Lights;
 
-/// lane l of `to`: from[l] + partial[l], in double.
+/// Sets lane l of `to` to from[l] + partial[l], in double.
 template <class F> CRESCENT_INLINE void add_lanes(F partial, const double* __restrict from, double* __restrict to) {
     float lanes[Lanes<F>::count];
     store(partial, lanes);
     for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
 }
-/// sum[lane] += partial[lane].
+/// Adds partial[lane] to sum[lane].
 template <class F> CRESCENT_INLINE void add_lanes(F partial, double* sum) {
     float lanes[Lanes<F>::count];
     store(partial, lanes);
     for (std::size_t l = 0; l < Lanes<F>::count; ++l) sum[l] += static_cast<double>(lanes[l]);
 }
 
-/// Double totals of what met each light.
+/// Totals in double of the samples that met each light.
 template <class F> struct LightTotals {
     static constexpr std::size_t count = Lanes<F>::count;
     double *g, *g_lobe;  // lane l of light k at k * count + l
@@ -89,7 +89,7 @@ template <class F> struct LightTotals {
     explicit LightTotals(LightRoom<F>& room) : g(room.total_g), g_lobe(room.total_g_lobe) {
         for (std::size_t at = 0; at < room.count * count; ++at) g[at] = g_lobe[at] = 0;
     }
-    /// Takes the block's sums over and clears them.
+    /// Adds the block's sums and clears them.
     void take(Lights<F>& lights) {
         LightHitSums<F>& met = lights.met;
         for (std::size_t k = 0; met.any && k < lights.light_count; ++k) {
@@ -99,7 +99,7 @@ template <class F> struct LightTotals {
         }
         met.any = false;
     }
-    /// What met them so far, with the block that is not full.
+    /// Writes the totals so far, including the partial block.
     void write(const Lights<F>& lights, Moments& out) const {
         for (std::size_t k = 0; k < lights.light_count; ++k) {
             add_lanes(lights.met.light_g[k], g + k * count, out.light_g[k].data() + lights.at);
@@ -114,8 +114,8 @@ template <class F> struct Lights {
     using U = UintOf<F>;
     using Room = LightRoom<F>;
     using Totals = LightTotals<F>;
-    using First = DiskCone<F>;  // round the first light; most scenes have but one
-    const ShadingPoints& sites;
+    using First = DiskCone<F>;  // around the first light; most scenes have only one
+    const ShadingPoints& shading_points;
     std::size_t at;
     std::size_t disk_count, light_count;
     LocalDisk<F>* disks;
@@ -125,7 +125,7 @@ template <class F> struct Lights {
     LightHitSums<F> met;
 
     [[gnu::noinline]] Lights(const ShadingPoints& all, std::size_t first, LightRoom<F>& room)
-        : sites(all),
+        : shading_points(all),
           at(first),
           disk_count(all.disks.size()),
           light_count(all.light_count()),
@@ -135,7 +135,7 @@ template <class F> struct Lights {
           cones(room.cones),
           met{room.met_g, room.met_g_lobe} {
         for (std::size_t k = 0; k < disk_count; ++k) {
-            const DiskArrays& d = sites.disks[k];
+            const DiskArrays& d = shading_points.disks[k];
             disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at),
                 F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
             facing[k] = FacingDisk<F>(disks[k]);
@@ -143,7 +143,7 @@ template <class F> struct Lights {
         }
         for (std::size_t k = disk_count; k < light_count; ++k) {
             LocalLight<F>& light = others[k - disk_count];
-            light = light_at(sites.others[k - disk_count]);
+            light = light_at(shading_points.others[k - disk_count]);
             with_light_kind(light.kind,
                 [&]<class Kind>() { cones[k] = DiskCone<F>(light.a, Kind::radius2(light), Kind::shines(light)); });
         }
@@ -151,13 +151,13 @@ template <class F> struct Lights {
     }
 
     First first() const { return light_count > 0 ? cones[0] : DiskCone<F>{}; }
-    /// What arms that aim at lights see of them.
-    void show(ShadingPoint<F>& site) const {
-        site.disks = disks, site.disk_count = static_cast<int>(disk_count);
-        site.others = others, site.other_count = static_cast<int>(light_count - disk_count);
+    /// Sets what samplers that aim at lights need of them.
+    void show(ShadingPoint<F>& shading_point) const {
+        shading_point.disks = disks, shading_point.disk_count = static_cast<int>(disk_count);
+        shading_point.others = others, shading_point.other_count = static_cast<int>(light_count - disk_count);
     }
 
-    /// X of a sample whose g and lobe are known, x being what the fill gives.
+    /// Returns X of a sample with known g and lobe; x is the part from the fill.
     template <class D>
     [[gnu::always_inline]] F gather(const First& around, const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
         if (light_count == 0) return x;
@@ -182,7 +182,8 @@ template <class F> struct Lights {
         return out;
     }
 
-    /// Samples that may have met a light: nearest light first, then what stands before it. Returns X where one was met.
+    /// Handles samples that may have met a light: finds the nearest light, then tests the bodies before it. Returns X
+    /// if one was met.
     template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
         const Vec3<F> wi = drawn.wi;
         const F far = number<F>(1e30);
@@ -203,13 +204,14 @@ template <class F> struct Lights {
             index = select(nearer, F(static_cast<float>(k)), index);
             nearest = select(nearer, t, nearest);
         }
-        const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
-        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at),
-            load_lanes<F>(sites.bx, sites.by, sites.bz, at), load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
+        const Vec3<F> o = load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at);
+        const Frame<F> frame = {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, at),
+            load_lanes<F>(shading_points.bx, shading_points.by, shading_points.bz, at),
+            load_lanes<F>(shading_points.nx, shading_points.ny, shading_points.nz, at)};
         const Vec3<F> d = frame.to_world(wi);
-        const U own = load_lanes<F>(sites.shape, at);
+        const U own = load_lanes<F>(shading_points.shape, at);
         F seen = select(up & (nearest < far), number<F>(1), number<F>(0));
-        for (const OccluderF& body : sites.occluders) {
+        for (const OccluderF& body : shading_points.occluders) {
             const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
             seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
         }
@@ -219,8 +221,8 @@ template <class F> struct Lights {
             met.light_g[k] = met.light_g[k] + gk;
             met.light_g_lobe[k] = met.light_g_lobe[k] + gk * lobe;
             const bool disk = k < disk_count;
-            const std::vector<float>& d_of = disk ? sites.disks[k].d : sites.others[k - disk_count].d;
-            const std::vector<float>& s_of = disk ? sites.disks[k].s : sites.others[k - disk_count].s;
+            const std::vector<float>& d_of = disk ? shading_points.disks[k].d : shading_points.others[k - disk_count].d;
+            const std::vector<float>& s_of = disk ? shading_points.disks[k].s : shading_points.others[k - disk_count].s;
             const F xk = g * (load_lanes<F>(d_of, at) + lobe * load_lanes<F>(s_of, at));
             x = select(this_one, xk, x);
         }
@@ -231,4 +233,4 @@ template <class F> struct Lights {
 };
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

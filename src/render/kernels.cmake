@@ -1,5 +1,5 @@
 # One source makes the kernels of every instruction set that isas.h lists for this processor, each with its own flags;
-# they go into ${crescent_kernel_target}.
+# they are added to ${crescent_kernel_target}.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(family X86)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
@@ -7,7 +7,7 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "wasm")
   set(family WASM)
 endif()
-if(CRESCENT_SCALAR)  # on plain floats alone: less to compile
+if(CRESCENT_SCALAR)  # only on plain floats, to compile less
   set(family none)
   target_compile_definitions(${crescent_kernel_target} PRIVATE CRESCENT_SCALAR)
 endif()
@@ -22,7 +22,8 @@ foreach(line ${sets})
   string(REPLACE "has(\"" "-m" flags "${flags}")
   set(kernel ${PROJECT_BINARY_DIR}/kernels/kernel_${isa}.cpp)
   configure_file(${CMAKE_CURRENT_LIST_DIR}/kernel_isa.cpp.in ${kernel} @ONLY)
-  # ASan reads the kernels in the scalar and AVX2 builds, UBSan in the scalar one: there they cost the least to compile.
+  # ASan instruments the kernels in the scalar and AVX2 builds, UBSan in the scalar one, where they cost the least to
+  # compile.
   if(CRESCENT_SANITIZE)
     list(APPEND flags $<IF:$<STREQUAL:${isa},avx2>,-fno-sanitize=undefined,-fno-sanitize=all>)
   endif()

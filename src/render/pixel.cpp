@@ -1,5 +1,5 @@
-// One site of one pixel, in single precision and in the kernels' order of operations: X of a sample has the bits that
-// the film's has. What is drawn of it besides, directions and rims, is in double.
+// One shading point of one pixel, in single precision and in the kernels' order of operations: X of a sample has the
+// bits that it has in the film. Directions and outlines for drawing are in double.
 #include "render/pixel.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "scene/lobes/all.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
@@ -22,24 +22,24 @@ Vec3f at(const std::vector<float>& x, const std::vector<float>& y, const std::ve
     return {x[0], y[0], z[0]};
 }
 
-float lobe_of(const ShadingPoints& sites, Vec3f wi) {
-    const Vec3f wo = at(sites.wox, sites.woy, sites.woz);
-    const float s = sites.s[0], alpha = sites.alpha[0];
-    return lobe_value(static_cast<LobeKind>(sites.lobe), s, alpha, wo, wi);
+float lobe_of(const ShadingPoints& shading_points, Vec3f wi) {
+    const Vec3f wo = at(shading_points.wox, shading_points.woy, shading_points.woz);
+    const float s = shading_points.s[0], alpha = shading_points.alpha[0];
+    return lobe_value(static_cast<LobeKind>(shading_points.lobe), s, alpha, wo, wi);
 }
 
-std::vector<LocalDisk<float>> local_disks(const ShadingPoints& sites) {
+std::vector<LocalDisk<float>> local_disks(const ShadingPoints& shading_points) {
     std::vector<LocalDisk<float>> out;
-    for (const DiskArrays& d : sites.disks) {
+    for (const DiskArrays& d : shading_points.disks) {
         const float sides = d.two_sided ? 1.0f : 0.0f;
         out.push_back({at(d.cx, d.cy, d.cz), at(d.nx, d.ny, d.nz), d.radius, sides, d.power});
     }
     return out;
 }
 
-std::vector<LocalLight<float>> local_others(const ShadingPoints& sites) {
+std::vector<LocalLight<float>> local_others(const ShadingPoints& shading_points) {
     std::vector<LocalLight<float>> out;
-    for (const LightArrays& from : sites.others) {
+    for (const LightArrays& from : shading_points.others) {
         LocalLight<float>& light = out.emplace_back();
         const auto& n = from.numbers;
         light.kind = from.kind, light.power = from.power;
@@ -49,14 +49,14 @@ std::vector<LocalLight<float>> local_others(const ShadingPoints& sites) {
     return out;
 }
 
-/// The lights of a site, disks first.
+/// The lights of a shading point, disks first.
 struct Locals {
     const std::vector<LocalDisk<float>>& disks;
     const std::vector<LocalLight<float>>& others;
 };
 
-/// As the kernels ask it of what an arm drew: the nearest light first, then what stands before it.
-template <class D> int met_by(const ShadingPoints& sites, const Locals& locals, const D& drawn) {
+/// In the order of the kernels: the nearest light first, then the bodies before it.
+template <class D> int met_by(const ShadingPoints& shading_points, const Locals& locals, const D& drawn) {
     const auto& [disks, others] = locals;
     const Vec3f wi = drawn.wi;
     float nearest = 1e30f;
@@ -64,7 +64,8 @@ template <class D> int met_by(const ShadingPoints& sites, const Locals& locals, 
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const FacingDisk<float> facing(disks[k]);
         float v;
-        if (!meets_disk(facing, drawn, k, sites.light_count() == 1, v) || !is_nearer(facing.k / v, nearest)) continue;
+        if (!meets_disk(facing, drawn, k, shading_points.light_count() == 1, v) || !is_nearer(facing.k / v, nearest))
+            continue;
         nearest = facing.k / v, met = static_cast<int>(k);
     }
     for (std::size_t k = 0; k < others.size(); ++k) {
@@ -73,60 +74,61 @@ template <class D> int met_by(const ShadingPoints& sites, const Locals& locals, 
         nearest = t, met = static_cast<int>(disks.size() + k);
     }
     if (met < 0) return -1;
-    const Vec3f t = at(sites.tx, sites.ty, sites.tz), b = at(sites.bx, sites.by, sites.bz);
-    const Frame<float> frame = {t, b, at(sites.nx, sites.ny, sites.nz)};
-    const Vec3f o = at(sites.px, sites.py, sites.pz), d = frame.to_world(wi);
-    for (const OccluderF& body : sites.occluders)
-        if (body.shape != sites.shape[0] && blocked_by(body, o, d, nearest)) return -1;
+    const Vec3f t = at(shading_points.tx, shading_points.ty, shading_points.tz),
+                b = at(shading_points.bx, shading_points.by, shading_points.bz);
+    const Frame<float> frame = {t, b, at(shading_points.nx, shading_points.ny, shading_points.nz)};
+    const Vec3f o = at(shading_points.px, shading_points.py, shading_points.pz), d = frame.to_world(wi);
+    for (const OccluderF& body : shading_points.occluders)
+        if (body.shape != shading_points.shape[0] && blocked_by(body, o, d, nearest)) return -1;
     return met;
 }
 
-/// f L of Lambert and of the lobe, as Y: X = (cos/p) (d + lobe s).
+/// f L of the Lambert part and of the lobe, as Y: X = (cos/p) (d + lobe s).
 struct Worth {
     float d, s;
 };
-Worth worth(const ShadingPoints& sites, int disk) {
-    if (disk < 0) return {sites.fill_d[0], sites.fill_s[0]};
+Worth worth(const ShadingPoints& shading_points, int disk) {
+    if (disk < 0) return {shading_points.fill_d[0], shading_points.fill_s[0]};
     const std::size_t k = static_cast<std::size_t>(disk);
-    if (k < sites.disks.size()) return {sites.disks[k].d[0], sites.disks[k].s[0]};
-    const LightArrays& other = sites.others[k - sites.disks.size()];
+    if (k < shading_points.disks.size()) return {shading_points.disks[k].d[0], shading_points.disks[k].s[0]};
+    const LightArrays& other = shading_points.others[k - shading_points.disks.size()];
     return {other.d[0], other.s[0]};
 }
 
-/// f, per sr, of light that is `light` bright; where there is none, of grey light.
-double reflected(const ShadingPoints& sites, const Worth& w, float lobe, double light) {
+/// Returns f, per sr, for light of luminance `light`; without light, for grey light.
+double reflected(const ShadingPoints& shading_points, const Worth& w, float lobe, double light) {
     if (light > 0) return double(w.d + lobe * w.s) / light;
-    return double(sites.diffuse[0]) / pi + double(sites.rho_s[0] * lobe);
+    return double(shading_points.diffuse[0]) / pi + double(shading_points.rho_s[0] * lobe);
 }
 
-/// Makes X of a direction, in the kernels' own order of operations.
+/// Computes X of a direction, in the kernels' own order of operations.
 class Carrier {
 public:
-    Carrier(const ShadingPoints& sites, const Locals& disks, const std::vector<PixelLight>& seen, double fill)
-        : sites_(sites), lights_(disks), seen_(seen), fill_(fill) {}
+    Carrier(const ShadingPoints& shading_points, const Locals& disks, const std::vector<PixelLight>& seen, double fill)
+        : shading_points_(shading_points), lights_(disks), seen_(seen), fill_(fill) {}
 
     template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
         PixelSample out;
         out.u = u, out.wi = drawn.wi, out.pdf = drawn.pdf.v, out.cos = drawn.wi.z;
         out.weight = weight, out.technique = technique;
         if (out.cos <= 0 || out.pdf == 0) return out;
-        const float g = weight * (out.cos / out.pdf), lobe = lobe_of(sites_, out.wi);
-        out.disk = met_by(sites_, lights_, drawn);
-        const Worth w = worth(sites_, out.disk);
+        const float g = weight * (out.cos / out.pdf), lobe = lobe_of(shading_points_, out.wi);
+        out.disk = met_by(shading_points_, lights_, drawn);
+        const Worth w = worth(shading_points_, out.disk);
         out.x = g * (w.d + lobe * w.s);
         out.light = static_cast<float>(out.disk < 0 ? fill_ : seen_[static_cast<std::size_t>(out.disk)].light);
-        out.f = static_cast<float>(reflected(sites_, w, lobe, double(out.light)));
+        out.f = static_cast<float>(reflected(shading_points_, w, lobe, double(out.light)));
         return out;
     }
 
 private:
-    const ShadingPoints& sites_;
+    const ShadingPoints& shading_points_;
     const Locals lights_;
     const std::vector<PixelLight>& seen_;
     double fill_;
 };
 
-/// Calls work.template operator()<A>() for the arm of that name.
+/// Calls work.template operator()<A>() for the sampler of that name.
 template <class Work> void with_arm(std::string_view sampler, Work&& work) {
     bool found = false;
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
@@ -157,8 +159,8 @@ PixelLight seen_light(const Light& light, const Hit& hit) {
     return out;
 }
 
-ShadingPoints site_of(const Scene& scene, int i, int j) {
-    std::vector<ShadingPoints> groups = sites_of(scene, {i, j, i + 1, j + 1}, nullptr);
+ShadingPoints point_of(const Scene& scene, int i, int j) {
+    std::vector<ShadingPoints> groups = shading_points_of(scene, {i, j, i + 1, j + 1}, nullptr);
     ensure(groups.size() == 1 && groups[0].count == 1, "an opened pixel sees a surface");
     return std::move(groups[0]);
 }
@@ -168,25 +170,26 @@ ShadingPoints site_of(const Scene& scene, int i, int j) {
 OpenPixel::OpenPixel(const Scene& scene, int i, int j)
     : i_(i),
       j_(j),
-      sites_(site_of(scene, i, j)),
+      shading_points_(point_of(scene, i, j)),
       hit_(*scene.primary(i, j)),
       surface_(scene.surface(hit_)),
-      wo_(widen(at(sites_.wox, sites_.woy, sites_.woz))),
+      wo_(widen(at(shading_points_.wox, shading_points_.woy, shading_points_.woz))),
       fill_(luminance(scene.fill())),
-      local_(local_disks(sites_)),
-      others_(local_others(sites_)) {
+      local_(local_disks(shading_points_)),
+      others_(local_others(shading_points_)) {
     for (const Light& light : scene.lights()) lights_.push_back(seen_light(light, hit_));
 }
 
 ShadingPoint<float> OpenPixel::aimed_from() const {
-    return {at(sites_.wox, sites_.woy, sites_.woz), sites_.s[0], sites_.alpha[0], sites_.diffuse[0], sites_.rho_s[0],
-        local_.data(), static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
+    return {at(shading_points_.wox, shading_points_.woy, shading_points_.woz), shading_points_.s[0],
+        shading_points_.alpha[0], shading_points_.diffuse[0], shading_points_.rho_s[0], local_.data(),
+        static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
 }
 
 Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
 
 int OpenPixel::disk_met(Vec3d wi) const {
-    return wi.z > 0 ? met_by(sites_, {local_, others_}, Drawn<float>{as<float>(wi), {1}}) : -1;
+    return wi.z > 0 ? met_by(shading_points_, {local_, others_}, Drawn<float>{as<float>(wi), {1}}) : -1;
 }
 
 double OpenPixel::light(Vec3d wi) const {
@@ -196,39 +199,40 @@ double OpenPixel::light(Vec3d wi) const {
 
 double OpenPixel::f(Vec3d wi, int disk) const {
     if (!(wi.z > 0)) return 0;
-    const Worth w = worth(sites_, disk);
+    const Worth w = worth(shading_points_, disk);
     const double light = disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
-    return reflected(sites_, w, lobe_of(sites_, as<float>(wi)), light);
+    return reflected(shading_points_, w, lobe_of(shading_points_, as<float>(wi)), light);
 }
 
 double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
-    const ShadingPoint<float> site = aimed_from();
+    const ShadingPoint<float> shading_point = aimed_from();
     double out = 0;
     with_arm(sampler, [&]<template <class> class A>() {
-        const A<float> arm(site);
+        const A<float> arm(shading_point);
         const Vec3f w = as<float>(wi);
-        if constexpr (requires { A<float>::techniques; }) out = double(arm.template pdf_technique<0>(site.wo, w).v);
-        else out = double(arm.pdf(site.wo, w).v);
+        if constexpr (requires { A<float>::techniques; })
+            out = double(arm.template pdf_technique<0>(shading_point.wo, w).v);
+        else out = double(arm.pdf(shading_point.wo, w).v);
     });
     return out;
 }
 
 std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
-    const ShadingPoint<float> site = aimed_from();
-    const Carrier accumulate(sites_, {local_, others_}, lights_, fill_);
+    const ShadingPoint<float> shading_point = aimed_from();
+    const Carrier accumulate(shading_points_, {local_, others_}, lights_, fill_);
     std::vector<PixelSample> out;
     with_arm(sampler, [&]<template <class> class A>() {
-        const A<float> arm(site);
+        const A<float> arm(shading_point);
         for (std::uint64_t k = 0; k < n; ++k) {
-            const Vec2<float> u = draw(seed, sites_.pixel[0], k);
+            const Vec2<float> u = draw(seed, shading_points_.pixel[0], k);
             if constexpr (requires { A<float>::techniques; }) {
-                const Vec2<float> v = draw(seed, sites_.pixel[0], k, 1);
-                const auto a = arm.template sample_technique<0>(site.wo, u);
-                const auto b = arm.template sample_technique<1>(site.wo, v);
-                out.push_back(accumulate(u, a, arm.template weight<0>(site.wo, a), 0));
-                out.push_back(accumulate(v, b, arm.template weight<1>(site.wo, b), 1));
+                const Vec2<float> v = draw(seed, shading_points_.pixel[0], k, 1);
+                const auto a = arm.template sample_technique<0>(shading_point.wo, u);
+                const auto b = arm.template sample_technique<1>(shading_point.wo, v);
+                out.push_back(accumulate(u, a, arm.template weight<0>(shading_point.wo, a), 0));
+                out.push_back(accumulate(v, b, arm.template weight<1>(shading_point.wo, b), 1));
             } else {
-                out.push_back(accumulate(u, arm.sample(site.wo, u), 1, 0));
+                out.push_back(accumulate(u, arm.sample(shading_point.wo, u), 1, 0));
             }
         }
     });
@@ -247,4 +251,4 @@ std::vector<double> running_mean(const std::vector<PixelSample>& samples) {
     return out;
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,10 +1,11 @@
-// One pixel opened: what each of its samples is made of, for pictures that explain an estimate and for tests. Local
-// frame of its surface point, n = +z. The samples are those of the films: the same random numbers, the same bits.
+// One pixel and its single samples, for figures that explain an estimate and for tests. Local frame of its surface
+// point, n = +z. The samples are those of the films: the same random numbers, the same bits.
 //
-//   X = w f L cos / p    w is 1, but for arms of two techniques
 //
-// L and f are numbers of luminance: L is Y of the light's radiance, and f is the share of it that is reflected, per sr,
-// in light of that colour. Radiance in W/(sr m^2), f in 1/sr, angles in degrees.
+//   X = w f L cos / p    w is 1, except for samplers with two techniques
+//
+// L and f are luminances: L is Y of the light's radiance, and f is the share of it that is reflected, per sr, in light
+// of that colour. Radiance in W/(sr m^2), f in 1/sr, angles in degrees.
 #pragma once
 
 #include <string>
@@ -15,9 +16,9 @@
 #include "render/shading_points.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
-/// One draw. X = 0 where the direction lies under the horizon or nothing was drawn.
+/// One draw. X = 0 if the direction is below the horizon or nothing was drawn.
 struct PixelSample {
     Vec2<float> u{};
     Vec3<float> wi{};
@@ -34,22 +35,22 @@ struct PixelLight {
     Vec3d towards{};            // unit, to its centre
     double angular_radius = 0;  // degrees, across the line of sight: atan(radius / distance)
     double light = 0;           // Y of its radiance
-    std::vector<Vec3d> rim;     // unit directions to its edge, in order
-    bool faces = false;         // its emitting side is turned to the surface
+    std::vector<Vec3d> rim;     // unit directions to its outline, in order
+    bool faces = false;         // whether its emitting side faces the surface
 };
 
 /// One pixel of a scene and each of its samples. Directions are unit vectors of the world; values in the units of
-/// films. Immutable once made: any thread may ask.
+/// films. Immutable: any thread may call it.
 class OpenPixel {
 public:
-    /// Throws Bug where pixel (i, j), counted from the bottom-left, sees nothing.
+    /// Throws Bug if pixel (i, j), counted from the bottom-left, sees nothing.
     OpenPixel(const Scene& scene, int i, int j);
 
-    /// The pixel, counted from the bottom-left; the index of its shape in Scene::shapes(); what its primary ray met,
+    /// The pixel, counted from the bottom-left; the index of its shape in Scene::shapes(); the hit of its primary ray,
     /// with the material there; the unit direction to the camera.
     int i() const { return i_; }
     int j() const { return j_; }
-    int shape() const { return static_cast<int>(sites_.shape[0]); }
+    int shape() const { return static_cast<int>(shading_points_.shape[0]); }
     const Hit& hit() const { return hit_; }
     const Surface& surface() const { return surface_; }
     Vec3d wo() const { return wo_; }
@@ -57,23 +58,23 @@ public:
     const std::vector<PixelLight>& lights() const { return lights_; }
     double fill() const { return fill_; }  // Y
 
-    /// The light that a direction meets before anything else; -1: none, it sees the fill.
+    /// Returns the light that a direction meets before any body; -1: none, it sees the fill.
     int disk_met(Vec3d wi) const;
-    /// Y of the light that comes from there.
+    /// Returns Y of the light from that direction.
     double light(Vec3d wi) const;
-    /// The BRDF in 1/sr under the light of a disk, or of the fill (-1); 0 under the horizon.
+    /// Returns the BRDF in 1/sr for the light of a disk, or for the fill (-1); 0 below the horizon.
     double f(Vec3d wi, int disk = -1) const;
-    /// The density in 1/sr by which an arm aims there; of an arm of two techniques, of the first.
+    /// Returns a sampler's density in 1/sr at a direction; for a sampler with two techniques, that of the first.
     double pdf(std::string_view sampler, Vec3d wi) const;
 
-    /// The first n samples of an arm in order; of an arm of two techniques, 2 n in pairs. `sampler`: a word of
-    /// arms/all.h.
+    /// Returns the first n samples of a sampler in order; for one with two techniques, 2 n in pairs. `sampler`: a name
+    /// of samplers/all.h.
     std::vector<PixelSample> samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const;
 
 private:
     ShadingPoint<float> aimed_from() const;  // points into local_
     int i_, j_;
-    ShadingPoints sites_;
+    ShadingPoints shading_points_;
     Hit hit_;
     Surface surface_;
     Vec3d wo_{};
@@ -83,7 +84,7 @@ private:
     std::vector<LocalLight<float>> others_;
 };
 
-/// Mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.
+/// Returns the mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.
 std::vector<double> running_mean(const std::vector<PixelSample>& samples);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

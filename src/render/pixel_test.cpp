@@ -1,4 +1,4 @@
-// An opened pixel against the kernels: the same X, bit for bit, from every arm, and the film's own Y.
+// Compares the samples of one pixel with the kernels: the same X, bit for bit, for every sampler, and the film's own Y.
 #include "render/pixel.h"
 
 #include <gmock/gmock.h>
@@ -9,12 +9,12 @@
 #include "render/estimator.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
 constexpr std::uint64_t n = 48;
 
-/// Pixels of the test scene: the ball's highlight, its side, the block, the ground and its shadow.
+/// Returns pixels of the test scene: the ball's highlight, its side, the block, the ground and its shadow.
 std::vector<std::pair<int, int>> pixels(const Scene& scene) {
     std::vector<std::pair<int, int>> out;
     for (int j = 2; j < scene.image().height; j += 5)
@@ -31,11 +31,11 @@ template <class Visit> void for_each_opened(Visit&& visit) {
 TEST(OpenPixel, DrawsWhatTheKernelsDrawBitForBit) {
     std::set<int> lights;
     for_each_opened([&](const Scene& scene, const OpenPixel& pixel) {
-        const std::vector<ShadingPoints> sites =
-            sites_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
+        const std::vector<ShadingPoints> shading_points =
+            shading_points_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
         for_each_sampler(Samplers{}, [&]<template <class> class A>() {
             std::vector<float> x(n);
-            estimate_sites(sites[0], A<float>::name, n, 11, "", nullptr, x.data());
+            estimate_points(shading_points[0], A<float>::name, n, 11, "", nullptr, x.data());
             std::vector<float> opened(n);
             for (std::size_t at = 0; const PixelSample& sample : pixel.samples(A<float>::name, n, 11)) {
                 lights.insert(sample.disk);
@@ -98,4 +98,4 @@ TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

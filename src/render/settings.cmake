@@ -1,4 +1,4 @@
-# What runs once per sample or per pixel is worth a longer compilation.
+# Code that runs per sample or per pixel is compiled with more optimisation.
 target_compile_options(crescent_render PRIVATE $<$<CONFIG:Release>:-O3>)
 
 set(crescent_kernel_target crescent_render)

@@ -1,5 +1,6 @@
-// Positions are kept in float from the scene's origin, directions in the local frame, a group of sites for each lobe.
-// Arrays end with copies of the last site, so that every pack is full; `count` tells the sites that are meant.
+// Positions are kept in float relative to the scene's origin, directions in the local frame, one group of shading
+// points for each lobe. Arrays end with copies of the last shading point, so that every pack is full; `count` is the
+// number without padding.
 #include "render/shading_points.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include "base/vec.h"
 #include "scene/shadow.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
@@ -21,13 +22,15 @@ void put(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, st
     x[i] = static_cast<float>(v.x), y[i] = static_cast<float>(v.y), z[i] = static_cast<float>(v.z);
 }
 
-std::size_t whole_packs(std::size_t sites) { return (sites + widest_pack - 1) / widest_pack * widest_pack; }
+std::size_t whole_packs(std::size_t shading_points) {
+    return (shading_points + widest_pack - 1) / widest_pack * widest_pack;
+}
 
 std::array<float, 3> single(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Numbers of a light that is no disk, in the order of LocalLight.
+/// Stores the numbers of a light that is not a disk, in the order of LocalLight.
 void put_light(LightArrays& to, std::size_t i, const Light& light, Vec3d x, const Frame<double>& frame) {
     with_light_kind(to.kind, [&]<class Kind>() {
         const LightNumbers n = std::get<Kind>(light.form).numbers(x, frame);
@@ -38,7 +41,7 @@ void put_light(LightArrays& to, std::size_t i, const Light& light, Vec3d x, cons
     });
 }
 
-/// What light of a colour is worth, never -0, so that no X is.
+/// Returns the luminance as float, never -0, so that X is never -0.
 float worth(double y) { return static_cast<float>(y + 0.0); }
 
 }  // namespace
@@ -50,7 +53,7 @@ OccluderF occluder_about(const Occluder& o, Vec3d origin) {
 }
 
 std::vector<TileBox> tiles_of(int width, int height) {
-    constexpr int side = 64;  // pixels: small enough to share out evenly, large enough to fill packs
+    constexpr int side = 64;  // pixels: small enough to distribute evenly, large enough to fill packs
     std::vector<TileBox> tiles;
     for (int y = 0; y < height; y += side)
         for (int x = 0; x < width; x += side)
@@ -58,26 +61,26 @@ std::vector<TileBox> tiles_of(int width, int height) {
     return tiles;
 }
 
-ShadingPoints empty_sites(const Scene& scene, int lobe) {
-    ShadingPoints sites;
-    sites.lobe = lobe;
+ShadingPoints empty_points(const Scene& scene, int lobe) {
+    ShadingPoints shading_points;
+    shading_points.lobe = lobe;
     double total = 0;
     for (const Light& light : scene.lights()) total += light.power();
     const auto share = [&](const Light& light) { return total > 0 ? static_cast<float>(light.power() / total) : 0.0f; };
     for (const Light& light : scene.lights()) {
         if (const auto* disk = std::get_if<lights::Disk>(&light.form)) {
-            DiskArrays& arrays = sites.disks.emplace_back();
+            DiskArrays& arrays = shading_points.disks.emplace_back();
             arrays.radius = static_cast<float>(disk->radius);
             arrays.two_sided = disk->two_sided;
             arrays.power = share(light);
         } else {
-            LightArrays& arrays = sites.others.emplace_back();
+            LightArrays& arrays = shading_points.others.emplace_back();
             arrays.kind = light.form.index();
             arrays.power = share(light);
         }
     }
-    for (const Occluder& o : scene.occluders()) sites.occluders.push_back(occluder_about(o, scene.origin()));
-    return sites;
+    for (const Occluder& o : scene.occluders()) shading_points.occluders.push_back(occluder_about(o, scene.origin()));
+    return shading_points;
 }
 
 Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
@@ -136,8 +139,8 @@ template <class Work> void ShadingPoints::each_array(Work&& work) {
     }
 }
 
-void ShadingPoints::reserve(std::size_t sites) {
-    each_array([&](auto& array) { array.reserve(whole_packs(sites)); });
+void ShadingPoints::reserve(std::size_t shading_points) {
+    each_array([&](auto& array) { array.reserve(whole_packs(shading_points)); });
 }
 
 void ShadingPoints::grow(std::size_t more) {
@@ -179,7 +182,7 @@ void ShadingPoints::cull_occluders(const Scene& scene) {
     const Extent extent = {
         scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
+    for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_points created them
         const bool clear = std::all_of(scene.lights().begin(), scene.lights().end(),
             [&](const Light& light) { return is_separated(scene.occluders()[k], extent, light.body()); });
         if (!clear) occluders[kept++] = occluders[k];
@@ -189,7 +192,7 @@ void ShadingPoints::cull_occluders(const Scene& scene) {
 
 namespace {
 
-/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then at hand.
+/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then cached.
 class Sorter {
 public:
     Sorter(const Scene& scene, const TileBox& tile)
@@ -209,7 +212,7 @@ public:
         const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
         auto group = std::find_if(groups.begin(), groups.end(), [&](const ShadingPoints& g) { return g.lobe == lobe; });
         if (group == groups.end()) {
-            group = groups.insert(group, empty_sites(scene_, lobe));
+            group = groups.insert(group, empty_points(scene_, lobe));
             group->reserve(area_);
             group->grow(columns_);
         }
@@ -228,7 +231,7 @@ private:
 
 }  // namespace
 
-std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
+std::vector<ShadingPoints> shading_points_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
     Sorter sorter(scene, tile);
     const int width = scene.image().width;
     for (int j = tile.y0; j < tile.y1; ++j) {
@@ -248,4 +251,4 @@ std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std
     return std::move(sorter.groups);
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

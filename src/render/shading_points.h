@@ -1,5 +1,5 @@
-// The geometry pixels of a tile as the kernels read them: one float array a quantity, one entry a pixel, in the local
-// frame of each pixel (n = +z), padded so that any pack can be loaded whole.
+// The geometry pixels of a tile as the kernels read them: one float array per quantity, one entry per pixel, in the
+// local frame of each pixel (n = +z), padded so that whole packs can be loaded.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 
@@ -16,10 +16,10 @@ inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 struct TileBox {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
-/// The tiles of an image, row by row from the bottom.
+/// Returns the tiles of an image, row by row from the bottom.
 std::vector<TileBox> tiles_of(int width, int height);
 
-/// One disk light as each pixel sees it, and what a sample that meets it is worth.
+/// One disk light as each pixel sees it, and the value of a sample that meets it.
 struct DiskArrays {
     std::vector<float> cx, cy, cz;  // from the surface to the centre, local, m
     std::vector<float> nx, ny, nz;  // the disk's normal, local
@@ -29,25 +29,26 @@ struct DiskArrays {
     float power = 0;  // Y(L) pi r^2, relative to all disks
 };
 
-/// A light that is no disk as each pixel sees it (scene/lights/light_kind.h), and what a sample that meets it is worth.
+/// A light that is not a disk as each pixel sees it (scene/lights/light_kind.h), and the value of a sample that meets
+/// it.
 struct LightArrays {
     std::size_t kind = 0;  // index in LightKinds
     std::array<std::vector<float>, local_numbers> numbers;
-    std::vector<float> d, s;  // as DiskArrays::d, s
+    std::vector<float> d, s;  // like DiskArrays::d, s
     float power = 0;
 };
 
 /// Constants of one surface: luminance of f L for the fill and for each disk light.
 struct Shading {
     Surface surface;
-    Rgb lambert{};  // as in ShadingPoints, and the next two
+    Rgb lambert{};  // like ShadingPoints, and the next two
     float fill_d = 0, fill_s = 0;
-    std::vector<float> disk_d, disk_s;  // as in DiskArrays, one a disk
+    std::vector<float> disk_d, disk_s;  // like DiskArrays, one per disk
     Shading(const Scene& scene, const Surface& on);
 };
 
-/// Occluders in float, as the kernels test them: from the scene's origin, so that a scene far from (0, 0, 0) loses
-/// nothing.
+/// Occluders in float, as the kernels test them: relative to the scene's origin, so that a scene far from (0, 0, 0)
+/// keeps its precision.
 struct OccluderF {
     std::size_t kind;  // index in Bodies
     std::uint32_t shape;
@@ -55,7 +56,7 @@ struct OccluderF {
     float radius;
     float offset;  // each kind's own, see scene/body.h
 };
-/// In float, from `origin` on.
+/// Converts to float, relative to `origin`.
 OccluderF occluder_about(const Occluder& o, Vec3d origin);
 
 /// Points of one BRDF kind. `lobe` is -1 where rho_s = 0.
@@ -67,36 +68,36 @@ struct ShadingPoints {
     std::vector<float> s, alpha, diffuse, rho_s;  // diffuse: Y(rho_d)
     std::vector<float> px, py, pz;                // the surface point from the scene's origin, along the world's axes
     std::vector<float> tx, ty, tz, bx, by, bz, nx, ny, nz;  // the local frame, world
-    std::vector<float> fill_d, fill_s;                      // as DiskArrays::d, s for the fill
+    std::vector<float> fill_d, fill_s;                      // like DiskArrays::d, s, for the fill
     std::vector<DiskArrays> disks;
-    std::vector<LightArrays> others;  // lights that are no disks
+    std::vector<LightArrays> others;  // lights other than disks
     std::size_t light_count() const { return disks.size() + others.size(); }
-    std::vector<OccluderF> occluders;  // those that may hide a disk from one of the sites
+    std::vector<OccluderF> occluders;  // those that may hide a disk from one of the shading points
     std::vector<Rgb> lambert;          // rho_d / pi, for the colours of the film
     std::vector<double> rho_s_exact;
-    std::vector<Rgb> tint;  // of the lobe, as in Surface
+    std::vector<Rgb> tint;  // of the lobe, like Surface
 
-    /// Adds a site where room was made for it.
+    /// Adds a shading point; space must be reserved.
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading);
     void grow(std::size_t more);
-    void reserve(std::size_t sites);
-    /// Repeats the last site until every pack is full.
+    void reserve(std::size_t shading_points);
+    /// Repeats the last shading point until every pack is full.
     void pad();
-    /// Drops the occluders that stand between no site and no disk.
+    /// Drops the occluders that cannot lie between any shading point and any disk.
     void cull_occluders(const Scene& scene);
-    /// The lobe's parameters as a scene of the same view has them, see Scene::with_s.
+    /// Takes the lobe's parameters from a scene of the same view, see Scene::with_s.
     void take_s(const Scene& scene);
-    /// Bytes of memory that one point takes.
+    /// Returns the bytes of memory of one point.
     std::size_t bytes_of_one();
 
 private:
     template <class Work> void each_array(Work&& work);
 };
 
-/// A scene's lights and occluders without any site yet.
-ShadingPoints empty_sites(const Scene& scene, int lobe);
+/// Returns a scene's lights and occluders without any shading points.
+ShadingPoints empty_points(const Scene& scene, int lobe);
 
-/// All geometry pixels of a tile, grouped by lobe; also which shape each pixel sees.
-std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
+/// Returns all geometry pixels of a tile, grouped by lobe, and the shape that each pixel sees.
+std::vector<ShadingPoints> shading_points_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

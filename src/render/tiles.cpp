@@ -1,5 +1,5 @@
-// A tile's record: Head, its counts, then its rows plane by plane, as they stand in memory. Tiles wait to be written
-// until checkpoint_after_s have passed: a short run writes nothing. A record of another size is passed over.
+// A tile's record: Head, its counts, then its rows plane by plane, as they are in memory. Tiles are not written until
+// checkpoint_after_s have passed, so a short run writes nothing. Records of another size are skipped.
 #include "render/tiles.h"
 
 #include <cstring>
@@ -7,11 +7,11 @@
 
 #include "base/parallel.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
 namespace {
 
-/// What stands before the counts and pixels of a tile.
+/// The head of a record, before the counts and pixels of a tile.
 struct Head {
     std::uint64_t tile;
     double units;
@@ -85,12 +85,12 @@ void TileCheckpoint::write(std::size_t tile) {
     journal_.append(parts);
 }
 
-// ---- Points of a tile are made when they are asked for first, under that tile's lock. Of a scene at another s only s
-// and alpha change: they are copied from the first one's.
+// ---- Points of a tile are created on first use, under that tile's lock; for a scene at another s only s and alpha
+// change, so they are copied from the first scene's.
 
 struct TiledScene::Kept {
     Mutex lock;
-    std::shared_ptr<const Points> points;  // null: not asked for yet
+    std::shared_ptr<const Points> points;  // null: not created yet
 };
 
 TiledScene::TiledScene(Scene scene)
@@ -115,7 +115,7 @@ std::shared_ptr<const TiledScene::Points> TiledScene::points(std::size_t k) cons
 }
 
 std::shared_ptr<const TiledScene::Points> TiledScene::make(std::size_t k) const {
-    if (!other_s_) return std::make_shared<const Points>(sites_of(scene_, (*tiles_)[k], nullptr));
+    if (!other_s_) return std::make_shared<const Points>(shading_points_of(scene_, (*tiles_)[k], nullptr));
     Points points = *other_s_->points(k);
     for (ShadingPoints& group : points) group.take_s(scene_);
     return std::make_shared<const Points>(std::move(points));
@@ -130,7 +130,7 @@ std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<doubl
 std::uint64_t bytes_of_points(const Scene& scene) {
     const auto pixels =
         static_cast<std::uint64_t>(scene.image().width) * static_cast<std::uint64_t>(scene.image().height);
-    return pixels * empty_sites(scene, 0).bytes_of_one();
+    return pixels * empty_points(scene, 0).bytes_of_one();
 }
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,4 +1,4 @@
-// A scene in tiles: shading points that are kept while memory allows, and a journal of the tiles that are finished.
+// A scene in tiles: shading points that are kept while memory allows, and a journal of finished tiles.
 #pragma once
 
 #include <chrono>
@@ -14,18 +14,18 @@
 #include "render/shading_points.h"
 #include "scene/scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 
-// ---- Keeps what a long pass over an image has finished, tile by tile, in a journal beside the outputs.
+// ---- Keeps the finished part of a long pass over an image, tile by tile, in a journal next to the outputs.
 
-/// What the tiles of a pass write into.
+/// The arrays that the tiles of a pass write to.
 struct TileOutputs {
     int width = 0;                                 // pixels in a row of every plane
-    std::vector<std::span<std::byte>> planes;      // 4 bytes a pixel
-    std::vector<std::span<std::uint64_t>> counts;  // one entry a tile
+    std::vector<std::span<std::byte>> planes;      // 4 bytes per pixel
+    std::vector<std::span<std::uint64_t>> counts;  // one entry per tile
 };
 
-/// All planes of films of one size, and counts of the tiles beside them.
+/// Returns all planes of films of one size, and the counts of the tiles.
 template <class F> TileOutputs outputs_of(std::vector<F>& films, std::span<std::vector<std::uint64_t>> counts = {}) {
     TileOutputs out;
     for (F& film : films) {
@@ -38,15 +38,16 @@ template <class F> TileOutputs outputs_of(std::vector<F>& films, std::span<std::
 
 class TileCheckpoint {
 public:
-    /// Nothing is written before the pass has taken `checkpoint_after_s` seconds; then all finished tiles are.
+    /// Nothing is written before the pass has taken `checkpoint_after_s` seconds; after that, all finished tiles are.
     TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& monitor);
 
-    /// The pass begins: tiles that an earlier run finished are put back into the outputs, which must outlive it.
+    /// Begins the pass: tiles that an earlier run finished are restored into the outputs, which must outlive this
+    /// object.
     void begin(std::vector<TileBox> tiles, TileOutputs outputs);
     bool holds(std::size_t tile) const { return units_[tile] >= 0; }
-    /// A tile is finished; it was worth so many units of progress. Any thread.
+    /// Records a finished tile and its units of progress. Any thread.
     void add(std::size_t tile, double units);
-    /// Units of the tiles that begin() put back.
+    /// Returns the units of the tiles that begin() restored.
     double restored() const { return restored_; }
     void remove() { journal_.remove(); }
 
@@ -69,25 +70,25 @@ private:
     std::vector<std::size_t> waiting_;  // finished, not yet written
 };
 
-// ---- A scene cut into tiles, with the shading points of each tile: they depend on the scene and its exponent alone,
-// so that all arms, seeds and references of a run share them.
+// ---- A scene cut into tiles, with the shading points of each tile, which depend only on the scene and its exponent
+// and are shared by all samplers, seeds and references of a run.
 
-/// Const members may be called from any thread. Copies share what is kept.
+/// Const members may be called from any thread. Copies share the kept points.
 class TiledScene {
 public:
     using Points = std::vector<ShadingPoints>;  // of one tile, grouped by lobe
 
-    /// A scene whose points are made each time they are asked for.
+    /// Makes a scene whose points are created on each use.
     TiledScene(Scene scene);  // NOLINT(google-explicit-constructor): a scene is a tiled one that keeps nothing
-    /// From now on the points of a tile are made when they are first asked for, and kept while this or a copy lives.
+    /// From now on the points of a tile are created on first use, and kept while this object or a copy lives.
     void keep_points();
-    /// The same view with another exponent, see Scene::with_s. Where this one keeps points, the other copies them each
-    /// time: that costs less than the memory to keep others.
+    /// Returns the same view with another exponent, see Scene::with_s. If this one keeps points, the other copies them
+    /// each time, which costs less than the memory to keep them.
     TiledScene with_s(double s) const;
 
     const Scene& scene() const { return scene_; }
     const std::vector<TileBox>& tiles() const { return *tiles_; }
-    /// Points of tile k, an index into tiles().
+    /// Returns the points of tile k, an index into tiles().
     std::shared_ptr<const Points> points(std::size_t k) const;
 
 private:
@@ -96,14 +97,14 @@ private:
 
     Scene scene_;
     std::shared_ptr<const std::vector<TileBox>> tiles_;
-    std::shared_ptr<std::vector<Kept>> kept_;    // one a tile; null: nothing is kept
-    std::shared_ptr<const TiledScene> other_s_;  // keeps points of the same view; null: none does
+    std::shared_ptr<std::vector<Kept>> kept_;    // one per tile; null: nothing is kept
+    std::shared_ptr<const TiledScene> other_s_;  // keeps points of the same view; null: none
 };
 
-/// The view at each exponent, in order; they share the points that `view` keeps.
+/// Returns the view at each exponent, in order; they share the points that `view` keeps.
 std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<double>& exponents);
 
-/// Bytes that the points of the whole image take where every pixel has one.
+/// Returns the bytes that the points of the whole image take if every pixel has one.
 std::uint64_t bytes_of_points(const Scene& scene);
 
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

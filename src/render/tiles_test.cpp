@@ -1,4 +1,4 @@
-// Shading points that arms, seeds and exponents share are those that each of them would make.
+// Shading points shared by samplers, seeds and exponents equal those that each of them would create.
 #include <gtest/gtest.h>
 
 #include "render/estimator.h"
@@ -8,7 +8,7 @@
 namespace crescent {
 namespace {
 
-/// With a recessed panel, whose sides have no lobe and whose back follows the exponent of the scene.
+/// Returns a scene with a recessed panel, whose sides have no lobe and whose back follows the exponent of the scene.
 Scene scene_of_three_surfaces() {
     Experiment e = test::small_scene();
     Shape panel = *e.shape_of_s();
@@ -40,7 +40,7 @@ TEST(TiledScene, SharesThePointsThatEachJobWouldMake) {
     for (const double s : {scene.s(), 3.0, 700.0}) {
         const TiledScene at_s = views_at(kept, {s}).front();
         for (std::size_t k = 0; k < kept.tiles().size(); ++k) {
-            expect_same(*at_s.points(k), sites_of(scene.with_s(s), kept.tiles()[k], nullptr));
+            expect_same(*at_s.points(k), shading_points_of(scene.with_s(s), kept.tiles()[k], nullptr));
         }
     }
     EXPECT_EQ(kept.points(0), kept.points(0)) << "made once";

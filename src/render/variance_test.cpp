@@ -1,5 +1,5 @@
-// The variance of a film against the two-pass variance of the very samples, for every arm, where samples hardly differ
-// (small lamps) and where they differ by orders of magnitude (an arm that aims badly).
+// The variance of a film against the two-pass variance of its samples, for every sampler: where samples hardly differ
+// (small area lights) and where they differ by orders of magnitude (a sampler that fits badly).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,11 +7,11 @@
 #include "render/estimator.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 namespace {
 
-/// The test scene with lamps of another size, and as bright as they were.
-Scene scene_with_lamps(double radius) {
+/// Returns the test scene with area lights of another size and the same radiance.
+Scene scene_with_area_lights(double radius) {
     Experiment e = test::small_scene();
     for (DiskLight& disk : e.disks) {
         const double share = sqr(disk.radius / radius);
@@ -24,51 +24,52 @@ Scene scene_with_lamps(double radius) {
 /// Pixels of the block and its shadow, of the ball's side, and of the ground at the horizon.
 constexpr TileBox boxes[] = {{30, 8, 34, 10}, {24, 24, 28, 26}, {0, 31, 67, 32}};
 
-/// Where a variance is a normal number in a float.
+/// The smallest variance at which all values are normal floats.
 constexpr double least = 1e-37;
 
-void expect_two_pass(const ShadingPoints& sites, const std::string& arm, std::uint64_t n, double radius) {
-    std::vector<float> x(sites.count * n);
-    const Moments m = estimate_sites(sites, arm, n, 5, "", nullptr, x.data());
-    for (std::size_t i = 0; i < sites.count; ++i) {
+void expect_two_pass(const ShadingPoints& shading_points, const std::string& arm, std::uint64_t n, double radius) {
+    std::vector<float> x(shading_points.count * n);
+    const Moments m = estimate_points(shading_points, arm, n, 5, "", nullptr, x.data());
+    for (std::size_t i = 0; i < shading_points.count; ++i) {
         const double want = test::spread_of({x.data() + i * n, n});
         EXPECT_NEAR(m.spread[i], want, 1e-4 * want + least)
-            << arm << ", n = " << n << ", lamps of " << radius << " m, pixel " << sites.pixel[i];
+            << arm << ", n = " << n << ", lamps of " << radius << " m, pixel " << shading_points.pixel[i];
     }
 }
 
-TEST(VarianceLaw, EveryArmHasTheTwoPassVarianceOfItsSamples) {
+TEST(VarianceConformance, EveryArmHasItsTwoPassVariance) {
     for (const double radius : {0.3, 1e-2, 1e-3, 1e-4, 1e-5}) {
-        const Scene scene = scene_with_lamps(radius);
+        const Scene scene = scene_with_area_lights(radius);
         for (const TileBox& box : boxes)
-            for (const ShadingPoints& sites : sites_of(scene, box, nullptr))
+            for (const ShadingPoints& shading_points : shading_points_of(scene, box, nullptr))
                 for (const std::string& arm : test::all_arms())
-                    for (const std::uint64_t n : {2, 5, 16, 17, 64, 1000}) expect_two_pass(sites, arm, n, radius);
+                    for (const std::uint64_t n : {2, 5, 16, 17, 64, 1000})
+                        expect_two_pass(shading_points, arm, n, radius);
     }
 }
 
-TEST(VarianceLaw, AFilmShowsIt) {
-    const Scene scene = scene_with_lamps(1e-3);
+TEST(VarianceConformance, AFilmShowsIt) {
+    const Scene scene = scene_with_area_lights(1e-3);
     ProgressMonitor monitor;
     const TileBox box = {30, 8, 34, 10};
-    const ShadingPoints sites = sites_of(scene, box, nullptr).front();
-    std::vector<float> x(sites.count * 64);
-    estimate_sites(sites, "light-area", 64, 5, "", nullptr, x.data());
+    const ShadingPoints shading_points = shading_points_of(scene, box, nullptr).front();
+    std::vector<float> x(shading_points.count * 64);
+    estimate_points(shading_points, "light-area", 64, 5, "", nullptr, x.data());
     const Film film = estimate_films(scene, "light-area", {64}, 5, "", monitor)[0];
-    for (std::size_t i = 0; i < sites.count; ++i) {
+    for (std::size_t i = 0; i < shading_points.count; ++i) {
         const double want = test::spread_of({x.data() + i * 64, 64}) / (64 * 63);
-        EXPECT_NEAR(static_cast<double>(film.var[sites.pixel[i]]), want, 1e-4 * want) << i;
+        EXPECT_NEAR(static_cast<double>(film.var[shading_points.pixel[i]]), want, 1e-4 * want) << i;
     }
 }
 
-TEST(VarianceLaw, SamplesThatAreAllAlikeHaveNone) {
+TEST(VarianceConformance, SamplesThatAreAllAlikeHaveNone) {
     Experiment e = test::small_scene();
     e.disks.clear();
     const Scene scene(e);
     ProgressMonitor monitor;
-    const Film film = estimate_films(scene, "light-area", {100}, 1, "", monitor)[0];  // nothing to aim at: every X is 0
+    const Film film = estimate_films(scene, "light-area", {100}, 1, "", monitor)[0];  // no light: every X is 0
     for (const float v : film.var) EXPECT_EQ(v, 0);
 }
 
 }  // namespace
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render

@@ -1,5 +1,5 @@
-// Furnaces are grouped by arithmetic and bits of u, one panel each; what lies above the axis is held at its top. Lost
-// light stands beside (1 - cos theta_R)/2 with bars of two standard errors, rejections with their intervals.
+// Furnaces are grouped by arithmetic and bits of u, one panel each; values above the axis are drawn at its top. Lost
+// light is compared with (1 - cos theta_R)/2 with bars of two standard errors, rejections with their intervals.
 #include "report/evidence_charts.h"
 
 #include "report/wording.h"
@@ -16,11 +16,11 @@
 namespace crescent::inline report {
 namespace {
 
-/// What one panel shows: an arithmetic and a resolution of u.
+/// One panel: an arithmetic and a resolution of u.
 struct Series {
     std::string arithmetic;
     int u_bits = 0;
-    std::vector<const FurnaceQuantiles*> rungs;  // by n
+    std::vector<const FurnaceQuantiles*> sample_counts;  // by n
     std::string name() const { return fmt::format("{}, u of {} bits", arithmetic, u_bits); }
 };
 
@@ -30,10 +30,11 @@ std::vector<Series> series_of(const Evidence& evidence) {
         auto found = std::find_if(all.begin(), all.end(),
             [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
         if (found == all.end()) found = all.insert(all.end(), {q.arithmetic, q.u_bits, {}});
-        found->rungs.push_back(&q);
+        found->sample_counts.push_back(&q);
     }
     for (Series& s : all)
-        std::sort(s.rungs.begin(), s.rungs.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
+        std::sort(
+            s.sample_counts.begin(), s.sample_counts.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
     return all;
 }
 
@@ -52,7 +53,7 @@ std::optional<double> cap_of(const Evidence& evidence, int bits) {
 
 std::vector<double> column(const Series& s, double FurnaceQuantiles::* field) {
     std::vector<double> out;
-    for (const FurnaceQuantiles* q : s.rungs) out.push_back(q->*field);
+    for (const FurnaceQuantiles* q : s.sample_counts) out.push_back(q->*field);
     return out;
 }
 
@@ -66,7 +67,7 @@ Axis y_axis(const Evidence& evidence) {
 std::string panel(const Page& page, const Series& s) {
     const Evidence& evidence = page.in.evidence;
     std::vector<double> n;
-    for (const FurnaceQuantiles* q : s.rungs) n.push_back(static_cast<double>(q->n));
+    for (const FurnaceQuantiles* q : s.sample_counts) n.push_back(static_cast<double>(q->n));
     const Axis y = y_axis(evidence);
     const auto held = [&](std::vector<double> v) {
         for (double& x : v) x = std::min(x, y.high);
@@ -76,7 +77,7 @@ std::string panel(const Page& page, const Series& s) {
     chart.band(n, held(column(s, &FurnaceQuantiles::q05)), held(column(s, &FurnaceQuantiles::q95)), "c1 faint");
     chart.band(n, held(column(s, &FurnaceQuantiles::q25)), held(column(s, &FurnaceQuantiles::q75)), "c1");
     std::vector<Point> medians;
-    for (const FurnaceQuantiles* q : s.rungs) medians.push_back({static_cast<double>(q->n), q->median});
+    for (const FurnaceQuantiles* q : s.sample_counts) medians.push_back({static_cast<double>(q->n), q->median});
     chart.line(medians, "c1");
     chart.dots(medians, "c1");
     chart.rule(evidence.expected, "strong", "expected");
@@ -88,11 +89,11 @@ std::string panel(const Page& page, const Series& s) {
         "</div>";
 }
 
-/// The rung of the series nearest to n, on a log scale.
-const FurnaceQuantiles* nearest_rung(const Series& s, double n) {
+/// Returns the sample count of the series nearest to n, on a log scale.
+const FurnaceQuantiles* nearest_sample_count(const Series& s, double n) {
     const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(math::log(static_cast<double>(q->n) / n)); };
     return *std::min_element(
-        s.rungs.begin(), s.rungs.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
+        s.sample_counts.begin(), s.sample_counts.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
 }
 
 std::string share_text(const FalseRejection& r) {
@@ -110,18 +111,19 @@ std::string furnace_charts(const Page& page) {
 std::string furnace_table(const Evidence& evidence) {
     const auto all = series_of(evidence);
     std::vector<html::Cell> head{{"<i>N</i>", true}};
-    std::set<std::uint64_t> rungs;
+    std::set<std::uint64_t> sample_counts;
     for (const Series& s : all) {
         head.push_back({escape(s.name()), true});
-        for (const FurnaceQuantiles* q : s.rungs) rungs.insert(q->n);
+        for (const FurnaceQuantiles* q : s.sample_counts) sample_counts.insert(q->n);
     }
     html::Table table(
         fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)), head);
-    for (const std::uint64_t n : rungs) {
+    for (const std::uint64_t n : sample_counts) {
         std::vector<html::Cell> row{{std::to_string(n), true, true}};
         for (const Series& s : all) {
-            const auto found = std::find_if(s.rungs.begin(), s.rungs.end(), [&](const auto* q) { return q->n == n; });
-            row.push_back(html::figure(found == s.rungs.end() ? "" : figures((*found)->median)));
+            const auto found =
+                std::find_if(s.sample_counts.begin(), s.sample_counts.end(), [&](const auto* q) { return q->n == n; });
+            row.push_back(html::figure(found == s.sample_counts.end() ? "" : figures((*found)->median)));
         }
         table.row(row);
     }
@@ -139,8 +141,8 @@ std::string furnace_sentence(const Page& page) {
     });
     if (coarse == fine || evidence.expected <= 0) return {};
     const FurnaceResult* run = combined_furnace(page);
-    const double n = run ? static_cast<double>(run->n) : static_cast<double>(fine->rungs.front()->n);
-    const FurnaceQuantiles *low = nearest_rung(*coarse, n), *high = nearest_rung(*fine, n);
+    const double n = run ? static_cast<double>(run->n) : static_cast<double>(fine->sample_counts.front()->n);
+    const FurnaceQuantiles *low = nearest_sample_count(*coarse, n), *high = nearest_sample_count(*fine, n);
     const double short_low = 1 - low->median / evidence.expected, short_high = 1 - high->median / evidence.expected;
     std::string out = fmt::format(
         "At <i>N</i> = {} half of all furnaces read below {} in {} and below {} in {}, where {} is due: {} and {} "

@@ -1,5 +1,5 @@
-// Charts and sentences of the evidence against three explanations of the note; the numbers come from
-// studies/evidence.h.
+// Charts and sentences for the tests of three explanations of the article; the numbers come from
+// metrics/article_checks.h.
 #pragma once
 
 #include <string>
@@ -8,18 +8,19 @@
 
 namespace crescent::inline report {
 
-/// Quantiles of the combined Phong furnace against N, one panel per arithmetic and resolution of u.
+/// Draws quantiles of the combined Phong furnace against N, one panel per arithmetic and resolution of u.
 std::string furnace_charts(const Page& page);
 /// Medians by N, one column per panel.
 std::string furnace_table(const Evidence& evidence);
-/// Whether double precision falls short as single precision does, near the N of the furnace that was run.
+/// Returns whether double precision is too low in the same way as single precision, near the N of the furnace that was
+/// run.
 std::string furnace_sentence(const Page& page);
 
-/// The diffuse part that the Phong arm cannot reach, against the tilt: <svg>.
+/// Draws the diffuse part that the Phong sampler cannot reach, against the tilt: <svg>.
 std::string lost_chart(const Evidence& evidence);
 std::string lost_sentence(const Evidence& evidence);
 
-/// How often a t-test rejects a right estimate, against N: <svg>.
+/// Draws how often a t-test rejects a correct estimate, against N: <svg>.
 std::string rejection_chart(const Evidence& evidence);
 std::string rejection_table(const Evidence& evidence);
 std::string rejection_sentence(const Evidence& evidence);

@@ -1,4 +1,4 @@
-// metrics.json: every number of a run, as docs/metrics.schema.json describes it. Units are those of meters/metrics.h.
+// metrics.json: every number of a run, as docs/metrics.schema.json describes it. Units are those of metrics/metrics.h.
 // The same run gives the same bytes: keys in a fixed order, doubles in the shortest form that reads back the same.
 #include <algorithm>
 #include <array>
@@ -24,8 +24,8 @@ Json tail_json(const Tail& tail) {
 Json json_of(double x) { return number(x); }
 Json json_of(std::uint64_t count) { return count; }
 
-/// Every meter of a region or of the frame.
-template <class Of> void add_meters(Json& out, const Of& of) {
+/// Adds every metric of a region or of the frame.
+template <class Of> void add_metrics(Json& out, const Of& of) {
     for_each_metric(
         of, [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
 }
@@ -34,13 +34,13 @@ Json run_json(const RunMetrics& run) {
     Json regions = Json::object();
     for (const RegionMetrics& r : run.regions) {
         Json& at = regions[r.region] = Json::object();
-        add_meters(at, r);
+        add_metrics(at, r);
         at["pixels"] = r.pixels;
         if (r.tail) at["tail"] = tail_json(*r.tail);
     }
     Json out = {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
         {"regions", std::move(regions)}};
-    add_meters(out, run);
+    add_metrics(out, run);
     return out;
 }
 
@@ -51,7 +51,7 @@ Json interval_json(const Band& band) {
 }
 
 Json band_json(const SeedSpread& b) {
-    return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"meter", b.meter},
+    return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"meter", b.metric},
         {"published", optional_number(b.published)}, {"measured", number(b.measured)},
         {"median", number(b.band.median)}, {"q05", number(b.band.q05)}, {"q95", number(b.band.q95)},
         {"seeds", b.band.seeds}, {"interval", interval_json(b.band)},
@@ -120,19 +120,19 @@ Json evidence_json(const Evidence& e) {
         {"rejections", list(e.rejections, rejection_json)}};
 }
 
-/// As a file of published figures has them.
+/// In the form of a file of published values.
 Json published_json(const Published& p) {
     Json out = {{"source", p.source}, {"runs", Json::array()}, {"furnaces", Json::object()}};
     if (p.seed) out["seed"] = *p.seed;
     for (const auto& [key, value] : p.runs) {
-        const auto& [arm, n, s, meter] = key;
-        out["runs"].push_back({{"arm", arm}, {"n", n}, {"s", s}, {meter, value}});
+        const auto& [arm, n, s, metric] = key;
+        out["runs"].push_back({{"arm", arm}, {"n", n}, {"s", s}, {metric, value}});
     }
     for (const auto& [name, value] : p.furnaces) out["furnaces"][name] = value;
     return out;
 }
 
-/// The experiment in full, so that parts of its seeds can be joined without its files.
+/// Returns the experiment in full, so that parts of its seeds can be joined without its files.
 Json experiment_json(const ReportInputs& in) {
     Json out = {{"file", in.provenance.experiment_file}, {"hash", in.provenance.experiment_hash}};
     if (in.provenance.experiment_text.empty()) return out;
@@ -166,12 +166,12 @@ std::string ranges_text(const std::vector<int>& ascending) {
 Json provenance_json(const Provenance& p) {
     Json out = {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
         {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}}, {"seeds", p.seeds},
-        {"instrument", p.instrument}, {"command", p.command}};
+        {"instrument", p.backend}, {"command", p.command}};
     if (p.series > 0 && !p.places.empty()) {
         out["series"] = {{"first", p.places.front()}, {"last", p.places.back()}, {"of", p.series}};
         if (const std::vector<int> missing = p.missing(); !missing.empty()) out["series"]["missing"] = missing;
     }
-    for (const auto& [what, said] : p.instrument_details) out["instrument_details"][what] = said;
+    for (const auto& [what, message] : p.backend_details) out["instrument_details"][what] = message;
     return out;
 }
 
@@ -188,9 +188,9 @@ std::string metrics_json(const ReportInputs& in) {
     return text(out);
 }
 
-// ---- metrics.csv: every run in long form, one number a row, in RFC 4180 (CRLF, quotes doubled). The region is empty
-// for the meters of the whole frame; a column follows for each key that --set gave, named as --set named it, `set.seed`
-// and `set.n` for the two keys that are columns already. Units are those of meters/metrics.h.
+// ---- metrics.csv: every run in long form, one number per row, in RFC 4180 (CRLF, quotes doubled). The region is empty
+// for the metrics of the whole frame; a column follows for each key that --set gave, with the name given to --set,
+// `set.seed` and `set.n` for the two keys that are columns already. Units are those of metrics/metrics.h.
 
 namespace {
 
@@ -201,12 +201,12 @@ struct Rows {
     std::string run;  // "arm,n,s,seed,", the same for all rows of a run
     std::string set;  // ",64": a value for each key that --set gave, the same for all rows
 
-    void add(std::string_view meter, std::string_view region, const std::string& value) {
-        out += run + csv_field(meter) + "," + csv_field(region) + "," + value + set + "\r\n";
+    void add(std::string_view metric, std::string_view region, const std::string& value) {
+        out += run + csv_field(metric) + "," + csv_field(region) + "," + value + set + "\r\n";
     }
-    void add(std::string_view meter, std::string_view region, double value) { add(meter, region, shortest(value)); }
-    void add(std::string_view meter, std::string_view region, std::uint64_t value) {
-        add(meter, region, std::to_string(value));
+    void add(std::string_view metric, std::string_view region, double value) { add(metric, region, shortest(value)); }
+    void add(std::string_view metric, std::string_view region, std::uint64_t value) {
+        add(metric, region, std::to_string(value));
     }
 };
 
@@ -219,8 +219,8 @@ void add_region(Rows& rows, const RegionMetrics& r) {
     rows.add("tail_exceedances", r.region, std::uint64_t{r.tail->exceedances});
 }
 
-/// What --set gave, key by key in the order of first mention; of a key that was given twice the last value, which
-/// holds. The number of seeds is left out: each row is of one seed.
+/// Returns what --set gave, key by key in the order of first mention, with the last value of each key. The number of
+/// seeds is omitted, because each row is of one seed.
 std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& experiment) {
     std::vector<std::pair<std::string, std::string>> out;
     for (const std::string& text : experiment.overrides) {
@@ -234,7 +234,7 @@ std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& 
     return out;
 }
 
-/// A key's column: the key as it was given, but for one that would be the second column of its name.
+/// Returns a key's column: the key as given, unless it would be the second column of its name.
 std::string column_of(const std::string& path) {
     return std::ranges::find(fixed_columns, path) == fixed_columns.end() ? path : "set." + path;
 }
@@ -258,7 +258,8 @@ std::string metrics_csv(const ReportInputs& in) {
     return rows.out;
 }
 
-// ---- junit.xml: one test case an assertion, for build servers. No times and no dates: equal runs give equal bytes.
+// ---- junit.xml: one test case per assertion, for build servers; no times and no dates, so that equal runs give equal
+// bytes.
 
 namespace {
 
@@ -285,7 +286,7 @@ std::string junit_xml(const ReportInputs& in) {
     return junit_text(suite);
 }
 
-// ---- timing.json: what varies between equal runs (seconds, threads, instruction set, date), apart from the numbers.
+// ---- timing.json: what varies between equal runs (seconds, threads, instruction set, date).
 
 namespace {
 

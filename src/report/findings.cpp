@@ -1,5 +1,5 @@
-// Look-ups by arm, N and s, s and seed the experiment's own where none are given. Bands of n seeds of two equal arms
-// lie apart by chance with probability 2 / (2n choose n), at most 1: every choice of n out of 2n is as likely.
+// Look-ups by arm, N and s; the defaults of s and seed are the experiment's own. Bands of n seeds of two equal arms are
+// disjoint with probability 2 / (2n choose n), at most 1, because every choice of n out of 2n is equally likely.
 #include "report/findings.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ RatioOfErrors compare(const std::string& a, double value_a, const std::string& b
 }
 
 double chance_of_parted_bands(int seeds) {
-    double chance = 2;  // 2 / (2n choose n): which of 2n values are one arm's is drawn at random
+    double chance = 2;  // 2 / (2n choose n): each choice of n out of 2n values is equally likely
     for (int k = 1; k <= seeds; ++k) chance *= static_cast<double>(k) / (seeds + k);
     return std::min(chance, 1.0);
 }
@@ -54,24 +54,24 @@ const RunMetrics* Findings::run(const std::string& arm, std::uint64_t n, std::op
 }
 
 const SeedSpread* Findings::band(
-    const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s) const {
+    const std::string& arm, std::uint64_t n, const std::string& metric, std::optional<double> s) const {
     const double exponent = s.value_or(this->s());
     for (const SeedSpread& b : in_.metrics.bands)
-        if (b.meter == meter && b.key.arm == arm && b.key.n == n && b.key.s == exponent) return &b;
+        if (b.metric == metric && b.key.arm == arm && b.key.n == n && b.key.s == exponent) return &b;
     return nullptr;
 }
 
 std::optional<double> Findings::rmse(const std::string& arm, std::uint64_t n, const std::string& region) const {
     const RunMetrics* found = run(arm, n);
-    const RegionMetrics* meter = found ? found->region(region) : nullptr;
-    return meter ? std::optional(meter->rmse) : std::nullopt;
+    const RegionMetrics* metric = found ? found->region(region) : nullptr;
+    return metric ? std::optional(metric->rmse) : std::nullopt;
 }
 
 std::optional<Tail> Findings::tail(const SeedSpread& band) const {
-    const auto dot = band.meter.find('.');
+    const auto dot = band.metric.find('.');
     const RunMetrics* found = dot == std::string::npos ? nullptr : run(band.key.arm, band.key.n, band.key.s);
-    const RegionMetrics* meter = found ? found->region(band.meter.substr(dot + 1)) : nullptr;
-    return meter ? meter->tail : std::nullopt;
+    const RegionMetrics* metric = found ? found->region(band.metric.substr(dot + 1)) : nullptr;
+    return metric ? metric->tail : std::nullopt;
 }
 
 SeedCount Findings::seeds_above(
@@ -116,10 +116,10 @@ std::uint64_t Findings::bad_samples() const {
     return bad;
 }
 
-std::vector<std::string> headline_meters(const Experiment& experiment) {
+std::vector<std::string> headline_metrics(const Experiment& experiment) {
     std::vector<std::string> all;
-    for (const MeterName& meter : meter_names(experiment))
-        if (meter.info->in_tables) all.push_back(meter.name);
+    for (const MetricName& metric : metric_names(experiment))
+        if (metric.info->in_tables) all.push_back(metric.name);
     return all;
 }
 

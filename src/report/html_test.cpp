@@ -1,5 +1,4 @@
-// The page: well-formed whatever it is given, sections that need data they do not have left out, sentences that follow
-// the numbers.
+// The page: well-formed for any input, without sections that lack data, and with sentences that follow the numbers.
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -34,7 +33,7 @@ TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     for (RunMetrics& run : s.metrics.runs)
         run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
     for (SeedSpread& b : s.metrics.bands)
-        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
+        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.metric = b.metric == "rmse.H" ? "rmse." + bad : b.metric;
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
     EXPECT_EQ(xml_error(s.html()), "");
     EXPECT_THAT(s.html(), Not(HasSubstr("<script")));
@@ -113,7 +112,7 @@ TEST(ReportHtml, SentencesTurnRoundWithTheOrder) {
     EXPECT_FALSE(has_section(s.html(), "failure-a")) << "a heading claims what was not measured";
 }
 
-TEST(ReportHtml, TellsOfTwoTechniquesAndOfLightThatAnArmCannotReach) {
+TEST(ReportHtml, StatesTwoTechniquesAndUnreachableLight) {
     Sample s;
     EXPECT_THAT(s.html(), Not(HasSubstr("counts pairs")));
     EXPECT_THAT(s.html(), Not(HasSubstr("is biased in this scene")));
@@ -132,7 +131,7 @@ TEST(ReportHtml, NamesTheExponentWhereItSaysSomething) {
     EXPECT_THAT(s.html(), Not(HasSubstr("cosine, <i>N</i> = 64, <i>s</i>")));
 }
 
-TEST(ReportHtml, WarnsOfASurfaceThatReflectsMoreThanItReceives) {
+TEST(ReportHtml, WarnsOfASurfaceThatCreatesEnergy) {
     Sample s;
     EXPECT_THAT(s.html(), Not(HasSubstr("reflects more than it receives")));
     s.experiment.shapes[0].material.rho_d = {0.2, 0.95, 0.2};
@@ -201,7 +200,7 @@ TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
     for (const char* label : {"Phong", "GGX"}) EXPECT_NE(html.find(label, lobes), std::string::npos) << label;
 }
 
-TEST(ReportHtml, MarksAssertionsThatCannotFailAndThoseThatWereSkipped) {
+TEST(ReportHtml, MarksUnfailingAndSkippedAssertions) {
     Sample s;
     s.metrics.assertions[0].cannot_fail = true;
     s.metrics.assertions[1].pass = false, s.metrics.assertions[1].skipped = "no plates were drawn";
@@ -218,7 +217,7 @@ TEST(ReportHtml, OverlappingBandsAreNotRanked) {
     EXPECT_THAT(s.html(), HasSubstr("bands overlap, so the two are not ranked"));
 }
 
-// Of six values of equal arms, three and three, all of one are above all of the other's in one run of ten.
+// With six values of equal arms, three each, all values of one arm are above all of the other's in one run of ten.
 TEST(ReportHtml, ArmsOfThreeSeedsAreNotRanked) {
     EXPECT_THAT(Sample().html(), HasSubstr("With 3 seeds the bands of equal arms lie apart in 10 % of all runs"));
     EXPECT_DOUBLE_EQ(chance_of_parted_bands(3), 0.1);
@@ -247,7 +246,7 @@ TEST(ReportHtml, NumbersThatAreNoneDoNotBreakThePage) {
     EXPECT_THAT(html, Not(HasSubstr("d=\"Mnan")));
 }
 
-TEST(ReportHtml, KeepsUnderItsWeightByLinkingTheLargestPlates) {
+TEST(ReportHtml, LinksTheLargestPlatesToStaySmall) {
     Sample s;
     s.plates["hero"] = std::vector<unsigned char>(12'000'000);
     s.plates["small"] = {1, 2, 3};

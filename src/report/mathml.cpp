@@ -1,5 +1,5 @@
-// Each equation is one expression of the header's pieces; the terms that several share, such as f_r, L_i and n.omega,
-// are functions of their own.
+// Each equation is one expression of the header's pieces; terms used by several, such as f_r, L_i and n.omega, are
+// functions of their own.
 #include "report/mathml.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Presentation MathML (MathML Core) in small pieces, as browsers set it without a library. Letters as in Walter et al.
-// and the usual rendering texts: omega for directions, n for the normal, R for the mirror direction of omega_o.
+// Presentation MathML (MathML Core) in small pieces, which browsers render without a library. Letters as in Walter et
+// al. and the usual rendering texts: omega for directions, n for the normal, R for the mirror direction of omega_o.
 #pragma once
 
 #include <initializer_list>
@@ -10,7 +10,7 @@ namespace crescent::mathml {
 
 using M = std::string;
 
-/// <tag>inside</tag>.
+/// Returns <tag>inside</tag>.
 inline M wrap(std::string_view tag, const M& inside) {
     M out;
     for (const std::string_view part : {std::string_view("<"), tag, std::string_view(">"), std::string_view(inside),
@@ -42,10 +42,10 @@ inline M abs(std::initializer_list<M> parts) {
     return row({"<mo form=\"prefix\" stretchy=\"false\">|</mo>", row(parts),
         "<mo form=\"postfix\" stretchy=\"false\">|</mo>"});
 }
-/// Brackets that grow with what they hold.
+/// Brackets that grow with their content.
 inline M paren(std::initializer_list<M> parts) { return row({mo("("), row(parts), mo(")")}); }
 
-/// In a line of text, and on a line of its own (with words for those who do not see it).
+/// In a line of text, and on a line of its own (with words for screen readers).
 M in_line(const M& inside);
 M in_cell(const M& inside);  // in a table: fractions at full size
 M display(const M& inside, std::string_view alt);

@@ -1,5 +1,5 @@
-// metrics.json -> what it was written from. Doubles are written in the shortest form that reads back the same, so every
-// number is the one that was measured. The experiment is in the provenance as text; its hash shows that it is whole.
+// Reads a metrics.json back into its inputs. Doubles are written in the shortest form that reads back the same, so
+// every number is the measured one. The experiment is in the provenance as text; its hash verifies it.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +14,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// What number() wrote.
+/// Parses the output of number().
 double number_of(const Json& json) {
     if (!json.is_string()) return json.get<double>();
     for (const double x : {HUGE_VAL, -HUGE_VAL, std::nan("")})
@@ -51,8 +51,8 @@ RunMetrics run_of(const Json& json) {
     for (const auto& [name, region] : json.at("regions").items()) {
         RegionMetrics m;
         m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
-        const auto meters = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
-        meters(region, m);
+        const auto metrics = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
+        metrics(region, m);
         run.regions.push_back(std::move(m));
     }
 #undef CRESCENT_READ
@@ -110,7 +110,7 @@ Evidence evidence_of(const Json& json) {
 Provenance provenance_of(const Json& json) {
     Provenance p;
     p.version = json.at("version").get<std::string>(), p.commit = json.at("commit").get<std::string>();
-    p.compiler = json.at("compiler").get<std::string>(), p.instrument = json.at("instrument").get<std::string>();
+    p.compiler = json.at("compiler").get<std::string>(), p.backend = json.at("instrument").get<std::string>();
     p.command = json.at("command").get<std::string>();
     const Json& experiment = json.at("experiment");
     p.experiment_file = experiment.at("file").get<std::string>();
@@ -122,8 +122,8 @@ Provenance provenance_of(const Json& json) {
     for (int place = 1; place <= p.series; ++place)
         if (std::ranges::find(missing, place) == missing.end()) p.places.push_back(place);
     if (json.contains("instrument_details"))
-        for (const auto& [what, said] : json.at("instrument_details").items())
-            p.instrument_details.emplace_back(what, said.get<std::string>());
+        for (const auto& [what, message] : json.at("instrument_details").items())
+            p.backend_details.emplace_back(what, message.get<std::string>());
     return p;
 }
 

@@ -1,5 +1,4 @@
-// metrics.json, metrics.csv, junit.xml and timing.json: what stands in them, and how they hold numbers and names that
-// are not ordinary.
+// The contents of metrics.json, metrics.csv, junit.xml and timing.json, including unusual numbers and names.
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -19,8 +18,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::nume
 
 nlohmann::json parsed(const Sample& s) { return nlohmann::json::parse(metrics_json(s.inputs())); }
 
-/// Kept for tests/system/schema.sh, which holds them against docs/metrics.schema.json: what fits it, and what breaks
-/// it.
+/// Kept for tests/system/schema.sh, which checks them against docs/metrics.schema.json: valid files, and invalid ones.
 void keep(const std::string& name, const nlohmann::json& json, bool fits) {
     if (const char* folder = std::getenv("CRESCENT_METRICS_SAMPLES"))
         std::ofstream(std::string(folder) + (fits ? "/fits-" : "/breaks-") + name + ".json") << json;
@@ -99,10 +97,10 @@ TEST(MetricsJson, HasNoRunsWithNothingMeasured) {
     keep("nothing-measured", parsed(s), true);
 }
 
-TEST(MetricsJson, AnInstrumentsOwnWordsStandInTheProvenanceAndTheCpuHasNone) {
+TEST(MetricsJson, ProvenanceHasTheBackEndDetails) {
     Sample s;
     EXPECT_FALSE(parsed(s)["provenance"].contains("instrument_details"));
-    s.provenance.instrument_details = {{"GL_VERSION", "4.5 (Core Profile)"}, {"context", "OSMesa"}};
+    s.provenance.backend_details = {{"GL_VERSION", "4.5 (Core Profile)"}, {"context", "OSMesa"}};
     EXPECT_EQ(parsed(s)["provenance"]["instrument_details"]["GL_VERSION"], "4.5 (Core Profile)");
     keep("instrument", parsed(s), true);
     EXPECT_NE(s.html().find("OSMesa"), std::string::npos);
@@ -159,7 +157,7 @@ TEST(MetricsCsv, QuotesNamesAsRfc4180Says) {
     EXPECT_NE(csv.find(",tail_k,S,0.1\r\n"), std::string::npos);
 }
 
-TEST(MetricsCsv, HasAColumnForEachKeyThatWasSetAndNoTwoOfOneName) {
+TEST(MetricsCsv, HasOneUniqueColumnForEachSetKey) {
     Sample s;
     s.metrics.runs.resize(1);
     s.experiment.overrides = {"seed=9", "n=64", "fill.radiance=[1, 1, 1]", "exposure=2", "seeds=3", "exposure=4"};

@@ -1,5 +1,6 @@
-// Plates go into the page as base64; where all of them would take more than 14 MB the largest are linked instead, one
-// by one. Figures are numbered as sections ask for them. Meters have the labels of the table of meters.
+// Plates are embedded in the page as base64; if all of them would take more than 14 MB, the largest are linked instead,
+// one by one. Figures are numbered in the order in which sections use them. Metrics have the labels of the table of
+// metrics.
 #include "report/page.h"
 
 #include <algorithm>
@@ -13,9 +14,9 @@
 namespace crescent::inline report {
 namespace {
 
-constexpr std::size_t page_limit = 14'000'000;  // bytes of base64 that may go into the page
+constexpr std::size_t page_limit = 14'000'000;  // bytes of base64 allowed in the page
 
-/// Letters, digits and hyphens of a name: what an id may hold.
+/// Returns the letters, digits and hyphens of a name, which an id may contain.
 std::string slug(const std::string& name) {
     std::string out;
     for (const char c : name) out += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
@@ -78,7 +79,7 @@ std::string Figures::plate(const std::string& name, const PlatePlan* plan) {
 std::string Figures::figure(
     const std::string& id, const std::string& picture, const std::string& caption, const std::string& made) {
     ++count_;
-    const char* narrow = picture.starts_with("<svg") ? " class=\"narrow\"" : "";  // one chart alone fits the column
+    const char* narrow = picture.starts_with("<svg") ? " class=\"narrow\"" : "";  // a single chart fits the column
     return fmt::format(
         "<figure id=\"{}\"{}>\n{}\n<figcaption><b>Figure {}.</b> {}\n<span class=\"made\"><code>{}</code> → "
         "<code>{}</code></span></figcaption>\n</figure>\n",
@@ -91,10 +92,10 @@ std::string Page::colour(const std::string& arm) const {
     return fmt::format("c{}", (found - arms.begin()) % 6);
 }
 
-std::string meter_html(const std::string& meter) {
-    const auto dot = meter.find('.');
-    const std::string kind = meter.substr(0, dot);
-    const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(meter.substr(dot + 1)) + "</sub>";
+std::string metric_html(const std::string& metric) {
+    const auto dot = metric.find('.');
+    const std::string kind = metric.substr(0, dot);
+    const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(metric.substr(dot + 1)) + "</sub>";
     std::string label = escape(kind);
     const auto look = [&](std::string_view name, const MetricInfo& info, auto) {
         if (name == kind && !info.label.empty()) label = info.label;
@@ -105,10 +106,10 @@ std::string meter_html(const std::string& meter) {
     return label + region;
 }
 
-std::string meter_text(const std::string& meter) {
-    const auto dot = meter.find('.');
-    if (dot == std::string::npos) return meter;
-    return (meter.substr(0, dot) == "rmse" ? "RMSE" : meter.substr(0, dot)) + ", region " + meter.substr(dot + 1);
+std::string metric_text(const std::string& metric) {
+    const auto dot = metric.find('.');
+    if (dot == std::string::npos) return metric;
+    return (metric.substr(0, dot) == "rmse" ? "RMSE" : metric.substr(0, dot)) + ", region " + metric.substr(dot + 1);
 }
 
 std::string tail_html(const std::optional<Tail>& tail) {
@@ -116,18 +117,18 @@ std::string tail_html(const std::optional<Tail>& tail) {
     return fmt::format("{:.2f} ± {:.2f}", tail->k, tail->se);
 }
 
-std::string interval_html(const std::string& meter, const Band& band) {
+std::string interval_html(const std::string& metric, const Band& band) {
     if (band.heavy) return html::heavy_tail();
     if (band.seeds < 2) return "–";
-    return html::value(figures_of(meter, band.q05) + " … " + figures_of(meter, band.q95));
+    return html::value(figures_of(metric, band.q05) + " … " + figures_of(metric, band.q95));
 }
 
 std::string times(double ratio) {
     return std::isfinite(ratio) ? fmt::format("{:.{}f}", ratio, ratio < 10 ? 1 : 0) : "infinitely many";
 }
 
-// ---- report.html: the whole write-up in one file that opens offline. Prose and numbers come from the sections; here
-// is the order in which they are told, the head of the page and its contents.
+// ---- report.html: the whole report in one file that opens offline; this part has the order of the sections, the head
+// of the page and its contents.
 
 namespace {
 
@@ -150,7 +151,7 @@ std::string verdict(const std::vector<AssertionResult>& all) {
         all.size(), html::link("assertions", "which"));
 }
 
-/// What an arm about the normal and one about the mirror direction read in each region, in one sentence.
+/// Compares an arm about the normal and one about the mirror direction in each region, in one sentence.
 std::string story(const Page& page) {
     const ArmPair pair = arm_pair(page);
     if (!pair) return {};

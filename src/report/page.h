@@ -1,5 +1,5 @@
-// The page while it is written: the run it tells of, its figures and their numbers, and the sections in their order.
-// A section whose html is empty has nothing to say in this run and is left out, from the contents too.
+// The page being written: its run, its figures and their numbers, and the sections in their order. A section with empty
+// html is omitted, also from the contents.
 #pragma once
 
 #include <functional>
@@ -16,18 +16,18 @@
 
 namespace crescent::inline report {
 
-/// Numbers the figures, embeds plates, and says under each what it is and which command makes it.
+/// Numbers the figures, embeds plates, and writes under each what it is and the command that makes it.
 class Figures {
 public:
     explicit Figures(const ReportInputs& in);
 
-    /// Every plate of a kind that has not been shown yet; `only` may pick among them.
+    /// Returns every plate of a kind that has not been shown yet; `only` may select among them.
     std::string plates(PlateKind kind, const std::function<bool(const PlatePlan&)>& only = {});
-    /// Plates that no section asked for.
+    /// Returns the plates that no section has shown.
     std::string rest();
-    /// A chart drawn here from the numbers; `source` names the part of metrics.json it shows.
+    /// Adds a chart drawn from the numbers; `source` names the part of metrics.json it shows.
     std::string chart(const std::string& svg, const std::string& caption_html, const std::string& source);
-    /// Plates that would make the page too heavy stay outside and are linked: their names.
+    /// Returns the names of plates that are linked because the page would be too large.
     const std::set<std::string>& outside() const { return outside_; }
 
 private:
@@ -46,9 +46,9 @@ struct Page {
     Figures figures;
 
     explicit Page(const ReportInputs& inputs) : in(inputs), find(inputs), figures(inputs) {}
-    /// What the first seed is called: "published" where figures were published for it.
+    /// Returns the name of the first seed: "published" if values were published for it.
     std::string seed_name() const { return in.metrics.published_seed == in.experiment.seed ? "published" : "first"; }
-    /// Class of an arm's colour, the same in every chart.
+    /// Returns the class of an arm's colour, the same in every chart.
     std::string colour(const std::string& arm) const;
 };
 
@@ -57,7 +57,7 @@ PageSection question(Page& page);
 PageSection estimator_equation(Page& page);
 PageSection scene(Page& page);
 PageSection densities(Page& page);
-// What was measured.
+// Measurements.
 PageSection results(Page& page);
 PageSection failure_a(Page& page);
 PageSection failure_b(Page& page);
@@ -66,7 +66,7 @@ PageSection exponent(Page& page);
 PageSection furnaces(Page& page);
 PageSection published(Page& page);
 PageSection reference(Page& page);
-// What it means.
+// Interpretation.
 PageSection where_wrong(Page& page);
 PageSection disagreements(Page& page);
 PageSection more_plates(Page& page);
@@ -77,26 +77,27 @@ PageSection provenance(Page& page);
 
 // Parts that several sections share.
 
-/// "RMSE_H" with a real subscript, for "rmse.H"; and so on for every meter.
-std::string meter_html(const std::string& meter);
-/// The same without markup, for the labels of charts: "RMSE, region H".
-std::string meter_text(const std::string& meter);
-/// "k = 0.71 ± 0.02", or an en dash.
+/// Returns "RMSE_H" with a real subscript for "rmse.H", and so on for every metric.
+std::string metric_html(const std::string& metric);
+/// Returns the name without markup, for the labels of charts: "RMSE, region H".
+std::string metric_text(const std::string& metric);
+/// Returns "k = 0.71 ± 0.02", or an en dash.
 std::string tail_html(const std::optional<Tail>& tail);
-/// "7.218 … 8.277", or the words heavy tail; nothing from a single seed.
-std::string interval_html(const std::string& meter, const Band& band);
-/// Meters down, runs across: large what the first seed measured, small the median, its band and the tail index.
+/// Returns "7.218 … 8.277", or the words heavy tail; nothing for a single seed.
+std::string interval_html(const std::string& metric, const Band& band);
+/// Metrics are rows, runs are columns: the value of the first seed in large type, the median, its band and the tail
+/// index in small type.
 struct Column {
     std::string title_html, arm;
     std::uint64_t n = 0;
     double s = 0;
 };
-/// Rows are arms and rungs; each column a meter with its band.
-std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
-/// Which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
+/// Rows are arms and sample counts; each column a metric with its band.
+std::string metrics_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
+/// Returns which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
 std::string ordering_sentence(
     const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region);
-/// "3.1", "12": how many times.
+/// Returns "3.1", "12": a factor.
 std::string times(double ratio);
 
 }  // namespace crescent::inline report

@@ -1,4 +1,4 @@
-// Where an output came from, as the JSON files of a run state it.
+// The provenance of an output, as the JSON files of a run state it.
 #pragma once
 
 #include "output/format.h"
@@ -6,7 +6,7 @@
 
 namespace crescent::inline report {
 
-/// As metrics.json has it.
+/// As in metrics.json.
 Json provenance_json(const Provenance& provenance);
 
 }  // namespace crescent::inline report

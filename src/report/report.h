@@ -1,5 +1,5 @@
-// Numbers and plates -> metrics.json, metrics.csv, junit.xml, timing.json, report.html and the summary on the
-// terminal.
+// Makes metrics.json, metrics.csv, junit.xml, timing.json, report.html and the summary on the terminal from numbers and
+// plates.
 #pragma once
 
 #include <map>
@@ -12,23 +12,22 @@
 
 namespace crescent::inline report {
 
-/// Where an output came from; equal for equal runs.
+/// The origin of an output; equal for equal runs.
 struct Provenance {
-    std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
+    std::string version, commit, compiler, experiment_file, experiment_hash, backend, command;
     std::vector<std::uint32_t> seeds;
     std::vector<int> places;  // of these seeds in the experiment's series, from 1
     int series = 0;           // how many seeds the series has
-    std::vector<std::pair<std::string, std::string>>
-        instrument_details{};       // what a driver says of itself; none: the CPU
+    std::vector<std::pair<std::string, std::string>> backend_details{};  // what a driver reports; none: the CPU
     std::string experiment_text{};  // canonical_text() of the experiment with all of its seeds
 
-    /// The places of the series that are not among `places`.
+    /// Returns the places of the series that are not among `places`.
     std::vector<int> missing() const;
 };
-/// {1, 2, 3, 7} -> "1 to 3, 7".
+/// Formats {1, 2, 3, 7} as "1 to 3, 7".
 std::string ranges_text(const std::vector<int>& ascending);
 
-/// What varies from run to run; stands apart in timing.json.
+/// Values that vary from run to run, kept in timing.json.
 struct ArmTiming {
     std::string arm;
     std::uint64_t n = 0;
@@ -36,7 +35,7 @@ struct ArmTiming {
     std::uint64_t samples = 0;
     double seconds = 0;
 };
-/// What varies from run to run; timing.json holds it. Seconds of wall-clock time.
+/// Values that vary from run to run; timing.json holds them. Seconds of wall-clock time.
 struct Timing {
     double estimating_s = 0, total_s = 0;
     int threads = 0;
@@ -56,18 +55,18 @@ struct OutputParts {
 
 using Plates = std::map<std::string, std::vector<unsigned char>>;  // name -> PNG
 
-/// What a report is written from; all must outlive the call.
+/// The inputs of a report; all must outlive the call.
 struct ReportInputs {
     const Experiment& experiment;
     const Metrics& metrics;
-    const Evidence& evidence;  // "Where the note is wrong"
+    const Evidence& evidence;  // "Where the article is wrong"
     const Provenance& provenance;
     const Plates& plates;
 };
 
-/// The files of a report, as bytes: the same inputs give the same ones.
+/// Returns the files of a report, as bytes: equal inputs give equal files.
 std::string metrics_json(const ReportInputs& in);
-/// What a metrics.json holds, every number as it was: metrics_json() of it gives the same bytes where bands, ladders
+/// The contents of a metrics.json, every number unchanged: metrics_json() of it gives the same bytes if bands, ladders
 /// and assertions, which follow from the rest, are computed from it.
 struct MetricsFile {
     Experiment experiment;  // with the seed and the number of seeds of this file
@@ -75,13 +74,13 @@ struct MetricsFile {
     Evidence evidence;
     Provenance provenance;
 };
-/// Throws InputError, with `name` for the file, where the text is something else or was changed.
+/// Throws InputError, with `name` for the file, if the text is something else or was changed.
 MetricsFile read_metrics(const std::string& text, const std::string& name);
 std::string metrics_csv(const ReportInputs& in);
 std::string junit_xml(const ReportInputs& in);
 std::string report_html(const ReportInputs& in);
 std::string timing_json(const Timing& timing, const Provenance& provenance);
-/// At most 80 columns: first whether all held, then the figures, then where to look.
+/// Returns at most 80 columns: first whether all assertions held, then the values, then the files.
 std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir,
     const OutputParts& parts = {}, bool colour = false);
 

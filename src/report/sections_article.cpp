@@ -1,4 +1,4 @@
-// Every meter over seeds: the published value, the measured one, the band, and where in it the published value falls.
+// Every metric over seeds: the published value, the measured one, the band, and the place of the published value in it.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -38,10 +38,10 @@ std::vector<html::Cell> band_row(const Page& page, const SeedSpread& b, bool pub
     Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
         b.published.has_value(), b.published.value_or(0)};
     std::vector<html::Cell> row{html::heading(run_html(b.key, page.in.experiment))};
-    if (published) row.push_back(html::figure(b.published ? figures_of(b.meter, *b.published) : ""));
-    row.push_back(html::figure(figures_of(b.meter, b.measured)));
-    row.push_back(html::figure(figures_of(b.meter, b.band.median)));
-    row.push_back({interval_html(b.meter, b.band), true});
+    if (published) row.push_back(html::figure(b.published ? figures_of(b.metric, *b.published) : ""));
+    row.push_back(html::figure(figures_of(b.metric, b.measured)));
+    row.push_back(html::figure(figures_of(b.metric, b.band.median)));
+    row.push_back({interval_html(b.metric, b.band), true});
     row.push_back(words(strip_svg(strip)));
     if (published) row.push_back({fallen(b), true});
     row.push_back(html::figure(tail_html(page.find.tail(b))));
@@ -57,16 +57,16 @@ std::vector<html::Cell> header(bool published) {
     return head;
 }
 
-/// Meters in the order they are told; whatever else was measured follows, without the whole frame.
-std::vector<std::string> meters_in_order(const Page& page) {
-    std::vector<std::string> order = headline_meters(page.in.experiment);
+/// Returns the metrics in a fixed order, then all others, without the whole frame.
+std::vector<std::string> metrics_in_order(const Page& page) {
+    std::vector<std::string> order = headline_metrics(page.in.experiment);
     std::set<std::string> seen(order.begin(), order.end());
     for (const SeedSpread& b : page.in.metrics.bands)
-        if (b.meter != "rmse_frame" && seen.insert(b.meter).second) order.push_back(b.meter);
+        if (b.metric != "rmse_frame" && seen.insert(b.metric).second) order.push_back(b.metric);
     return order;
 }
 
-/// What the command line changed of the experiment whose figures were published; "" where nothing.
+/// Returns what the command line changed of the experiment with published values; "" if nothing.
 std::string changes(const Experiment& e) {
     std::string list;
     for (const std::string& change : e.overrides)
@@ -83,11 +83,11 @@ PageSection published(Page& page) {
     const bool published = page.find.anything_published();
     const Experiment& e = page.in.experiment;
     html::Table table(published ? "Published beside measured" : "Every meter of every run", header(published));
-    for (const std::string& meter : meters_in_order(page)) {
+    for (const std::string& metric : metrics_in_order(page)) {
         bool first = true;
         for (const SeedSpread& b : page.in.metrics.bands) {
-            if (b.meter != meter) continue;
-            if (first) table.group(meter_html(meter));
+            if (b.metric != metric) continue;
+            if (first) table.group(metric_html(metric));
             first = false;
             table.row(band_row(page, b, published));
         }
@@ -102,8 +102,8 @@ PageSection published(Page& page) {
             page.figures.plates(PlateKind::meters)};
 }
 
-// ---- Three explanations of the note that do not hold, each with the measurement that says so. A point without its
-// measurement is left out.
+// ---- Three explanations of the article that do not hold, each with the measurement that shows it; points without a
+// measurement are omitted.
 
 namespace {
 
@@ -152,7 +152,7 @@ std::string intro(const Page& page) {
 
 std::string furnace_point(Page& page) {
     const Evidence& e = page.in.evidence;
-    if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert nothing falls short
+    if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert the furnace is not too low
     const double k = (e.s - 1) / (e.s + 1);
     const M weight = row({frac(row({mn("2"), sub(mi("ρ"), mi("d"))}), row({mi("s"), mo("+"), mn("1")})),
         sup(mi("u"), row({mo("−"), mi("k")}))});
@@ -197,15 +197,15 @@ std::string rejection_point(Page& page) {
 }  // namespace
 
 PageSection where_wrong(Page& page) {
-    std::string points = furnace_point(page);  // one after the other: figures are numbered as they come
+    std::string points = furnace_point(page);  // one after the other: figures are numbered in order
     points += lost_point(page);
     points += rejection_point(page);
     if (points.empty()) return {};
     return {"wrong", "Where the note is wrong", html::p(intro(page)) + points};
 }
 
-// ---- Published values that the bands of this run do not hold, and what stands between the two. The reasons that are
-// given are those for which this run has the numbers; docs/scene.md tells how the geometry was inferred.
+// ---- Published values outside the bands of this run, and possible reasons; only reasons for which this run has the
+// numbers are given. docs/scene.md explains how the geometry was inferred.
 
 namespace {
 
@@ -221,7 +221,7 @@ std::optional<double> relative(const SeedSpread* b) {
     return b->band.median / *b->published - 1;
 }
 
-/// "18 to 22 % below", for deviations of one sign; empty where the signs differ or nothing was published.
+/// Returns "18 to 22 % below", for deviations of one sign; empty if the signs differ or nothing was published.
 std::string spread(const std::vector<double>& all) {
     if (all.empty()) return {};
     const auto [low, high] = std::minmax_element(all.begin(), all.end());
@@ -233,7 +233,7 @@ std::string spread(const std::vector<double>& all) {
     return range + " % " + (*low < 0 ? "below" : "above");
 }
 
-/// The broad arms in the highlight, and why the geometry cannot simply be changed to meet them.
+/// The broad arms in the highlight, and why the geometry cannot simply be changed to match them.
 std::string highlight_remark(const Page& page, const std::string& region) {
     std::string parts;
     bool below = true;
@@ -245,7 +245,7 @@ std::string highlight_remark(const Page& page, const std::string& region) {
         const std::string range = spread(all);
         if (range.empty()) continue;
         below = below && all.front() < 0;
-        parts += (parts.empty() ? "" : ", ") + meter_html(kind + region) + " " + range;
+        parts += (parts.empty() ? "" : ", ") + metric_html(kind + region) + " " + range;
     }
     if (parts.empty()) return {};
     std::string out = "For the arms that do not follow the lobe, medians against the published values: " + parts + ".";
@@ -257,23 +257,23 @@ std::string highlight_remark(const Page& page, const std::string& region) {
         out += fmt::format(
             " Matching them would need a highlight of more pixels, i.e. a larger {}, which would raise {} at <i>s</i> "
             "= {} further; it is {} already. No single geometry matches both.",
-            escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
+            escape(control->shape), metric_html("y_mean"), shortest(s), signed_percent(*mean));
     return out;
 }
 
-/// Deviations of one meter over the exponent control.
-std::string exponent_remark(const Page& page, const std::string& meter) {
+/// Deviations of one metric over the exponent control.
+std::string exponent_remark(const Page& page, const std::string& metric) {
     const auto& control = page.in.experiment.exponent;
     if (!control) return {};
     std::string values;
     for (const double s : control->s)
-        if (const auto r = relative(page.find.band(control->arm, control->n, meter, s)))
+        if (const auto r = relative(page.find.band(control->arm, control->n, metric, s)))
             values += fmt::format("{}{} at <i>s</i> = {}", values.empty() ? "" : ", ", signed_percent(*r), shortest(s));
     if (values.empty()) return {};
-    return fmt::format("For {}, {}: {}.", escape(control->arm), meter_html(meter), values);
+    return fmt::format("For {}, {}: {}.", escape(control->arm), metric_html(metric), values);
 }
 
-/// Largest departure of log RMSE from the -1/2 law, as a fraction.
+/// Returns the largest deviation of log RMSE from a slope of -1/2, as a fraction.
 double departure(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse) {
     double mean = 0, worst = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
@@ -287,14 +287,14 @@ std::vector<double> ladder_of(const Page& page, const ArmPlan& arm, const std::s
     std::vector<double> out;
     for (const std::uint64_t n : arm.n) {
         const RunMetrics* run = page.find.run({arm.name, n, page.find.s(), seed});
-        const RegionMetrics* meter = run ? run->region(region) : nullptr;
-        if (!meter || !(meter->rmse > 0)) return {};
-        out.push_back(meter->rmse);
+        const RegionMetrics* metric = run ? run->region(region) : nullptr;
+        if (!metric || !(metric->rmse > 0)) return {};
+        out.push_back(metric->rmse);
     }
     return out;
 }
 
-/// A published ladder smoother than most seeds give, for an arm with a heavy tail.
+/// A published ladder that is smoother than that of most seeds, for an arm with a heavy tail.
 std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const std::string& region) {
     std::vector<double> published;
     for (const std::uint64_t n : narrow.n)
@@ -316,7 +316,7 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
         escape(narrow.name), escape(region), percent(limit, 2), of, close);
 }
 
-/// A published rise of RMSE with N, for an arm whose square has no expectation.
+/// A published rise of RMSE with N, for an arm whose square has no finite expectation.
 std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::string& region) {
     for (std::size_t i = 1; i < narrow.n.size(); ++i) {
         const SeedSpread *a = page.find.band(narrow.name, narrow.n[i - 1], "rmse." + region),
@@ -335,7 +335,8 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
         return fmt::format(
             "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it "
             "rises, in {} by that much. With an infinite variance behind it, it need not fall.",
-            narrow.n[i - 1], narrow.n[i], meter_html("rmse." + region), escape(narrow.name), factor, rose, of, so_much);
+            narrow.n[i - 1], narrow.n[i], metric_html("rmse." + region), escape(narrow.name), factor, rose, of,
+            so_much);
     }
     return {};
 }
@@ -351,8 +352,8 @@ std::string remarks(const Page& page) {
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
                 all.push_back(fmt::format(
-                    "For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
-        for (const char* meter : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, meter));
+                    "For {}, {}: {}.", escape(broad->name), metric_html("rmse." + cold), signed_percent(*r)));
+        for (const char* metric : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, metric));
         if (!hot.empty()) all.push_back(smooth_ladder_remark(page, *narrow, hot));
         if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));
     }
@@ -372,20 +373,20 @@ PageSection disagreements(Page& page) {
     html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
         {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
             {"Median against published", true}});
-    std::size_t judged = 0, outside = 0;
+    std::size_t checked = 0, outside = 0;
     for (const SeedSpread& b : page.in.metrics.bands) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
-        ++judged;
+        ++checked;
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
         ++outside;
         const auto off = relative(&b);
-        table.row({html::heading(meter_html(b.meter)), words(run_html(b.key, page.in.experiment)),
-            html::figure(figures_of(b.meter, *b.published)), html::figure(figures_of(b.meter, b.band.median)),
-            {interval_html(b.meter, b.band), true}, {off ? signed_percent(*off) : "–", true}});
+        table.row({html::heading(metric_html(b.metric)), words(run_html(b.key, page.in.experiment)),
+            html::figure(figures_of(b.metric, *b.published)), html::figure(figures_of(b.metric, b.band.median)),
+            {interval_html(b.metric, b.band), true}, {off ? signed_percent(*off) : "–", true}});
     }
-    if (judged == 0) return {};
+    if (checked == 0) return {};
     std::string out = html::p(fmt::format("{} can be held against a band; {} of them fall{} outside it.",
-        plural(judged, "published value"), outside, outside == 1 ? "s" : ""));
+        plural(checked, "published value"), outside, outside == 1 ? "s" : ""));
     if (outside > 0) out += table.str() + remarks(page);
     return {"disagreements", "Where note and scene disagree", out};
 }

@@ -1,4 +1,4 @@
-// What else can be asked (one command each), what this run can and cannot claim, its assertions and where it came from.
+// Further experiments (one command each), the limits of this run, its assertions and its provenance.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -13,14 +13,14 @@ namespace {
 
 using html::words;
 
-/// A command line that runs the same experiment with some keys changed.
+/// Returns a command line that runs the same experiment with some keys changed.
 std::string with(const Page& page, const std::vector<std::string>& settings) {
     std::string out = "crescent run " + shell_word(page.in.provenance.experiment_file);
     for (const std::string& setting : settings) out += " --set " + shell_word(setting);
     return out;
 }
 
-/// The shape of the exponent control, else the first with a lobe.
+/// Returns the shape of the exponent control, else the first with a lobe.
 const Shape* glossy(const Experiment& e) {
     for (const Shape& shape : e.shapes)
         if (e.exponent && shape.name == e.exponent->shape && shape.material.rho_s > 0) return &shape;
@@ -63,8 +63,8 @@ void light_rows(const Page& page, std::vector<Row>& rows) {
         "Each surface shows its albedo; what departs is the arm’s."});
 }
 
-/// What --set takes to multiply the number that shapes a lobe, its exponent or its roughness; "" where the shape has no
-/// such number, or would have one that a file may not have.
+/// Returns the --set value that multiplies the number that shapes a lobe, its exponent or its roughness; "" if the
+/// shape has no such number, or if the product is not valid in a file.
 std::string lobe_setting(const Shape& shape, double of_s, double of_alpha) {
     const bool by_alpha = lobe_info(shape.material.brdf).parameter == LobeParameter::alpha;
     const std::optional<double> now = by_alpha ? shape.material.alpha : shape.material.s;
@@ -105,7 +105,7 @@ void sampling_rows(const Page& page, std::vector<Row>& rows) {
             "Films stay as they are; only what is read off them changes."});
 }
 
-/// Whether an arm aims at the lights alone or joins several densities.
+/// Returns whether an arm aims only at the lights or combines several densities.
 bool remedies(const Experiment& e) {
     return std::any_of(e.arms.begin(), e.arms.end(), [](const ArmPlan& arm) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
@@ -216,8 +216,9 @@ PageSection provenance(Page& page) {
     add("Command", html::code(p.command));
     add("crescent", escape(p.version) + ", commit " + html::code(p.commit));
     add("Compiler", escape(p.compiler));
-    add("Instrument", escape(p.instrument));
-    for (const auto& [what, said] : p.instrument_details) table.row({html::heading(escape(what)), words(escape(said))});
+    add("Instrument", escape(p.backend));
+    for (const auto& [what, message] : p.backend_details)
+        table.row({html::heading(escape(what)), words(escape(message))});
     add("Seeds", seeds_text(p.seeds));
     if (const std::vector<int> missing = p.missing(); !missing.empty())
         add("A part of the series", fmt::format("seeds {} of {}", ranges_text(p.places), p.series));

@@ -1,5 +1,5 @@
-// The arms side by side at one N, and the two ways in which they fail: the broad density on a small light, the narrow
-// one on a broad integrand. Which region shows which is found from the numbers.
+// The arms at one N, and the two ways in which they fail: the broad density on a small light, the narrow one on a broad
+// integrand. The numbers determine which region shows which.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// The arm's name, and what is to be known of it beside its numbers.
+/// Returns the arm's name and the remarks on its numbers.
 std::string column_title(const ArmPlan& arm, const Experiment& e) {
     std::string out = escape(arm.name);
     if (techniques_of(arm) > 1) out += fmt::format("<small>{} rays a sample</small>", techniques_of(arm));
@@ -24,7 +24,7 @@ std::string headline_table(const Page& page, std::uint64_t n) {
     std::vector<Column> columns;
     for (const ArmPlan& arm : e.arms)
         if (page.find.run(arm.name, n)) columns.push_back({column_title(arm, e), arm.name, n, page.find.s()});
-    return meters_table(page,
+    return metrics_table(page,
         fmt::format(
             "All arms at <i>N</i> = {}{}. Large: at the {} seed, {}. Small: median over {}, its 5–95 % band, and the "
             "tail index of the region’s samples",
@@ -45,7 +45,7 @@ std::string frame_footnote(const Page& page, std::uint64_t n) {
         "\n";
 }
 
-/// One sentence for each other arm whose density is about the normal: how it compares with the best of them.
+/// Returns one sentence for each other arm whose density is about the normal: how it compares with the best of them.
 std::string broad_arms_sentence(const Page& page, const ArmPair& pair, const std::string& region) {
     std::string out;
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
@@ -87,7 +87,7 @@ reads {mean_narrow} with {narrow} and {mean_broad} with {broad}.{lost}</p>
 whatever the material.</p>
 )";
 
-/// Of the two failures, those that this run does not show.
+/// Returns those of the two failures that this run does not show.
 std::string failures_not_seen(const Page& page, const ArmPair& pair) {
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
     std::string out;
@@ -164,7 +164,8 @@ PageSection failure_b(Page& page) {
         out + page.figures.plates(PlateKind::surround)};
 }
 
-// ---- RMSE against N with the fitted slope, and the exponent control. Ladders are prefixes of one stream of samples.
+// ---- RMSE against N with the fitted slope, and the exponent control; the sample counts are prefixes of one stream of
+// samples.
 
 namespace {
 
@@ -210,7 +211,7 @@ std::vector<Point> published_of(const Page& page, const Ladder& l) {
     return points;
 }
 
-/// RMSE = c N^(-1/2) through the first point, over the whole axis.
+/// Returns RMSE = c N^(-1/2) through the first point, over the whole axis.
 std::vector<Point> guide(const Point& first, const Axis& x) {
     return {{x.low, first.y * std::sqrt(first.x / x.low)}, {x.high, first.y * std::sqrt(first.x / x.high)}};
 }
@@ -227,7 +228,7 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     std::sort(x.ticks.begin(), x.ticks.end());
     x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
     x.high *= 2.2;  // room for names at the ends of lines
-    Chart chart(420, 330, x, log_axis(meter_text("rmse." + region), values), "RMSE against N in region " + region);
+    Chart chart(420, 330, x, log_axis(metric_text("rmse." + region), values), "RMSE against N in region " + region);
     for (const Ladder* l : all) {
         const auto points = points_of(*l);
         const std::string colour = page.colour(l->arm);
@@ -285,7 +286,7 @@ PageSection exponent(Page& page) {
     if (!control) return {};
     std::vector<Column> columns;
     for (const double s : control->s) columns.push_back({"<i>s</i> = " + shortest(s), control->arm, control->n, s});
-    const std::string table = meters_table(page,
+    const std::string table = metrics_table(page,
         fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
             escape(control->arm), control->n, page.seed_name()),
         columns);
@@ -296,7 +297,7 @@ PageSection exponent(Page& page) {
             table + page.figures.plates(PlateKind::exponent)};
 }
 
-// ---- White furnaces: an arm alone on a surface that reflects a known share of a light that is one everywhere.
+// ---- White furnaces: one arm on a surface that reflects a known share of a light of radiance 1 from everywhere.
 
 namespace {
 

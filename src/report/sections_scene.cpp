@@ -27,7 +27,8 @@ std::string value_of(bool x) { return x ? "yes" : "no"; }
 std::string value_of(const Vec3d& v) { return vec(v); }
 std::string value_of(const std::optional<Rgb>& c) { return c ? rgb(*c) : ""; }
 
-/// "centre (0, 1, 0), radius 0.5": the parameters of the kind that `any` holds; those that are not given are left out.
+/// Returns "centre (0, 1, 0), radius 0.5", the parameters of the kind that `any` holds, without those that are not
+/// given.
 template <class Any> std::string parameters_of(const Any& any) {
     return std::visit(
         []<class Kind>(const Kind& kind) {
@@ -96,7 +97,7 @@ PageSection scene(Page& page) {
     return {"scene", "The scene", out};
 }
 
-// ---- The densities of the arms with the maps that draw from them, as the arms' own files state them.
+// ---- The densities of the arms with the maps that draw from them, as stated in the samplers' own files.
 
 namespace {
 
@@ -114,25 +115,25 @@ of a light of area <i>A</i> and <i>θ</i><sub>y</sub> the angle there between it
 that the directions to a light are drawn from.</p>
 )";
 
-std::string rungs(const ArmPlan& arm) {
+std::string sample_counts(const ArmPlan& arm) {
     std::vector<std::string> all;
     for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
     return html::join(all);
 }
 
-/// What draws in place of a built-in arm.
+/// Returns what draws in place of a built-in sampler.
 std::string source_of(const ArmPlan& arm) {
     if (arm.plugin) return "that of the plugin " + html::code(*arm.plugin);
     return "that of the program " + html::code(arm.exec.value_or(""));
 }
 
-/// One density about one direction: a polar angle is all that there is to it.
+/// Returns whether the density depends only on the polar angle about one direction.
 bool plain(const ArmPlan& arm) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
     return info && info->about != PdfAxis::none;
 }
 
-/// The arm's name, with its sampler where that is another, and what light it cannot reach.
+/// Returns the arm's name, with its sampler if that differs, and the light that it cannot reach.
 std::string name_of(const ArmPlan& arm, const SamplerInfo& info, bool fill) {
     std::string out = escape(arm.name == arm.sampler ? std::string(info.label) : arm.name);
     if (arm.name != arm.sampler) out += ", sampler " + html::code(arm.sampler);
@@ -151,13 +152,13 @@ PageSection densities(Page& page) {
     for (const ArmPlan& arm : arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
-            table.row(
-                {html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""), words(rungs(arm))});
+            table.row({html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""),
+                words(sample_counts(arm))});
             continue;
         }
         table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
             words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
-            words(formula::html(info->axis)), words(rungs(arm))});
+            words(formula::html(info->axis)), words(sample_counts(arm))});
     }
     if (table.empty()) return {};
     const char* prose = std::all_of(arms.begin(), arms.end(), plain) ? plain_prose : other_prose;
@@ -165,7 +166,7 @@ PageSection densities(Page& page) {
         prose + table.str() + page.figures.plates(PlateKind::rose)};
 }
 
-// ---- The question, and the estimator with its meters.
+// ---- The question, and the estimator with its metrics.
 
 namespace {
 
@@ -205,7 +206,7 @@ constexpr const char* constants_prose = R"(
 to one. Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
 )";
 
-constexpr const char* meters_prose = R"(
+constexpr const char* metrics_prose = R"(
 <h3>What is measured</h3>
 <p>All on luminance <i>Y</i> (Rec. 709 weights, linear). Against the reference, over a region <i>A</i>:</p>
 {rmse}
@@ -230,7 +231,7 @@ std::string regions_sentence(const Experiment& e) {
         e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
 }
 
-/// The lobes of the scene's glossy surfaces, in the list's order.
+/// Returns the lobes of the scene's glossy surfaces, in the list's order.
 std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
     std::vector<const LobeInfo*> out;
     for (const LobeInfo& lobe : lobe_infos())
@@ -277,14 +278,13 @@ PageSection estimator_equation(Page& page) {
         fmt::arg("p", in_line(mi("p"))), fmt::arg("cosine", in_line(row({mi("n"), mo("⋅"), omega()}))));
     out += brdf_words(page);
     out +=
-        fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
+        fmt::format(metrics_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
             fmt::arg("variance", display(variance(), "sample variance over N")),
             fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
     return {"estimator", "The estimator", out};
 }
 
-// ---- What everything is measured against, and how much it would matter to use the Monte Carlo reference of the note
-// instead.
+// ---- The reference, and the effect of using the Monte Carlo reference of the article instead.
 
 namespace {
 
@@ -303,7 +303,7 @@ two lie apart, what the random one claims as its standard error, and by how much
 other one were used.</p>
 )";
 
-/// Where the reference's own error is too large a part of an RMSE.
+/// Returns where the reference's own error is too large a part of an RMSE.
 std::string not_good_enough(const std::vector<ReferenceQuality>& all) {
     std::string out;
     for (const ReferenceQuality& r : all)

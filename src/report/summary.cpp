@@ -1,5 +1,6 @@
-// What a run says on the terminal, at most 80 columns: whether all held, the headline figures (published, measured at
-// the published seed, median and 5-95 % over seeds), the hashes of the films, bad samples, speed, where to look.
+// The terminal output of a run, at most 80 columns: whether all assertions held, the headline values (published,
+// measured at the published seed, median and 5-95 % over seeds), the hashes of the films, bad samples, speed, the
+// files.
 #include <algorithm>
 #include <map>
 
@@ -32,7 +33,7 @@ std::string failures_line(const std::vector<const AssertionResult*>& failed, std
     return clip(head + failed.front()->name, columns - more.size()) + more;
 }
 
-/// How many were skipped, a line for each reason.
+/// Returns how many were skipped, one line for each reason.
 std::string skipped_lines(const std::vector<AssertionResult>& all) {
     std::map<std::string, std::uint64_t> reasons;
     for (const AssertionResult& a : all)
@@ -63,14 +64,14 @@ std::string verdict(const std::vector<AssertionResult>& given, const Paint& pain
 }
 
 std::string table_row(const SeedSpread& b, bool published) {
-    const std::string name = fmt::format("{} {}", b.meter, b.key.arm);
+    const std::string name = fmt::format("{} {}", b.metric, b.key.arm);
     std::string row = fmt::format("  {}", left(name, published ? 23 : 34));
-    if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.meter, *b.published) : "-", 10));
-    row += fmt::format(" {}", right(figures_of(b.meter, b.measured), 10));
+    if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.metric, *b.published) : "-", 10));
+    row += fmt::format(" {}", right(figures_of(b.metric, b.measured), 10));
     if (b.band.seeds < 2) return row;
-    row += fmt::format(" {}  ", right(figures_of(b.meter, b.band.median), 10));
+    row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 20);
+    return row + clip(figures_of(b.metric, b.band.q05) + " .. " + figures_of(b.metric, b.band.q95), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {
@@ -79,9 +80,9 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     const bool published = find.anything_published();
     std::string rows;
     int seeds = 1;
-    for (const std::string& meter : headline_meters(in.experiment))
+    for (const std::string& metric : headline_metrics(in.experiment))
         for (const ArmPlan& arm : in.experiment.arms)
-            if (const SeedSpread* band = find.band(arm.name, n, meter)) {
+            if (const SeedSpread* band = find.band(arm.name, n, metric)) {
                 rows += table_row(*band, published) + "\n";
                 seeds = std::max(seeds, band->band.seeds);
             }
@@ -94,7 +95,7 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     return fmt::format("\n{}\n{}", paint(bold, head), rows);
 }
 
-/// The hashes of the films; a film's name without s where s says nothing of its arm.
+/// Returns the hashes of the films; a film's name omits s if its arm does not depend on it.
 std::map<std::string, std::string> hashes_shown(const ReportInputs& in) {
     std::map<std::string, std::string> out = in.metrics.film_hashes;
     for (const RunMetrics& run : in.metrics.runs) {

@@ -54,7 +54,7 @@ TEST(Summary, PrintsHashesSpeedAndWhereToLook) {
     EXPECT_NE(text.find("out/here/report.html"), std::string::npos);
 }
 
-TEST(Summary, NamesAFilmWithoutSWhereItsArmDoesNotAimByS) {
+TEST(Summary, FilmNameOmitsSIfItsArmIgnoresS) {
     Sample s;
     EXPECT_NE(summary(s).find("  cosine n=64  "), std::string::npos) << summary(s);
     EXPECT_EQ(summary(s).find("cosine n=64 s="), std::string::npos) << summary(s);

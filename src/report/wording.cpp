@@ -1,6 +1,6 @@
-// An arm's side follows from the axis that SamplerInfo gives its density; one that combines others has none. Of those
-// about the normal the one with most rungs in common with the mirror's is taken, of equals the one with the least sum
-// of ln RMSE over the regions, at the headline N where both ran, else at the largest they share.
+// An arm's side follows from the axis that SamplerInfo gives its density; an arm that combines others has none. Of the
+// arms about the normal, the one with most sample counts in common with the mirror's is taken; among equals, the one
+// with the least sum of ln RMSE over the regions, at the headline N if both ran it, else at the largest they share.
 #include "report/wording.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace crescent::inline report {
 namespace {
 
-/// Sum of log RMSE over the regions; infinite where a run or an error is missing.
+/// Returns the sum of log RMSE over the regions; infinite if a run or an error is missing.
 double error_of(const Page& page, const ArmPlan& arm, std::uint64_t n) {
     double sum = 0;
     for (const Region& region : page.in.experiment.regions) {
@@ -31,7 +31,7 @@ bool is_about(const ArmPlan& arm, PdfAxis axis) {
     return info && info->about == axis && !info->combines;
 }
 
-std::ptrdiff_t shared_rungs(const ArmPlan& a, const ArmPlan& b) {
+std::ptrdiff_t shared_sample_counts(const ArmPlan& a, const ArmPlan& b) {
     return std::ranges::count_if(a.n, [&](std::uint64_t n) { return std::ranges::find(b.n, n) != b.n.end(); });
 }
 
@@ -71,9 +71,9 @@ ArmPair arm_pair(const Page& page) {
         const std::uint64_t n = ran(shared) ? shared : page.find.common_n({arm, pair.narrow});
         if (!ran(n)) continue;
         const double error = error_of(page, *arm, n);
-        const std::ptrdiff_t rungs = shared_rungs(*arm, *pair.narrow);
-        if (!pair.broad || rungs > most || (rungs == most && error < least))
-            pair.broad = arm, pair.n = n, least = error, most = rungs;
+        const std::ptrdiff_t sample_counts = shared_sample_counts(*arm, *pair.narrow);
+        if (!pair.broad || sample_counts > most || (sample_counts == most && error < least))
+            pair.broad = arm, pair.n = n, least = error, most = sample_counts;
     }
     return pair ? pair : ArmPair{};
 }
@@ -105,18 +105,18 @@ std::string bias_words(const Experiment& experiment) {
     return out;
 }
 
-// ---- Sentences that compare two arms. They are put together from the values, so that they turn round when the values
-// do, and they rank nothing whose intervals overlap or whose tail leaves no interval.
+// ---- Sentences that compare two arms are made from the values and follow their order; they rank nothing if intervals
+// overlap or a heavy tail leaves no interval.
 
 namespace {
 
-std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& meter, const std::string& seed) {
+std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& metric, const std::string& seed) {
     const std::string larger = escape(c.larger), smaller = escape(c.smaller);
     if (c.equal)
         return fmt::format("At <i>N</i> = {} and the {} seed, {} and {} read the same {}, {}.", n, seed, larger,
-            smaller, meter, html::value(figures(c.high)));
+            smaller, metric, html::value(figures(c.high)));
     return fmt::format("At <i>N</i> = {} and the {} seed, {}’s {} is <b>{} times</b> {}’s ({} against {}).", n, seed,
-        larger, meter, times(c.ratio), smaller, html::value(figures(c.high)), html::value(figures(c.low)));
+        larger, metric, times(c.ratio), smaller, html::value(figures(c.high)), html::value(figures(c.low)));
 }
 
 std::string heavy_words(const Page& page, const SeedSpread& a, const SeedSpread& b) {
@@ -146,30 +146,30 @@ std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) 
                          : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";
 }
 
-html::Cell meter_cell(const Page& page, const SeedSpread* band) {
+html::Cell metric_cell(const Page& page, const SeedSpread* band) {
     if (!band) return html::figure("");
-    std::string out = html::number(figures_of(band->meter, band->measured));
+    std::string out = html::number(figures_of(band->metric, band->measured));
     if (band->band.seeds > 1)
-        out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->meter, band->band.median)),
-            interval_html(band->meter, band->band));
-    if (const auto tail = page.find.tail(*band); tail && band->meter.starts_with("rmse."))
+        out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->metric, band->band.median)),
+            interval_html(band->metric, band->band));
+    if (const auto tail = page.find.tail(*band); tail && band->metric.starts_with("rmse."))
         out += fmt::format("<small>tail index {}</small>", html::value(tail_html(tail)));
     return {out, true};
 }
 
 }  // namespace
 
-std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns) {
+std::string metrics_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns) {
     std::vector<html::Cell> head{html::words("Meter")};
     for (const Column& column : columns) head.push_back({column.title_html, true});
     html::Table table(caption_html, head);
-    for (const std::string& meter : headline_meters(page.in.experiment)) {
-        std::vector<html::Cell> row{html::heading(meter_html(meter))};
+    for (const std::string& metric : headline_metrics(page.in.experiment)) {
+        std::vector<html::Cell> row{html::heading(metric_html(metric))};
         bool any = false;
         for (const Column& column : columns) {
-            const SeedSpread* band = page.find.band(column.arm, column.n, meter, column.s);
+            const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
             any = any || band;
-            row.push_back(meter_cell(page, band));
+            row.push_back(metric_cell(page, band));
         }
         if (any) table.row(row);
     }
@@ -181,11 +181,11 @@ std::string ordering_sentence(
     const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
     if (!of_a || !of_b) return {};
     const RatioOfErrors c = compare(a, *of_a, b, *of_b);
-    const std::string meter = "rmse." + region;
-    std::string out = first_words(c, n, meter_html(meter), page.seed_name());
+    const std::string metric = "rmse." + region;
+    std::string out = first_words(c, n, metric_html(metric), page.seed_name());
     const SeedCount seeds = page.find.seeds_above(c.larger, c.smaller, n, region);
     if (seeds.of > 1 && !c.equal) out += fmt::format(" The order is the same in {} of {} seeds.", seeds.held, seeds.of);
-    const SeedSpread *band_a = page.find.band(a, n, meter), *band_b = page.find.band(b, n, meter);
+    const SeedSpread *band_a = page.find.band(a, n, metric), *band_b = page.find.band(b, n, metric);
     if (band_a && band_b) out += ranking(page, *band_a, *band_b);
     return out;
 }

@@ -1,5 +1,5 @@
-// Which arms a report sets against each other, and sentences on what they are. All of it follows from the arms' manuals
-// and from what was measured.
+// The arms that a report compares, and sentences about them. All of it follows from SamplerInfo and from the
+// measurements.
 #pragma once
 
 #include <string>
@@ -8,26 +8,26 @@
 
 namespace crescent::inline report {
 
-/// An arm about the normal and one about the mirror direction that ran at one N; of several about the normal, the one
-/// that shares most rungs with the other, and then the one with the smallest errors.
+/// An arm about the normal and one about the mirror direction that ran at one N; among several about the normal, the
+/// one that shares most sample counts with the other, then the one with the smallest errors.
 struct ArmPair {
     const ArmPlan *broad = nullptr, *narrow = nullptr;
     std::uint64_t n = 0;
     explicit operator bool() const { return broad && narrow && n > 0; }
 };
-/// The narrow and the broad arm that the report tells apart.
+/// Returns the narrow and the broad arm that the report compares.
 ArmPair arm_pair(const Page& page);
 
-/// Arms about the normal that join no others.
+/// Returns the arms about the normal that combine no others.
 std::vector<const ArmPlan*> arms_about_normal(const Experiment& experiment);
 
-/// The first arm about the mirror direction; null where there is none.
+/// Returns the first arm about the mirror direction; null if there is none.
 const ArmPlan* arm_about_mirror(const Experiment& experiment);
 
-/// "phong, N = 64, s = 32"; s where it says something.
+/// Returns "phong, N = 64, s = 32"; s only if it identifies a run.
 std::string run_html(const RunKey& key, const Experiment& experiment);
 
-/// On arms whose N counts pairs, and on those that cannot reach all light; "" where there are none.
+/// Returns remarks on arms whose N counts pairs, and on those that cannot reach all light; "" if there are none.
 std::string ray_words(const Experiment& experiment);
 std::string bias_words(const Experiment& experiment);
 

@@ -1,5 +1,5 @@
-// The CPU hands a job on to estimate_films(). The list of kinds is a static of its function, so that it is there for
-// whoever registers before main.
+// The CPU passes a job on to estimate_films(). The list of kinds is a static of its function, so that it exists for
+// registrations before main.
 #include "run/backend.h"
 
 #include "render/estimator.h"
@@ -8,7 +8,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-class Cpu : public Instrument {
+class Cpu : public Backend {
 public:
     explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
     std::string name() const override { return "CPU"; }
@@ -23,22 +23,22 @@ private:
 
 }  // namespace
 
-std::shared_ptr<Instrument> cpu_instrument(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
+std::shared_ptr<Backend> cpu_backend(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
 
-std::vector<std::shared_ptr<const BackendKind>>& instrument_kinds() {
+std::vector<std::shared_ptr<const BackendKind>>& backend_kinds() {
     static std::vector<std::shared_ptr<const BackendKind>> kinds;
     return kinds;
 }
 
-std::shared_ptr<const BackendKind> find_instrument(const std::string& name) {
-    for (const auto& kind : instrument_kinds())
+std::shared_ptr<const BackendKind> find_backend(const std::string& name) {
+    for (const auto& kind : backend_kinds())
         if (kind->name() == name) return kind;
     return nullptr;
 }
 
 }  // namespace crescent::inline runs
 
-// ---- The maker is a static of its function, so that an initialiser of another file may be the first to ask for it.
+// ---- The hook is a static of its function, so that an initialiser of another file may use it first.
 
 namespace crescent {
 

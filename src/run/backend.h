@@ -1,5 +1,5 @@
-// Back ends that compute films, each with its word on the command line. The CPU's is built in; doors register theirs
-// when the program starts.
+// Back ends that compute films, each with its name on the command line. The CPU's is built in; programs register others
+// when they start.
 #pragma once
 
 #include <functional>
@@ -14,86 +14,86 @@
 #include "render/film.h"
 #include "run/plan.h"
 
-namespace crescent::inline estimator {
+namespace crescent::inline render {
 class TileCheckpoint;
 class TiledScene;
-}  // namespace crescent::inline estimator
+}  // namespace crescent::inline render
 
 namespace crescent::inline runs {
 
-/// What computes films. One call at a time; what it throws ends the run.
-class Instrument {
+/// Computes films. One call at a time; an exception ends the run.
+class Backend {
 public:
-    virtual ~Instrument() = default;
+    virtual ~Backend() = default;
     virtual std::string name() const = 0;  // for provenance and plates
-    /// One film per rung, in order. The view already has the job's s. `checkpoint`: where an instrument that works
-    /// tile by tile keeps finished ones; null: nowhere.
+    /// Returns one film per sample count, in order. The view already has the job's s. `checkpoint`: where a back end
+    /// that works tile by tile keeps finished ones; null: nowhere.
     virtual std::vector<Film> films(
         const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr) = 0;
-    /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
+    /// Returns details for the provenance, in the driver's own words, by their names ("GL_RENDERER").
     virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
-    /// Claims of its own that join the assertions ("framebuffer is RGBA32F").
+    /// Returns assertions of its own, added to those of the experiment ("framebuffer is RGBA32F").
     virtual std::vector<AssertionResult> assertions() const { return {}; }
 };
 
-/// The one that is built in; `isa` is a name of isas().
-std::shared_ptr<Instrument> cpu_instrument(std::string isa);
+/// Returns the built-in one; `isa` is a name of isas().
+std::shared_ptr<Backend> cpu_backend(std::string isa);
 
-/// What the command line may say of an instrument; "" and -1: the instrument's own choice.
+/// The choices of the command line for a back end; "" and -1: the back end's own choice.
 struct BackendChoice {
     std::string context;
     int device = -1;
 };
 
-/// A device that an instrument can be opened on.
+/// A device on which a back end can be opened.
 struct BackendDevice {
-    int number = 0;     // as BackendChoice::device has it
+    int number = 0;     // like BackendChoice::device
     std::string means;  // in the driver's words
 };
 
-/// A kind of back end, which a program registers; opened by name.
+/// A kind of back end, registered by a program and opened by name.
 class BackendKind {
 public:
     virtual ~BackendKind() = default;
     virtual std::string name() const = 0;  // "gl"
-    /// Throws OutputError where a part is missing, InputError where the choice is not to be had.
-    virtual std::shared_ptr<Instrument> open(const BackendChoice& choice) const = 0;
-    /// None where its library is missing.
+    /// Throws OutputError if a part is missing, InputError if the choice is not available.
+    virtual std::shared_ptr<Backend> open(const BackendChoice& choice) const = 0;
+    /// Returns none if its library is missing.
     virtual std::vector<BackendDevice> devices() const = 0;
 };
 
-/// Those that were registered. Called before main by a door's own initialiser.
-std::vector<std::shared_ptr<const BackendKind>>& instrument_kinds();
-/// Null: this program was built without it.
-std::shared_ptr<const BackendKind> find_instrument(const std::string& name);
+/// Returns the registered kinds. Called before main by initialisers of the front ends.
+std::vector<std::shared_ptr<const BackendKind>>& backend_kinds();
+/// Returns null if this program was built without it.
+std::shared_ptr<const BackendKind> find_backend(const std::string& name);
 
 }  // namespace crescent::inline runs
 
-// ---- What makes an explainer film of an experiment. explainer/ registers itself here when the program starts; the
-// library does not depend on it.
+// ---- The hook that makes an explainer video of an experiment. apps/explainer registers itself here when the program
+// starts; the library does not depend on it.
 
 namespace crescent {
 
-/// What of the film is made, and how.
+/// The options of an explainer video.
 struct ExplainerOptions {
     std::string out = "out/film";
     int height = 1080;     // of 16:9 frames
     int threads = 0;       // 0: as many as this process may use
-    int shot = 0;          // 1 ..: that shot alone; 0: all
-    std::string still;     // "MM:SS" or "SS": this frame alone, as a PNG
-    bool stills = false;   // one PNG a shot and nothing else
-    std::string from, to;  // "MM:SS": this part alone; "": beginning, end
+    int shot = 0;          // 1 ..: only that shot; 0: all
+    std::string still;     // "MM:SS" or "SS": only this frame, as a PNG
+    bool stills = false;   // only one PNG per shot
+    std::string from, to;  // "MM:SS": only this part; "": beginning, end
     std::string voice;     // a command: text on stdin, WAV on stdout; "": silent
     std::string isa;       // "": the best this machine has
     std::string command;   // as typed, for the last shot
     bool webm = false;
-    double timeout_s = 0;  // for one answer of a program or plugin; 0: 10 and 60 s
+    double timeout_s = 0;  // for one response of a program or plugin; 0: 10 and 60 s
 };
 
-/// Makes the film and publishes it under options.out as one; returns a summary for the terminal.
+/// Makes the video and publishes it under options.out at once; returns a summary for the terminal.
 using ExplainerHook = std::function<std::string(const Experiment&, const ExplainerOptions&, ProgressMonitor&)>;
 
-/// Empty: this program was built without it.
+/// Empty if this program was built without it.
 ExplainerHook& film_maker();
 
 }  // namespace crescent

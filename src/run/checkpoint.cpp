@@ -1,5 +1,5 @@
 // The run's folder is named by the XXH3-64 of its key: version, commit, the files of program and library, the
-// experiment's hash, the instrument and the seeds, the plugins. Meters are CBOR records of a Journal, tiles a file for
+// experiment's hash, the back end and the seeds, the plugins. Metrics are CBOR records of a Journal, tiles a file for
 // each pass.
 #include "run/checkpoint.h"
 
@@ -40,25 +40,24 @@ std::string mark_of(const std::string& path) {
         static_cast<std::int64_t>(written.time_since_epoch().count()));
 }
 
-/// Which files the program and, where it is another one, the library with this code are, and of when: what another
-/// build kept is not for this one.
+/// Identifies the files of the program and of the library with this code, with their times: what another build kept is
+/// not used.
 std::string build_mark() {
     Dl_info about{};
     const bool known = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
     return mark_of(program_file()) + " " + mark_of(known ? about.dli_fname : "");
 }
 
-/// CBOR, which holds every double as it is, NaN and infinities too.
-/// None where the record is something else.
-std::vector<RunMetrics> meters_of(Journal::Bytes record) {
+/// CBOR keeps every double exactly, including NaN and infinities. Returns none if the record is something else.
+std::vector<RunMetrics> metrics_of(Journal::Bytes record) {
     const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
     try {
         return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMetrics>>();
     } catch (const nlohmann::json::exception&) { return {}; }
 }
 
-bool are_of(const Experiment& experiment, const std::vector<RegionMetrics>& meters) {
-    return std::equal(meters.begin(), meters.end(), experiment.regions.begin(), experiment.regions.end(),
+bool are_of(const Experiment& experiment, const std::vector<RegionMetrics>& metrics) {
+    return std::equal(metrics.begin(), metrics.end(), experiment.regions.begin(), experiment.regions.end(),
         [](const RegionMetrics& m, const Region& region) { return m.region == region.name; });
 }
 
@@ -67,7 +66,7 @@ std::string key_of(const Experiment& experiment, const std::string& work) {
         "{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), work, marks_of(experiment));
 }
 
-/// A folder of the run's own: a link that stands there leads elsewhere, and nothing is kept.
+/// The run's folder must be its own: if a link there leads elsewhere, nothing is kept.
 bool leads_elsewhere(const std::string& folder) {
     std::error_code ignored;
     return fs::is_symlink(fs::symlink_status(folder, ignored));
@@ -93,10 +92,10 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& work, co
             throw OutputError(
                 fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder));
     journal_.read([&](Journal::Bytes record) {
-        for (RunMetrics& meter : meters_of(record))
-            if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
+        for (RunMetrics& metric : metrics_of(record))
+            if (are_of(experiment, metric.regions)) metrics_.push_back(std::move(metric));
     });
-    written_ = meters_.size();
+    written_ = metrics_.size();
     if (holds_files(folder_)) monitor_.log("resuming from the checkpoint in " + folder_);
 }
 
@@ -116,25 +115,25 @@ TileCheckpoint Checkpoint::tiles(const std::string& name) {
     return {folder_ + "/" + name, key_ + " " + name, checkpoint_after_s_, monitor_};
 }
 
-std::vector<RunMetrics> Checkpoint::meters(const Job& job) const {
+std::vector<RunMetrics> Checkpoint::metrics(const Job& job) const {
     std::vector<RunMetrics> out;
     for (const std::uint64_t n : job.n) {
         const RunKey key{job.arm, n, job.s, job.seed};
-        const auto meter =
-            std::find_if(meters_.begin(), meters_.end(), [&](const RunMetrics& m) { return m.key == key; });
-        if (meter == meters_.end()) return {};
-        out.push_back(*meter);
+        const auto metric =
+            std::find_if(metrics_.begin(), metrics_.end(), [&](const RunMetrics& m) { return m.key == key; });
+        if (metric == metrics_.end()) return {};
+        out.push_back(*metric);
     }
     return out;
 }
 
-void Checkpoint::add(const std::vector<RunMetrics>& meters) {
-    meters_.insert(meters_.end(), meters.begin(), meters.end());
+void Checkpoint::add(const std::vector<RunMetrics>& metrics) {
+    metrics_.insert(metrics_.end(), metrics.begin(), metrics.end());
     if (start_.seconds() < checkpoint_after_s_) return;
-    const std::vector<RunMetrics> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
+    const std::vector<RunMetrics> fresh(metrics_.begin() + static_cast<std::ptrdiff_t>(written_), metrics_.end());
     const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
     journal_.append({std::as_bytes(std::span(record))});
-    written_ = meters_.size();
+    written_ = metrics_.size();
 }
 
 void Checkpoint::discard() {

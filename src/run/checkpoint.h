@@ -1,6 +1,6 @@
-// What a long run has finished, kept in OUT/.crescent-kept while it lasts, so that the same command goes on where a run
-// was stopped or killed: tiles of passes that take long, and the meters of finished passes. Gone once the outputs
-// stand.
+// The finished part of a long run, kept in OUT/.crescent-kept while it lasts, so that the same command resumes a
+// stopped or killed run: tiles of long passes, and the metrics of finished passes. Removed once the outputs are
+// published.
 #pragma once
 
 #include <string>
@@ -17,32 +17,34 @@ namespace crescent::inline runs {
 class Checkpoint {
 public:
     /// Outputs go to `out`; nothing is kept before `checkpoint_after_s` seconds. `work`: what the results depend on
-    /// beside the experiment and the build, as the instrument and the seeds.
-    /// Says so where there is something to go on from.
+    /// other than the experiment and the build, such as the back end and the seeds. Logs if there is a checkpoint to
+    /// resume from.
     Checkpoint(const Experiment& experiment, const std::string& work, const std::string& out, double checkpoint_after_s,
         ProgressMonitor& monitor);
-    /// Where the run ends before discard(): says what is kept.
+    /// If the run ends before discard(), logs what is kept.
     ~Checkpoint();
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
 
-    /// For the tiles of one pass; `name`, or what the job computes, tells it from the run's others.
+    /// Returns the checkpoint for the tiles of one pass; `name`, or what the job computes, distinguishes it from the
+    /// run's others.
     TileCheckpoint tiles(const std::string& name);
     TileCheckpoint tiles(const Job& job);
-    /// The meters of a finished pass, one a rung; none where it is not finished.
-    std::vector<RunMetrics> meters(const Job& job) const;
-    void add(const std::vector<RunMetrics>& meters);
-    /// The outputs stand: nothing of this run is needed any more. What another run kept stays, and is told of.
+    /// Returns the metrics of a finished pass, one per sample count; none if it is not finished.
+    std::vector<RunMetrics> metrics(const Job& job) const;
+    void add(const std::vector<RunMetrics>& metrics);
+    /// Called when the outputs are published: nothing of this run is needed any more. What another run kept stays and
+    /// is logged.
     void discard();
 
 private:
-    std::string all_, key_, folder_;  // all_: of any run into the same place
+    std::string all_, key_, folder_;  // all_: for every run into the same place
     double checkpoint_after_s_;
     ProgressMonitor& monitor_;
     Stopwatch start_;
     Journal journal_;
-    std::vector<RunMetrics> meters_;
-    std::size_t written_ = 0;  // of meters_
+    std::vector<RunMetrics> metrics_;
+    std::size_t written_ = 0;  // of metrics_
 };
 
 }  // namespace crescent::inline runs

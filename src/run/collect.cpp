@@ -1,5 +1,6 @@
-// Results are put into the plan's order; tails run beside evidence and furnaces; then hashes, bands, ladders and the
-// comparison of references are made of the films and meters, and the assertions that need no plate are judged.
+// Results are sorted into the plan's order; tails are computed in parallel with article checks and furnaces; then
+// hashes, bands, ladders and the comparison of references are made of the films and metrics, and the assertions that
+// need no plate are checked.
 #include "run/collect.h"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ const Published* figures_of(const Experiment& experiment) {
     return experiment.figures ? &*experiment.figures : nullptr;
 }
 
-/// Results in the plan's order, whatever order they came in.
+/// Sorts results into the plan's order.
 void sort_results(const RunPlan& plan, std::vector<JobResult>& results) {
     const auto place = [&](const JobResult& r) {
         return std::ranges::find_if(plan.jobs, [&](const Job& job) {
@@ -43,14 +44,14 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
         out.timing.arms.push_back(
             {job.arm, job.n.back(), job.s, static_cast<std::uint64_t>(result.samples), result.seconds});
         for (std::size_t r = 0; r < result.films.size(); ++r)
-            out.films.emplace_back(result.meters[r].key, std::move(result.films[r]));
+            out.films.emplace_back(result.metrics[r].key, std::move(result.films[r]));
         auto& runs = out.metrics.runs;
-        runs.insert(runs.end(), result.meters.begin(), result.meters.end());
+        runs.insert(runs.end(), result.metrics.begin(), result.metrics.end());
     }
 }
 
-/// The tail index of each region's samples, of the stream of the experiment's own seed whichever part of its series
-/// this is. It belongs to an arm and exponent, not to N: it is given with every N of the first seed.
+/// The tail index of each region's samples, from the stream of the experiment's own seed for every part of its series.
+/// It depends on arm and exponent, not on N, and is stored with every N of the first seed.
 void add_tails(
     const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& monitor, Metrics& metrics) {
     const std::vector<Job> jobs = jobs_of(plan.whole, plan.whole.seed);
@@ -120,17 +121,17 @@ void add_spreads(Measured& out) {
     metrics.bands = bands(experiment, metrics.runs, published);
     metrics.published_seed = published ? published->seed : std::nullopt;
     metrics.ladders = ladders(experiment, metrics.runs);
-    metrics.assertions = judge(experiment, metrics, {}, false);
+    metrics.assertions = evaluate_assertions(experiment, metrics, {}, false);
 }
 
-Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
+Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std::string& command) {
     Provenance p;
     p.version = version();
     p.commit = commit();
     p.compiler = compiler();
     p.experiment_file = plan.experiment.file;
     p.experiment_hash = fmt::format("{:016x}", plan.hash);
-    p.instrument = instrument.name(), p.instrument_details = instrument.details();
+    p.backend = backend.name(), p.backend_details = backend.details();
     p.command = command.empty() ? "crescent run " + plan.experiment.file : command;
     p.seeds = plan.seeds;
     for (int place = plan.range.first; place <= plan.range.last; ++place) p.places.push_back(place);
@@ -154,7 +155,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
-        stage("tails, furnaces and evidence", [&] {  // none of them waits for another
+        stage("tails, furnaces and evidence", [&] {  // these do not depend on each other
             side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
                 [&] {
                     out.evidence = measure_evidence(plan.whole, with.isa, monitor);
@@ -170,8 +171,8 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         add_references_compared(out);
         add_spreads(out);
     });
-    out.provenance = provenance_of(plan, *with.instrument, options.command);
-    for (AssertionResult& a : with.instrument->assertions()) out.metrics.assertions.push_back(std::move(a));
+    out.provenance = provenance_of(plan, *with.backend, options.command);
+    for (AssertionResult& a : with.backend->assertions()) out.metrics.assertions.push_back(std::move(a));
     return out;
 }
 

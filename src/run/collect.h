@@ -1,5 +1,5 @@
-// Third step of a run: the results of its jobs -> every number of the run, in memory. Results may come in any order,
-// and from other threads or machines.
+// Third step of a run: computes every number of the run from the results of its jobs, in memory. Results may come in
+// any order, and from other threads or machines.
 #pragma once
 
 #include <string>
@@ -14,43 +14,43 @@
 
 namespace crescent::inline runs {
 
-/// Everything that a run measured; nothing in it refers to something outside.
+/// Everything that a run measured, without references to other objects.
 struct Measured {
     Experiment experiment;  // as in the plan
-    Metrics metrics;        // assertions on plates are not judged: none are drawn yet
+    Metrics metrics;        // assertions on plates are not checked yet: no plates are drawn
     Evidence evidence;
     Provenance provenance;
     Timing timing;
     ShapeMap shapes;
     std::vector<std::pair<RunKey, Film>> films;          // of the jobs whose films were kept
-    std::vector<ReferenceFilm> quadrature, monte_carlo;  // one an exponent; none where not asked for
+    std::vector<ReferenceFilm> quadrature, monte_carlo;  // one per exponent; none if not requested
     Plates plates;                                       // none before write()
-    OutsideSamplers outside;                             // plates ask them for their densities
+    ExternalSamplers outside;                            // plates evaluate their densities
     bool stopped = false;
 
     const Film* film(const RunKey& key) const;       // null: not kept
-    const ReferenceFilm* reference(double s) const;  // the one that the meters use; null: not made
+    const ReferenceFilm* reference(double s) const;  // the one that the metrics use; null: not computed
 };
 
-/// What is measured beside the jobs.
+/// What is measured in addition to the jobs.
 struct CollectOptions {
     std::string command;  // as typed, for the provenance; "": `crescent run` and the experiment's file
-    bool studies = true;  // tails, furnaces, evidence; without them the meters of the jobs alone
+    bool studies = true;  // tails, furnaces, article checks; without them only the metrics of the jobs
 };
 
-/// Takes what was made; `results` need not be all of the plan's.
+/// Takes ownership of the inputs; `results` may be a part of the plan's.
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
     ProgressMonitor& monitor, const CollectOptions& options = {});
 
-/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
-/// few spread. May throw Interrupted.
+/// Returns the tail index of one arm's samples X in a box, from at most about four million samples; none if too few
+/// vary. May throw Interrupted.
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor);
 
-/// What follows from the meters of all seeds: bands, ladders, and the assertions that need no plate.
+/// Computes what follows from the metrics of all seeds: bands, ladders, and the assertions that need no plate.
 void add_spreads(Measured& measured);
 
-/// What made the outputs of a plan: its experiment, seeds, version, instrument and command.
-Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
+/// Returns the provenance of a plan's outputs: its experiment, seeds, version, back end and command.
+Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std::string& command);
 
 }  // namespace crescent::inline runs

@@ -1,6 +1,6 @@
-// Primary rays are traced once for all jobs, shading points kept where memory allows. A job whose meters are in the
-// checkpoint and whose films are not kept computes nothing; else the instrument makes its films, which are measured
-// side by side.
+// Primary rays are traced once for all jobs, shading points are kept if memory allows. A job whose metrics are in the
+// checkpoint and whose films are not kept is skipped; else the back end computes its films, which are measured in
+// parallel.
 #include "run/execute.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-std::vector<RunMetrics> meters_of(
+std::vector<RunMetrics> metrics_of(
     const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
     const ReferenceFilm* reference = reference_of(plan.experiment, prepared.quadrature, prepared.monte_carlo, job.s);
     ensure(reference != nullptr, "references are made before the jobs that are measured against them");
@@ -38,16 +38,16 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     bool keep_films, Checkpoint* checkpoint, JobResult& out) {
     std::unique_ptr<TileCheckpoint> tiles;
     if (checkpoint) {
-        out.meters = checkpoint->meters(out.job);
+        out.metrics = checkpoint->metrics(out.job);
         tiles.reset(new TileCheckpoint(checkpoint->tiles(out.job)));
     }
-    if (keep_films || out.meters.empty()) {
-        std::vector<Film> films = engine.instrument->films(view_at(prepared, out.job.s), out.job, monitor, tiles.get());
+    if (keep_films || out.metrics.empty()) {
+        std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor, tiles.get());
         const auto all = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
         out.samples = all - (tiles ? tiles->restored() : 0);
-        const bool fresh = out.meters.empty();
-        if (fresh) out.meters = meters_of(plan, prepared, out.job, films);
-        if (fresh && checkpoint) checkpoint->add(out.meters);
+        const bool fresh = out.metrics.empty();
+        if (fresh) out.metrics = metrics_of(plan, prepared, out.job, films);
+        if (fresh && checkpoint) checkpoint->add(out.metrics);
         if (keep_films) out.films = std::move(films);
     }
     if (!keep_films && tiles) tiles->remove();
@@ -58,7 +58,7 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
 Engine settled(Engine engine) {
     engine.isa = std::string(kernels_for(engine.isa).isa);
     if (engine.threads <= 0) engine.threads = usable_threads();
-    if (!engine.instrument) engine.instrument = cpu_instrument(engine.isa);
+    if (!engine.backend) engine.backend = cpu_backend(engine.isa);
     return engine;
 }
 
@@ -89,7 +89,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
     if (out.geometry_pixels == 0)
         throw InputError(experiment.place_of("camera"),
             "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
-    out.outside = open_outside(experiment, engine.timeout_s);
+    out.outside = open_external(experiment, engine.timeout_s);
     TiledScene view = out.scene;
     if (can_keep_points(plan, out.scene, available_memory())) view.keep_points();
     out.views = views_at(view, plan.exponents);

@@ -1,5 +1,5 @@
-// A program is spoken to by subjects/pipe.h, one question after another under a lock and with no limit to the whole; a
-// library is opened by subjects/plugin.h. A wrapper around either puts the arm's name into what it throws.
+// samplers/pipe.h communicates with a program, one query after another under a lock and without a total limit;
+// samplers/plugin.h opens a library. A wrapper around either adds the arm's name to exceptions.
 #include "run/external_samplers.h"
 
 #include <algorithm>
@@ -15,16 +15,16 @@ namespace crescent::inline runs {
 
 namespace {
 
-/// A program answers one question after another.
+/// A program answers one query after another.
 class Program : public ExternalSampler {
 public:
     explicit Program(std::shared_ptr<const SamplerAdapter> program) : program_(std::move(program)) {}
     std::string name() const override { return program_->name(); }
     int numbers() const override { return program_->traits().numbers; }
-    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const auto count = static_cast<std::size_t>(numbers());
         std::size_t first = 0;
-        for (const OutsideRun& run : batch.runs) {
+        for (const ExternalRun& run : batch.runs) {
             std::vector<PrimarySample> u(run.rows);
             for (std::size_t i = 0; i < run.rows; ++i)
                 for (std::size_t k = 0; k < count; ++k) u[i][static_cast<int>(k)] = batch.u[(first + i) * count + k];
@@ -40,7 +40,7 @@ public:
     }
     bool has_density() const override { return program_->traits().has_pdf; }
     void density(
-        Vec3d wo, const OutsideSurface& /*surface*/, std::span<const Vec3d> wi, std::span<double> out) const override {
+        Vec3d wo, const ExternalSurface& /*surface*/, std::span<const Vec3d> wi, std::span<double> out) const override {
         std::vector<Pair> at;
         for (const Vec3d& w : wi) at.push_back({wo, w});
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
@@ -52,18 +52,18 @@ private:
     mutable std::mutex lock_;
 };
 
-/// What it throws names the arm.
+/// Adds the arm's name to exceptions.
 class Named : public ExternalSampler {
 public:
     Named(std::string arm, std::shared_ptr<const ExternalSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
     std::string name() const override { return of_->name(); }
     int numbers() const override { return of_->numbers(); }
-    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         named([&] { of_->draw(batch, out); });
     }
     bool has_density() const override { return of_->has_density(); }
     void density(
-        Vec3d wo, const OutsideSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+        Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
         named([&] { of_->density(wo, surface, wi, out); });
     }
 
@@ -80,7 +80,7 @@ private:
     std::shared_ptr<const ExternalSampler> of_;
 };
 
-/// An estimate divides f cos by the density of the draw: what has none cannot be an arm.
+/// An estimate divides f cos by the density of the draw: a sampler without one cannot be used as an arm.
 void refuse(const Traits& traits) {
     if (traits.delta) throw OutputError("it has delta parts, which have no density to divide by");
     if (!traits.has_pdf) throw OutputError("it has no pdf to divide by");
@@ -104,11 +104,11 @@ std::shared_ptr<const ExternalSampler> open(
 
 }  // namespace
 
-OutsideSamplers open_outside(const Experiment& experiment, double timeout_s) {
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s) {
     PipeLimits limits;
     limits.total_seconds = std::numeric_limits<double>::infinity();
     limits.limit_answers(timeout_s);
-    OutsideSamplers all;
+    ExternalSamplers all;
     for (const ArmPlan& arm : experiment.arms)
         if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment, limits));
     return all;

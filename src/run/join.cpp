@@ -1,6 +1,6 @@
 // What does not depend on the seed must agree in all parts, and rows of one seed wherever two parts have it. Film
-// hashes, and what compares references by films, are of a run's first seed: they are those of the part that begins
-// with it. Tails are of the experiment's own seed in every part and are given with the first seed.
+// hashes, and values that compare references by films, are of a run's first seed: they come from the part that begins
+// with it. Tails are of the experiment's own seed in every part and are stored with the first seed.
 #include "run/join.h"
 
 #include <fmt/format.h>
@@ -61,19 +61,19 @@ std::map<std::string, std::string> values_in(const std::string& text) {
     return out;
 }
 
-/// Where two experiments differ: "; ball.s is 32 there and 64 here".
+/// Returns where two experiments differ: "; ball.s is 32 there and 64 here".
 std::string difference(const std::string& there, const std::string& here) {
     const auto a = values_in(there), b = values_in(here);
     std::set<std::string> keys;
     for (const auto& all : {a, b})
         for (const auto& [key, value] : all) keys.insert(key);
-    const auto said = [](const auto& in, const std::string& key) {
+    const auto message = [](const auto& in, const std::string& key) {
         const auto at = in.find(key);
         return at == in.end() ? "not given" : at->second.substr(0, 60);
     };
     for (const std::string& key : keys)
-        if (key != "seeds" && said(a, key) != said(b, key))
-            return fmt::format("; {} is {} there and {} here", key, said(a, key), said(b, key));
+        if (key != "seeds" && message(a, key) != message(b, key))
+            return fmt::format("; {} is {} there and {} here", key, message(a, key), message(b, key));
     return "; the published figures differ";
 }
 
@@ -86,14 +86,14 @@ void check_same(const Part& first, const Part& part, const std::string& what, co
         refuse(first, part, fmt::format("{} differs; expected the same value, bit for bit", what));
 }
 
-/// What references are apart from the films that they were compared by.
+/// Returns the references without the films that they were compared by.
 Json of_no_film(Json references) {
     for (Json& reference : references)
         for (const char* key : {"rmse_unlike", "error_share"}) reference.erase(key);
     return references;
 }
 
-/// Hashes of references: their names are those of no run.
+/// Hashes of references, whose names are not those of runs.
 Json reference_hashes(const Part& part) {
     Json out = part.json.at("films");
     for (const RunMetrics& run : part.file.metrics.runs) out.erase(to_string(run.key));
@@ -107,7 +107,7 @@ void check_alike(const Part& first, const Part& part) {
             "it is of another experiment" + difference(a.experiment_text, b.experiment_text) +
                 "; expected parts of one experiment");
     for (const auto& [what, x, y] : {std::tuple("version", a.version, b.version), {"commit", a.commit, b.commit},
-             {"instrument", a.instrument, b.instrument}})
+             {"instrument", a.backend, b.backend}})
         if (x != y) refuse(first, part, fmt::format("{} is '{}' there and '{}' here", what, x, y));
     for (const char* key : {"geometry_pixels", "shape_pixels", "furnace", "evidence"})
         check_same(first, part, fmt::format("'{}'", key), first.json.at(key), part.json.at(key));
@@ -121,7 +121,7 @@ void check_alike(const Part& first, const Part& part) {
 
 using TailKey = std::tuple<std::string, double, std::string>;  // arm, s, region
 
-/// Runs of all parts by their seed, tails apart.
+/// Runs of all parts by their seed, without tails.
 class Rows {
 public:
     void add(const Part& part) {
@@ -179,8 +179,8 @@ private:
     std::map<TailKey, KnownTail> tails_;
 };
 
-/// Claims of the instrument, which follow the experiment's own: one that fails in any part fails.
-std::vector<AssertionResult> instrument_claims(const std::vector<Part>& parts) {
+/// Assertions of the back end, which follow the experiment's own; if one fails in any part, it fails.
+std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
     std::vector<AssertionResult> out;
     for (const Part& part : parts) {
         const auto& all = part.file.metrics.assertions;
@@ -232,7 +232,7 @@ Measured join(const std::vector<std::string>& given, const std::string& command)
     out.metrics.furnaces = of_first.furnaces, out.metrics.shape_pixels = of_first.shape_pixels;
     out.metrics.geometry_pixels = of_first.geometry_pixels, out.evidence = begins->file.evidence;
     add_spreads(out);
-    std::ranges::move(instrument_claims(parts), std::back_inserter(out.metrics.assertions));
+    std::ranges::move(backend_claims(parts), std::back_inserter(out.metrics.assertions));
     return out;
 }
 

@@ -1,5 +1,5 @@
-// Seeds are seed_of(seed, k) for k = 0, 1, ..., without those that came before. Jobs go seed by seed, arms in the
-// experiment's order, then the exponent control; the exponents are gathered from the jobs.
+// Seeds are seed_of(seed, k) for k = 0, 1, ..., without duplicates. Jobs are ordered by seed, then arms in the
+// experiment's order, then the exponent control; the exponents are collected from the jobs.
 #include "run/plan.h"
 
 #include <fmt/format.h>

@@ -9,7 +9,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-/// What is seen and measured, without those who measure it.
+/// Returns the scene and references of the experiment without its arms.
 Experiment without_arms(Experiment e) {
     e.arms.clear();
     e.exponent.reset();
@@ -32,9 +32,9 @@ std::vector<unsigned char> preview(const Experiment& experiment, const Engine& e
     monitor.check();
     const Metrics none;
     const PlateInputs in{seen.experiment, none, prepared.shapes, [](const RunKey&) { return nullptr; },
-        [&](double s) { return reference_of(seen.experiment, prepared.quadrature, {}, s); }, with.instrument->name(),
+        [&](double s) { return reference_of(seen.experiment, prepared.quadrature, {}, s); }, with.backend->name(),
         experiment.theme.value_or(Theme::dark)};
-    const Provenance p = provenance_of(seen, *with.instrument, "");
+    const Provenance p = provenance_of(seen, *with.backend, "");
     return encode_png(draw_preview(in), {{"crescent", p.version + " " + p.commit}, {"plate", "preview"}});
 }
 

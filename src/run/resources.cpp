@@ -1,5 +1,5 @@
-// Four bytes a pixel for each plane of each film and reference held, 12 more a pixel, the hits of images up to 2^20
-// pixels, 150 MB for the program. The image that is suggested fits into 90 % of the memory that is there.
+// Four bytes per pixel for each plane of each film and reference held, 12 more per pixel, the hits of images up to 2^20
+// pixels, 150 MB for the program. The suggested image fits into 90 % of the available memory.
 #include "run/resources.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace crescent::inline runs {
 namespace {
 
 constexpr double for_itself = 150e6;  // code, fonts, plates, the report; measured on the gallery at 64 x 36
-// A pixel: Scene::remember_primaries' 4, shape map, site counts and rows on their way to a file.
+// Per pixel: Scene::remember_primaries' 4, shape map, shading point counts and rows being written to a file.
 constexpr double working_bytes = 12;
 
 double pixels_that_fit(double pixels, double needed, double available) {
@@ -29,10 +29,10 @@ double pixels_that_fit(double pixels, double needed, double available) {
 std::uint64_t memory_needed(const Experiment& experiment) {
     const double film = 4.0 * static_cast<double>(Film().planes().size()),
                  reference = 4.0 * static_cast<double>(ReferenceFilm().planes().size());
-    double rungs = 0, most = 0;
+    double sample_counts = 0, most = 0;
     std::set<double> exponents;
     for (const Job& job : jobs_of(experiment, experiment.seed)) {
-        rungs += static_cast<double>(job.n.size());
+        sample_counts += static_cast<double>(job.n.size());
         most = std::max(most, static_cast<double>(job.n.size()));
         exponents.insert(job.s);
     }
@@ -41,7 +41,7 @@ std::uint64_t memory_needed(const Experiment& experiment) {
     const double references = asked.monte_carlo || asked.kind == ReferenceKind::note ? 2 : 1;
     const double again = experiment.seeds > 1 ? most : 0;
     const double a_pixel =
-        film * (rungs + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
+        film * (sample_counts + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
     const double hits = pixels <= static_cast<double>(Scene::whole_hits) ? pixels * sizeof(Hit) : 0;
     return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits);
 }
@@ -57,16 +57,16 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
     const double scale = std::sqrt(pixels_that_fit(pixels, needed, there) / pixels);
     const int width = static_cast<int>(experiment.image.width * scale),
               height = static_cast<int>(experiment.image.height * scale);
-    std::string say = fmt::format(
+    std::string message = fmt::format(
         "this run needs about {:.2g} GB of memory, and {:.2g} GB are to be had: every rung of every arm is held at {} "
         "x {} pixels",
         needed / 1e9, there / 1e9, experiment.image.width, experiment.image.height);
     if (width > 0 && height > 0)
-        say += fmt::format(
+        message += fmt::format(
             "; expected fewer rungs, or a smaller image, such as --set image.width={} --set image.height={} with its "
             "boxes",
             width, height);
-    return say;
+    return message;
 }
 
 void check_memory(const Experiment& experiment) {

@@ -1,4 +1,4 @@
-// What a run needs of the machine, checked before it starts, and when it is asked to stop.
+// The resources that a run needs, checked before it starts, and the handling of stops.
 #pragma once
 
 #include <algorithm>
@@ -14,30 +14,30 @@
 
 namespace crescent::inline runs {
 
-// ---- What a run needs of the machine, told before the work begins.
+// ---- The memory and fonts that a run needs, checked before the work begins.
 
-/// Bytes that a run holds at its largest: the films of its first seed and of one pass more, the references at each
-/// exponent, what the camera sees, and what the program takes for itself.
+/// Returns the peak memory of a run in bytes: the films of its first seed and of one more pass, the references at each
+/// exponent, what the camera sees, and the program itself.
 std::uint64_t memory_needed(const Experiment& experiment);
 
-/// "this run needs about 70 GB of memory ...", with what would need less; "" where `available` bytes are enough.
+/// Returns "this run needs about 70 GB of memory ...", with a smaller alternative; "" if `available` bytes are enough.
 std::string why_too_large(const Experiment& experiment, std::uint64_t available);
 
-/// Whether half of `available` bytes hold what is needed and the shading points of the image, which a run is
-/// faster with.
+/// Returns whether half of `available` bytes hold what is needed and the shading points of the image, which make a run
+/// faster.
 bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available);
 
-/// Throws OutputError where the memory is not there.
+/// Throws OutputError if the memory is insufficient.
 void check_memory(const Experiment& experiment);
-/// Throws OutputError where the font that the experiment's plates are drawn with is not there.
+/// Throws OutputError if the font of the experiment's plates is missing.
 void check_font(const Experiment& experiment);
 
-// ---- Inside the steps of a run a stop is an exception; outside it is an answer.
+// ---- Inside the steps of a run a stop is an exception; the steps return it as a value.
 
-/// As many of these as oneTBB has: it complains on stderr of more.
+/// Limits the number to that of oneTBB, which otherwise prints a warning on stderr.
 inline int threads_to_be_had(int threads) { return std::min(threads, oneapi::tbb::info::default_concurrency()); }
 
-/// Does the work on so many threads; false where the monitor stopped it, on the way or before its end.
+/// Does the work on this many threads; returns false if the monitor stopped it, during the work or at its end.
 template <class Work> bool unless_stopped(int threads, const ProgressMonitor& monitor, const Work& work) {
     try {
         on_threads(threads_to_be_had(threads), work);

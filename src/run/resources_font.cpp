@@ -1,4 +1,4 @@
-// Apart from the other needs, so that a program which draws no plates is linked without what draws them.
+// In a file of its own, so that a program which draws no plates is not linked with the drawing code.
 #include "report/plates/canvas.h"
 #include "report/plates/sheet.h"
 #include "run/resources.h"

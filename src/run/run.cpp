@@ -1,6 +1,6 @@
 // What can fail early comes first: the font, the view, the samplers, the folder, the outputs' names. Then references,
-// jobs, collect, write, commit; the checkpoint goes last, and there is none where an arm is a program. Films alone need
-// but the first seed.
+// jobs, collect, write, commit; the checkpoint is removed last, and there is none if an arm is a program. Films alone
+// need only the first seed.
 #include "run/run.h"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace crescent::inline runs {
 
 namespace {
 
-/// Films alone need neither other seeds nor what is measured beside the jobs.
+/// Films alone need neither other seeds nor the additional measurements.
 bool films_alone(const OutputParts& parts) { return parts.films && !parts.metrics && !parts.draws(); }
 
 RunPlan plan_of(const Experiment& experiment, const RunOptions& options) {
@@ -49,7 +49,7 @@ std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared
     return results;
 }
 
-/// The steps up to the last; throws Interrupted.
+/// Does all steps except the last; throws Interrupted.
 Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options,
     ProgressMonitor& monitor, Checkpoint* checkpoint) {
     const Stopwatch start;
@@ -67,13 +67,13 @@ Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, 
     return out;
 }
 
-/// What is kept is of one instrument, one experiment and one part of its seeds.
+/// A checkpoint belongs to one back end, one experiment and one part of its seeds.
 std::string checkpoint_key(const RunPlan& plan, const Engine& engine) {
-    return fmt::format("{} {:016x} {}:{}", engine.instrument->name(), plan.hash, plan.range.first, plan.range.last);
+    return fmt::format("{} {:016x} {}:{}", engine.backend->name(), plan.hash, plan.range.first, plan.range.last);
 }
 
 Engine engine_of(const RunOptions& options) {
-    return settled({options.threads, options.isa, options.instrument, options.timeout_s});
+    return settled({options.threads, options.isa, options.backend, options.timeout_s});
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     Prepared prepared = look(plan, engine);
     Staging staging(out);
     staging.expect(outputs_of(plan, options.parts));
-    std::optional<Checkpoint> checkpoint;  // what a program drew yesterday it may not draw today
+    std::optional<Checkpoint> checkpoint;  // a program may draw differently in the next run
     if (!may_change(plan.experiment))
         checkpoint.emplace(plan.experiment, checkpoint_key(plan, engine), out, options.keep_after_s, monitor);
     Measured all = measured(plan, std::move(prepared), engine, options, monitor, checkpoint ? &*checkpoint : nullptr);

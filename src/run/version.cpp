@@ -1,4 +1,4 @@
-// Version, commit and compiler; cmake/provenance.cmake passes them in, commit.h is made anew at every build.
+// Version, commit and compiler, passed by cmake/provenance.cmake; commit.h is regenerated at every build.
 #include "run/version.h"
 
 #include <commit.h>

@@ -1,12 +1,12 @@
-// Which crescent this is, and what it runs on.
+// The version of crescent, and the system it runs on.
 #pragma once
 
 #include <string>
 
 namespace crescent::inline runs {
 
-std::string version();   // "0.1.0"
-std::string commit();    // as `git describe` says it, or "unknown"
+std::string version();   // "0.2.0"
+std::string commit();    // from `git describe`, or "unknown"
 std::string compiler();  // "GNU 12.2.0"
 
 }  // namespace crescent::inline runs

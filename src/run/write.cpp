@@ -1,5 +1,5 @@
-// EXR files are written beside the drawing of plates; then plates, the assertions on them, metrics.json, metrics.csv,
-// junit.xml and report.html, and last timing.json, with the date. Times in seconds.
+// EXR files are written in parallel with the drawing of plates; then plates, the assertions on them, metrics.json,
+// metrics.csv, junit.xml and report.html, and last timing.json, with the date. Times in seconds.
 #include "run/write.h"
 
 #include <fmt/chrono.h>
@@ -25,8 +25,8 @@ namespace {
 
 PlateInputs plate_inputs(const Measured& m) {
     return {m.experiment, m.metrics, m.shapes, [&m](const RunKey& key) { return m.film(key); },
-        [&m](double s) { return m.reference(s); }, m.provenance.instrument, m.experiment.theme.value_or(Theme::dark),
-        [&m](const std::string& arm) { return outside_of(m.outside, arm); }};
+        [&m](double s) { return m.reference(s); }, m.provenance.backend, m.experiment.theme.value_or(Theme::dark),
+        [&m](const std::string& arm) { return external_of(m.outside, arm); }};
 }
 
 std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attributes text) {
@@ -35,7 +35,7 @@ std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attrib
     return encode_png(draw_plate(plan, in), text);
 }
 
-/// One file an arm and exponent, rungs as parts.
+/// One file per arm and exponent, sample counts as parts.
 void write_films(const Measured& m, Staging& staging, const ProgressMonitor& monitor) {
     std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
     for (const auto& [key, film] : m.films) {
@@ -56,7 +56,7 @@ void write_references(const Measured& m, Staging& staging) {
     if (!parts.empty()) write_exr(staging.path(fmt::format("films/{}.exr", reference_file)), parts, attributes_of(m));
 }
 
-/// Each as PNG; those of lines alone as SVG too.
+/// Writes each as PNG; those that consist only of lines as SVG too.
 void write_plates(const Measured& m, Staging& staging) {
     for (const auto& [name, png] : m.plates) staging.write("plates/" + name + ".png", png);
     const std::vector<PlatePlan>& plans = m.experiment.plates;
@@ -67,11 +67,11 @@ void write_plates(const Measured& m, Staging& staging) {
         if (!svg[k].empty()) staging.write("plates/" + plans[k].name + ".svg", svg[k]);
 }
 
-/// The experiment's own assertions stand first; those of the instrument stay as they are.
-void judge_plates(Measured& m) {
+/// The experiment's own assertions come first; those of the back end are unchanged.
+void check_plates(Measured& m) {
     PlateBytes bytes;
     for (const auto& [name, png] : m.plates) bytes[name] = png.size();
-    std::ranges::move(judge(m.experiment, m.metrics, bytes), m.metrics.assertions.begin());
+    std::ranges::move(evaluate_assertions(m.experiment, m.metrics, bytes), m.metrics.assertions.begin());
 }
 
 void write_reports(const Measured& m, Staging& staging, const OutputParts& parts) {
@@ -109,8 +109,8 @@ OutputParts output_parts(const std::string& words) {
 Attributes attributes_of(const Measured& m) {
     const Provenance& p = m.provenance;
     return {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
-        {"experiment", p.experiment_file + " " + p.experiment_hash}, {"command", p.command},
-        {"instrument", p.instrument}, {"seed", std::to_string(m.experiment.seed)}};
+        {"experiment", p.experiment_file + " " + p.experiment_hash}, {"command", p.command}, {"instrument", p.backend},
+        {"seed", std::to_string(m.experiment.seed)}};
 }
 
 Plates draw_plates(const Measured& m, const ProgressMonitor& monitor) {
@@ -153,7 +153,7 @@ void write(Measured& m, Staging& staging, ProgressMonitor& monitor, const Output
         });
     if (parts.plates) write_plates(m, staging);
     m.timing.stages.emplace_back("plates and films on disk", start.seconds());
-    if (parts.draws()) judge_plates(m);
+    if (parts.draws()) check_plates(m);
     const Stopwatch report;
     write_reports(m, staging, parts);
     m.timing.stages.emplace_back("report", report.seconds());

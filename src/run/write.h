@@ -1,4 +1,4 @@
-// Last step of a run: what was measured -> plates, films and reports in one folder, which appear as one.
+// Last step of a run: writes plates, films and reports of the measurements into one folder, all at once.
 #pragma once
 
 #include <string>
@@ -14,27 +14,27 @@ class Staging;
 
 namespace crescent::inline runs {
 
-/// "metrics,report" -> those alone. Throws InputError, which names the nearest word, for any other word.
+/// Parses "metrics,report" to those outputs only. Throws InputError with the nearest word for an unknown word.
 OutputParts output_parts(const std::string& words);
 
-/// The names that a run of this plan writes `parts` under, about: references that are not asked for and SVGs apart.
+/// Returns the names that a run of this plan writes `parts` under, without optional references and SVGs.
 std::vector<std::string> outputs_of(const RunPlan& plan, const OutputParts& parts);
 
-/// Every plate of the experiment, on as many threads as on_threads() allows. Throws OutputError where the font is
-/// missing, Interrupted where the monitor says so.
+/// Draws every plate of the experiment, on as many threads as on_threads() allows. Throws OutputError if the font is
+/// missing, Interrupted if the monitor requests it.
 Plates draw_plates(const Measured& measured, const ProgressMonitor& monitor);
 
-/// What a run says of itself in the header of a film or a picture: (name, text).
+/// Returns the attributes of a run for the header of a film or a picture: (name, text).
 Attributes attributes_of(const Measured& measured);
 
-/// Judges the assertions again, those on plates too, and writes `parts` and timing.json under `folder`, whose earlier
-/// outputs go. False where the monitor stopped it: nothing has changed there then.
+/// Checks the assertions again, including those on plates, and writes `parts` and timing.json under `folder`, whose
+/// earlier outputs are removed. Returns false if the monitor stopped it; the folder is unchanged in this case.
 bool write(Measured& measured, const std::string& folder, ProgressMonitor& monitor, const OutputParts& parts = {},
     int threads = 0);
 /// The same into a stage, which the caller commits; may throw Interrupted.
 void write(Measured& measured, Staging& staging, ProgressMonitor& monitor, const OutputParts& parts);
 
-/// What the numbers stand beside in reports.
+/// Returns the inputs of the reports.
 ReportInputs report_inputs(const Measured& measured);
 
 }  // namespace crescent::inline runs

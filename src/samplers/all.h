@@ -1,4 +1,4 @@
-// The one list of arms. A new sampler is one file beside this one and one word here; the list feeds the experiment
+// The list of samplers. To add one, add a file in this folder and a word here; the list determines the experiment
 // files, the CLI, the kernels, the documentation and the tests.
 #pragma once
 
@@ -16,9 +16,9 @@
 #include "samplers/sampler.h"
 #include "samplers/uniform.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
-/// The types of the arms, in the order of their indices. Each is a Sampler (arms/sampler.h).
+/// The types of the samplers, in the order of their indices. Each is a Sampler (samplers/sampler.h).
 template <template <class> class... A>
     requires(Sampler<A<float>, float> && ...)
 struct ArmList {
@@ -28,9 +28,9 @@ struct ArmList {
 using Samplers = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
     GgxVndf, GgxBoundedVndf, BeckmannD>;
 
-/// Calls f.template operator()<A>() for every arm A in the list's order.
+/// Calls f.template operator()<A>() for every sampler A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_sampler(ArmList<A...>, Call&& f) {
     (f.template operator()<A>(), ...);
 }
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

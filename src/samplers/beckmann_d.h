@@ -1,17 +1,17 @@
 // beckmann-d: a Beckmann normal by the distribution D(m) (n.m), mirrored to wi.
 //   tan^2 = -alpha^2 log(1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (25), (28), (29), (14).
-// D as density over the drawn u1: D cos = (1 - u1) / (pi alpha^2 cos^3), which costs no second pass over m.
+// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (25), (28), (29), (14). D as
+// density over the drawn u1: D cos = (1 - u1) / (pi alpha^2 cos^3), which needs no second evaluation at m.
 #pragma once
 
 #include "samplers/halfway.h"
 #include "scene/lobes/beckmann.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct BeckmannD {
     static constexpr std::string_view name = "beckmann-d";
-    static constexpr CaseSurface trials[] = {{.lobe = "beckmann", .sharpness = 1},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "beckmann", .sharpness = 1},
         {.lobe = "beckmann", .sharpness = 0.5}, {.lobe = "beckmann", .sharpness = 0.1},
         {.lobe = "beckmann", .sharpness = 0.01}, {.lobe = "beckmann", .sharpness = 0.3, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -19,9 +19,9 @@ template <class F> struct BeckmannD {
         .formula = R"(\frac{D(m)\,(n\cdot m)}{4(\omega_o\cdot m)})",
         .draw = R"($\tan^2\theta_m=-\alpha^2\log(1-u_1)$)",
         .axis = "the normal $n$",
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2e-5, "as blinn"}};
-    /// n.m is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. Where exp(-tan^2 /
+    /// n.m is smallest for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. If exp(-tan^2 /
     /// alpha^2) is less than the smallest double there, p is 0 where Lambert is not.
     static ExpectedBehaviour theory(const CasePoint& at) {
         const double least = math::cos((at.theta_deg + 90) * pi / 360);
@@ -34,7 +34,7 @@ template <class F> struct BeckmannD {
     }
 
     Beckmann<F> beckmann;
-    explicit BeckmannD(const ShadingPoint<F>& site) : beckmann{site.alpha} {}
+    explicit BeckmannD(const ShadingPoint<F>& shading_point) : beckmann{shading_point.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1), a2 = sqr(beckmann.alpha);
@@ -52,4 +52,4 @@ template <class F> struct BeckmannD {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -6,11 +6,11 @@
 
 #include "samplers/halfway.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct Blinn {
     static constexpr std::string_view name = "blinn";
-    static constexpr CaseSurface trials[] = {{.lobe = "blinn-phong", .sharpness = 8},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "blinn-phong", .sharpness = 8},
         {.lobe = "blinn-phong", .sharpness = 32}, {.lobe = "blinn-phong", .sharpness = 128},
         {.lobe = "blinn-phong", .sharpness = 1e4}, {.lobe = "blinn-phong", .sharpness = 1e5},
         {.lobe = "blinn-phong", .sharpness = 32, .lambert = true}};
@@ -20,18 +20,18 @@ template <class F> struct Blinn {
         .draw = R"($\cos\theta_m=u_1^{1/(s+1)}$)",
         .axis = "the normal $n$",
         .needs_s = true,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2e-5, "p has 1/(wo.m), and the mirrored wi doubles m's error"}};
-    /// n.h is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
+    /// n.h is smallest for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
     static ExpectedBehaviour theory(const CasePoint& at) {
         const double least = math::cos((at.theta_deg + 90) * pi / 360);
         return {.bounded = at.rho_d == 0, .underflows = power_underflows(at, least)};
     }
     F s, inverse, scale;
-    explicit Blinn(const ShadingPoint<F>& site)
-        : s(site.s),
-          inverse(number<F>(1) / (site.s + number<F>(1))),
-          scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
+    explicit Blinn(const ShadingPoint<F>& shading_point)
+        : s(shading_point.s),
+          inverse(number<F>(1) / (shading_point.s + number<F>(1))),
+          scale((shading_point.s + number<F>(1)) * number<F>(0.5 / pi)) {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const Power<F> root = power(u.x, inverse);
@@ -50,4 +50,4 @@ template <class F> struct Blinn {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

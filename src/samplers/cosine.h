@@ -1,22 +1,23 @@
-// cosine: the hemisphere of n by projected solid angle, right for Lambert under even light.
+// cosine: the hemisphere of n by projected solid angle, exact for Lambert under constant light.
 //   p = (n.w)/pi;  cos = sqrt(u1), phi = 2 pi u2, about n.
 #pragma once
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct Cosine {
     static constexpr std::string_view name = "cosine";
-    static constexpr CaseSurface trials[] = {{.lambert = true}, {.lobe = "phong", .sharpness = 32, .lambert = true},
-        {.lobe = "ggx", .sharpness = 0.5, .lambert = true}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr CaseSurface check_cases[] = {{.lambert = true},
+        {.lobe = "phong", .sharpness = 32, .lambert = true}, {.lobe = "ggx", .sharpness = 0.5, .lambert = true},
+        {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = name,
         .summary = "by the cosine with the normal: right for Lambert under even light",
         .formula = R"(\frac{(n\cdot\omega)}{\pi})",
         .draw = R"($\cos\theta=\sqrt{u_1}$)",
         .axis = "the normal $n$",
         .about = PdfAxis::normal,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2.5e-6, "as uniform; cos/p is a constant"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     explicit Cosine(const ShadingPoint<F>&) {}
@@ -32,4 +33,4 @@ template <class F> struct Cosine {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -1,5 +1,5 @@
-// A sampler that is no built-in arm: a program, or a shared library, that an experiment names in its place. It draws
-// in the local frame (n = +z, wo given, wi drawn), in double precision; pdf in 1/sr.
+// A sampler that is not built in: a program, or a shared library, that an experiment names instead. It draws in the
+// local frame (n = +z, wo given, wi drawn), in double precision; pdf in 1/sr.
 #pragma once
 
 #include <map>
@@ -11,31 +11,31 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
-/// What a sampler may know of the surface point, beside wo. Files and C read its rows as they stand here.
-struct OutsideSurface {
+/// The data of the surface point for a sampler, in addition to wo. Files and C use the same layout.
+struct ExternalSurface {
     double s;        // Phong exponent
     double alpha;    // GGX roughness
     double diffuse;  // Y(rho_d)
     double lobe;     // rho_s
 };
 
-/// Rows that follow one another at one surface point.
-struct OutsideRun {
+/// Consecutive rows at one surface point.
+struct ExternalRun {
     Vec3<double> wo;
-    OutsideSurface surface;
+    ExternalSurface surface;
     std::size_t rows;
 };
 
 /// A batch of draws. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
-struct OutsideBatch {
-    std::span<const OutsideRun> runs;
+struct ExternalBatch {
+    std::span<const ExternalRun> runs;
     std::span<const double> u;
 };
 
-/// Where a batch is drawn to, an entry a row. pdf 0: nothing was drawn.
-struct OutsideDraws {
+/// The output of a batch, one entry per row. pdf 0: nothing was drawn.
+struct ExternalDraws {
     std::span<Vec3<double>> wi;
     std::span<double> pdf;
 };
@@ -43,30 +43,30 @@ struct OutsideDraws {
 class ExternalSampler {
 public:
     virtual ~ExternalSampler() = default;
-    /// Its own name for itself.
+    /// Returns the sampler's own name.
     virtual std::string name() const = 0;
-    /// Random numbers that a sample takes, 1 to 8.
+    /// Returns the number of random numbers per sample, 1 to 8.
     virtual int numbers() const = 0;
-    /// One draw a row of u. May be called by many threads at once. Throws OutputError if it does not answer.
-    virtual void draw(const OutsideBatch& batch, const OutsideDraws& out) const = 0;
-    /// Whether it can be asked for the density of any direction.
+    /// Draws once for each row of u. May be called by many threads at once. Throws OutputError if it does not respond.
+    virtual void draw(const ExternalBatch& batch, const ExternalDraws& out) const = 0;
+    /// Returns whether it can evaluate the density of any direction.
     virtual bool has_density() const { return false; }
-    /// The density of each wi, 0 where it is never drawn. As draw() for threads and what it throws.
-    virtual void density(Vec3<double> /*wo*/, const OutsideSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
+    /// Evaluates the density of each wi, 0 if it is never drawn. Threads and exceptions as for draw().
+    virtual void density(Vec3<double> /*wo*/, const ExternalSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
         std::span<double> out) const {
         for (double& p : out) p = 0;
     }
 };
 
-/// The samplers from outside that an experiment's arms name, by arm.
-using OutsideSamplers = std::map<std::string, std::shared_ptr<const ExternalSampler>, std::less<>>;
-/// Null where the arm is built in.
-inline const ExternalSampler* outside_of(const OutsideSamplers& all, std::string_view arm) {
+/// The external samplers of an experiment's arms, by arm.
+using ExternalSamplers = std::map<std::string, std::shared_ptr<const ExternalSampler>, std::less<>>;
+/// Returns null if the arm is built in.
+inline const ExternalSampler* external_of(const ExternalSamplers& all, std::string_view arm) {
     const auto found = all.find(arm);
     return found == all.end() ? nullptr : found->second.get();
 }
 
-/// An arm as the kernels take it: a word of the list in all.h, or a sampler from outside, which goes before the word.
+/// A sampler as the kernels take it: a name of the list in all.h, or an external sampler, which takes precedence.
 struct SamplerRef {
     std::string_view sampler;
     const ExternalSampler* outside = nullptr;
@@ -75,4 +75,4 @@ struct SamplerRef {
     SamplerRef(const char* word) : sampler(word) {}
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

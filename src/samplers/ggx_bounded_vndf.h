@@ -1,5 +1,5 @@
-// ggx-bounded-vndf: as ggx-vndf, on a smaller cap that holds all normals whose mirrored direction is above the horizon,
-// so that fewer directions are drawn below it.
+// ggx-bounded-vndf: like ggx-vndf, on a smaller cap that contains all normals whose mirrored direction is above the
+// horizon, so that fewer directions are drawn below it.
 //   p = D(m) / (2 (k wo.z + t)),  t = sqrt(alpha^2 (wo.x^2 + wo.y^2) + wo.z^2);  ggx-vndf is k = 1
 //   k = (1 - alpha^2) s^2 / (s^2 + alpha^2 wo.z^2),  s = 1 + sqrt(wo.x^2 + wo.y^2)
 // Eto & Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", SIGGRAPH Asia Technical Communications, eqs
@@ -9,11 +9,11 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct GgxBoundedVndf {
     static constexpr std::string_view name = "ggx-bounded-vndf";
-    static constexpr CaseSurface trials[] = {{.lobe = "ggx", .sharpness = 1}, {.lobe = "ggx", .sharpness = 0.5},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "ggx", .sharpness = 1}, {.lobe = "ggx", .sharpness = 0.5},
         {.lobe = "ggx", .sharpness = 0.1}, {.lobe = "ggx", .sharpness = 0.01}, {.lobe = "ggx", .sharpness = 0.001},
         {.lobe = "ggx", .sharpness = 0.3, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -21,12 +21,12 @@ template <class F> struct GgxBoundedVndf {
         .formula = R"(\frac{D(m)}{2(k(n\cdot\omega_o)+t)})",
         .draw = "even over a spherical cap that is cut lower down, stretched",
         .axis = "the normal $n$",
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {1e-4, "as ggx-vndf, whose cap is cut at a height that is rounded as well"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
 
     Ggx<F> ggx;
-    explicit GgxBoundedVndf(const ShadingPoint<F>& site) : ggx{site.alpha} {}
+    explicit GgxBoundedVndf(const ShadingPoint<F>& shading_point) : ggx{shading_point.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1);
@@ -44,7 +44,7 @@ template <class F> struct GgxBoundedVndf {
 
 private:
     struct Bound {
-        F k, rest;  // rest: 1 - k, of which nothing cancels for a small alpha
+        F k, rest;  // rest: 1 - k, without cancellation for a small alpha
     };
     Bound bound_at(Vec3<F> wo) const {
         const F a2 = sqr(ggx.alpha), s2 = sqr(number<F>(1) + sqrt(wo.x * wo.x + wo.y * wo.y)), z2 = sqr(wo.z);
@@ -58,4 +58,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

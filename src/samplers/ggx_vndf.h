@@ -1,4 +1,4 @@
-// ggx-vndf: a GGX normal among those that wo sees, mirrored to wi.
+// ggx-vndf: a GGX normal among those visible from wo, mirrored to wi.
 //   p = G1(wo) D(m) max(wo.m, 0) / wo.z / (4 wo.m) = G1(wo) D(m) / (4 wo.z).
 // Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eq. (3) and (17); the draw by a spherical
 // cap in the stretched space: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8),
@@ -8,11 +8,11 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct GgxVndf {
     static constexpr std::string_view name = "ggx-vndf";
-    static constexpr CaseSurface trials[] = {{.lobe = "ggx", .sharpness = 0.5}, {.lobe = "ggx", .sharpness = 0.1},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "ggx", .sharpness = 0.5}, {.lobe = "ggx", .sharpness = 0.1},
         {.lobe = "ggx", .sharpness = 0.01}, {.lobe = "ggx", .sharpness = 0.001},
         {.lobe = "ggx", .sharpness = 0.3, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -20,11 +20,11 @@ template <class F> struct GgxVndf {
         .formula = R"(\frac{G_1(\omega_o)\,D(m)}{4(n\cdot\omega_o)})",
         .draw = "even over a spherical cap, stretched",
         .axis = "the normal $n$",
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {5e-5, "D(m) in f and p nearly cancel: (n.m)^4 near the pole is off by 1e-7/alpha^2 in each"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     Ggx<F> ggx;
-    explicit GgxVndf(const ShadingPoint<F>& site) : ggx{site.alpha} {}
+    explicit GgxVndf(const ShadingPoint<F>& shading_point) : ggx{shading_point.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1);
@@ -44,4 +44,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

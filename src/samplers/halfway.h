@@ -1,12 +1,12 @@
-// What the half-vector arms share: m is drawn about n, wi is wo mirrored in m, and
-//   dw_i = 4 (wo.m) dw_m,  hence  p(wi) = p_m(m) / (4 (wo.m)).        Walter et al. 2007, eq. (14)
-// Where wi falls under the horizon nothing is drawn: the sample weighs 0 and counts, and p is not renormalised, so that
-// it integrates to one less that share. (Under the horizon p would grow without bound towards wi = -wo.)
+// Shared by the half-vector samplers: m is drawn about n, wi is wo mirrored in m, and
+//   dw_i = 4 (wo.m) dw_m,  so    p(wi) = p_m(m) / (4 (wo.m)).        Walter et al. 2007, eq. (14)
+// If wi is below the horizon nothing is drawn: the sample has weight 0 and counts, and p is not renormalised, so its
+// integral is one minus that share. (Below the horizon p would grow without bound towards wi = -wo.)
 #pragma once
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> F half_jacobian(F wo_m) { return number<F>(4) * larger(wo_m, number<F>(1e-12)); }
 
@@ -16,7 +16,7 @@ template <class F> Vec3<F> halfway(Vec3<F> wo, Vec3<F> wi) {
     return sum * (number<F>(1) / sqrt(larger(dot(sum, sum), number<F>(1e-30))));
 }
 
-/// p where wo and wi are above the horizon, else 0.
+/// Returns p if wo and wi are above the horizon, else 0.
 template <class F> PerSr<F> above(Vec3<F> wo, Vec3<F> wi, F p) {
     return {select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), p, number<F>(0))};
 }
@@ -28,9 +28,10 @@ template <class F> Vec3<F> mirror_about(Vec3<F> wo, Vec3<F> m) { return m * (num
 template <class F> Vec3<F> stretched_by(F alpha, Vec3<F> wo) {
     return normalize(Vec3<F>{alpha * wo.x, alpha * wo.y, wo.z});
 }
-/// The normal halfway between `stretched` and the direction (sin, phi, rise - stretched.z) of the cap, back from there.
+/// Returns the normal halfway between `stretched` and the direction (sin, phi, rise - stretched.z) of the cap,
+/// transformed back.
 template <class F> Vec3<F> normal_from_cap(F alpha, Vec3<F> stretched, F sin, SinCos<F> phi, F rise) {
     return normalize(Vec3<F>{alpha * (sin * phi.cos + stretched.x), alpha * (sin * phi.sin + stretched.y), rise});
 }
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -1,12 +1,12 @@
-// The table is made from the types of arms/all.h at first use: name, manual, techniques and theory are theirs. What a
-// manual's formulas may say is checked as it compiles.
+// The table is made from the types of samplers/all.h at first use: name, documentation, techniques and theory. The
+// formulas are checked at compile time.
 #include "samplers/info.h"
 
 #include "math/functions.h"
 #include "output/formula.h"
 #include "samplers/all.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 namespace {
 
@@ -61,4 +61,4 @@ std::uint64_t directions_per_sample(std::string_view sampler) {
     return arm ? static_cast<std::uint64_t>(arm->techniques) : 1;
 }
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

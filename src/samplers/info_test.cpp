@@ -1,4 +1,4 @@
-// What every built-in arm states is complete, and can be set.
+// The description of every built-in sampler is complete, and its formulas can be set.
 #include "samplers/info.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 namespace {
 
 TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
@@ -23,7 +23,7 @@ TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
     EXPECT_EQ(find_arm_info("no such arm"), nullptr);
 }
 
-TEST(ArmInfos, SayInOneLineWhatTheyAimAtAndHaveFormulasThatCanBeSet) {
+TEST(ArmInfos, HaveSummariesAndValidFormulas) {
     for (const SamplerInfo& arm : sampler_infos()) {
         EXPECT_FALSE(arm.summary.empty()) << arm.name;
         EXPECT_LE(arm.summary.size(), 100u) << arm.name;
@@ -34,14 +34,14 @@ TEST(ArmInfos, SayInOneLineWhatTheyAimAtAndHaveFormulasThatCanBeSet) {
     }
 }
 
-TEST(ArmInfos, TellTheLightThatTheyMissWhereTheoryExpectsThatOfTheirSupport) {
+TEST(ArmInfos, StateMissedLightAsTheoryExpects) {
     for (const SamplerInfo& arm : sampler_infos()) {
         const bool support = arm.theory && arm.theory({.rho_d = 0.5, .fill = 1}).wrong == "support";
         EXPECT_EQ(!arm.misses.empty(), support) << arm.name;
     }
 }
 
-/// What every arm needs, but for the density of a direction: it gives a bare number.
+/// Everything a sampler needs, except that its density is a plain number.
 template <class F> struct WithoutUnits {
     static constexpr std::string_view name = "without-units";
     static constexpr SamplerDoc manual = {.label = name};
@@ -49,7 +49,7 @@ template <class F> struct WithoutUnits {
     Drawn<F> sample(Vec3<F>, Vec2<F>) const { return {}; }
     F pdf(Vec3<F>, Vec3<F>) const { return {}; }
 };
-/// Two techniques of which one has no weight.
+/// Two techniques, one of them without a weight.
 template <class F> struct WithoutWeight : Cosine<F> {
     static constexpr int techniques = 2;
     using Cosine<F>::Cosine;
@@ -57,7 +57,7 @@ template <class F> struct WithoutWeight : Cosine<F> {
     template <int> PerSr<F> pdf_technique(Vec3<F> wo, Vec3<F> wi) const { return this->pdf(wo, wi); }
 };
 
-TEST(Samplers, AreHeldToWhatAnArmMustHaveInEveryArithmetic) {
+TEST(Samplers, SatisfyTheConceptInEveryArithmetic) {
     for_each_sampler(Samplers{}, []<template <class> class A>() { static_assert(Sampler<A<double>, double>); });
     static_assert(!Sampler<WithoutUnits<float>, float>);
     static_assert(!Sampler<WithoutWeight<float>, float>);
@@ -79,4 +79,4 @@ TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
 }
 
 }  // namespace
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -1,17 +1,17 @@
-// light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times the largest area
-// that it shows, pi r^2 of a disk. A point y is even over the light's area A (of a ball, over what x sees of it):
+// light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times its largest projected area,
+// pi r^2 for a disk. A point y is uniform over the light's area A (for a ball, over the part visible from x):
 //   p_A = 1/A;  p = p_A |y - x|^2 / cos(light).  Of a disk y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2).
-// Other kinds of light: scene/lights/. It reaches nothing but the lights: under a fill it is wrong by the fill, unless
+// Other kinds of light: scene/lights/. It reaches only the lights: under a fill it is biased by the fill, unless
 // another technique adds that.
 #pragma once
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct LightArea {
     static constexpr std::string_view name = "light-area";
-    static constexpr CaseSurface trials[] = {{.lambert = true, .light = "disk"},
+    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "disk"},
         {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = "light-area (NEE)",
@@ -20,7 +20,7 @@ template <class F> struct LightArea {
         .draw = "even over a light's area",
         .axis = "the light",
         .misses = light_arm_misses,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
@@ -28,10 +28,10 @@ template <class F> struct LightArea {
     const LocalLight<F>* others;  // after the disks
     int other_count;
 
-    /// A disk with what does not change from sample to sample.
+    /// A disk with the values that are constant over samples.
     struct Aim {
         Vec3<F> center, t, b;  // t and b span the disk: as long as its radius
-        F scale;               // p = scale |y|^3: r^2 / cos(light) = |y|^3 / |c.n|; 0 where no emitting side faces x
+        F scale;               // p = scale |y|^3: r^2 / cos(light) = |y|^3 / |c.n|; 0 if no emitting side faces x
 
         Aim() = default;
         explicit Aim(const LocalDisk<F>& d) {
@@ -42,10 +42,13 @@ template <class F> struct LightArea {
                 lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
         }
     };
-    Aim first;  // most scenes have but one
+    Aim first;  // most scenes have only one
 
-    explicit LightArea(const ShadingPoint<F>& site)
-        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
+    explicit LightArea(const ShadingPoint<F>& shading_point)
+        : disks(shading_point.disks),
+          count(shading_point.disk_count),
+          others(shading_point.others),
+          other_count(shading_point.other_count) {
         if (count > 0) first = Aim(disks[0]);
     }
 
@@ -79,7 +82,7 @@ template <class F> struct LightArea {
             below = above;
         }
         const auto some = drawn.pdf.v > zero;
-        // Disks may stand one behind another: every one that wi meets could have drawn it.
+        // Disks may lie one behind another: every one that wi meets could have drawn it.
         drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, own), zero);
         return {drawn, own, some};
     }
@@ -89,9 +92,8 @@ template <class F> struct LightArea {
     }
 
 private:
-    /// The density with which the disks but for one draw wi. The question whether wi meets a disk is that of the
-    /// estimator (meets_disk in estimator/disk_hit.h), bit for bit, so that no sample is worth a disk and weighed as if
-    /// it met none.
+    /// Returns the density with which the disks except one draw wi. Whether wi meets a disk is tested as in the
+    /// estimator (meets_disk in render/disk_hit.h), bit for bit, so that value and density of a sample are consistent.
     [[gnu::always_inline]] F density_of_others(Vec3<F> wi, F but) const {
         F sum = number<F>(0);
         for (int k = 0; k < count; ++k) {
@@ -134,4 +136,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

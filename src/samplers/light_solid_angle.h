@@ -1,24 +1,24 @@
-// light-solid-angle: next-event estimation (NEE), a light by solid angle: other kinds of light as scene/lights/ has it,
-// a disk uniform over the smallest cap of
-// directions about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
+// light-solid-angle: next-event estimation (NEE), a light by solid angle: other kinds of light as in scene/lights/, a
+// disk uniform over the smallest cap of directions about the disk's spherical ellipse that contains it. The disk is
+// chosen by its power Y(L) pi r^2.
 //   p = 1 / (2 pi (1 - cos b)),  cos = 1 - u1 (1 - cos b), phi = 2 pi u2, about the ellipse's centre a.
 // The ellipse (Guillen et al. 2017, "Area-Preserving Parameterizations for Spherical Ellipses", section 3): with t the
-// disk's direction away from x's foot in its plane, as long as its radius, a bisects c + t and c - t, and so meets the
+// disk's direction away from x's foot in its plane, of its radius' length, a bisects c + t and c - t, and so meets the
 // plane at
 //   y = c + q t,  q = (|c-t| - |c+t|) / (|c-t| + |c+t|) = -4 c.t / (|c-t| + |c+t|)^2;
-// its long half-axis b lies across, tan b = half chord / |y|, half chord^2 = r^2 (1 - q^2).
-// A facing disk fills its cap; of an oblique one some directions miss, see what is behind it and are worth that: no pdf
-// changes. Outside the caps it reaches nothing. A direction is drawn as its difference e to a, of which nothing is lost
-// however small the cap is: a + e meets the plane at y + (k e - (e.n) y) / v, k = c.n, v = (a + e).n.
+// its long half-axis b lies across, tan b = half chord / |y|, half chord^2 = r^2 (1 - q^2). A facing disk fills its
+// cap; for an oblique one some directions miss, see what is behind it and have that value: no pdf changes. Outside the
+// caps it reaches nothing. A direction is drawn as its difference e from a, which keeps its precision for a cap of any
+// size: a + e meets the plane at y + (k e - (e.n) y) / v, k = c.n, v = (a + e).n.
 #pragma once
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct LightSolidAngle {
     static constexpr std::string_view name = "light-solid-angle";
-    static constexpr CaseSurface trials[] = {{.lambert = true, .light = "disk"},
+    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "disk"},
         {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = "light-solid-angle (NEE)",
@@ -27,7 +27,7 @@ template <class F> struct LightSolidAngle {
         .draw = R"(even over a light's solid angle $\Omega$; of a disk, over a cap around it)",
         .axis = "the light",
         .misses = light_arm_misses,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
@@ -38,13 +38,16 @@ template <class F> struct LightSolidAngle {
     struct Cap {
         Vec3<F> axis;
         F height;        // 1 - cos b
-        F density;       // 1/sr; 0 where x is behind a one-sided disk
+        F density;       // 1/sr; 0 if x is behind a one-sided disk
         Vec3<F> y, off;  // where the axis meets the disk's plane, from x and from the disk's centre
     };
-    Cap first;  // most scenes have but one
+    Cap first;  // most scenes have only one
 
-    explicit LightSolidAngle(const ShadingPoint<F>& site)
-        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
+    explicit LightSolidAngle(const ShadingPoint<F>& shading_point)
+        : disks(shading_point.disks),
+          count(shading_point.disk_count),
+          others(shading_point.others),
+          other_count(shading_point.other_count) {
         if (count > 0) first = cap_of(disks[0]);
     }
 
@@ -77,7 +80,7 @@ template <class F> struct LightSolidAngle {
             drawn.met = (chosen & (w.pdf > zero)) | (drawn.met & !chosen);
             below = above;
         }
-        // Caps may overlap: every one that holds wi could have drawn it.
+        // Caps may overlap: every one that contains wi could have drawn it.
         drawn.pdf.v = select(drawn.pdf.v > zero, drawn.pdf.v + density_of_others(drawn.wi, drawn.disk), zero);
         return drawn;
     }
@@ -85,7 +88,7 @@ template <class F> struct LightSolidAngle {
     PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const { return {density_of_others(wi, number<F>(-1))}; }
 
 private:
-    /// The density with which the caps but for one draw wi.
+    /// Returns the density with which the caps except one draw wi.
     F density_of_others(Vec3<F> wi, F but) const {
         F sum = number<F>(0), below = number<F>(0);
         for (int k = 0; k < count; ++k) {
@@ -145,4 +148,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

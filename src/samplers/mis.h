@@ -1,16 +1,16 @@
 // Two-sample multiple importance sampling: one direction from the BRDF's mixture, one from the lights (by area), both
-// added, each weighed by what the other technique would have done there.
+// added, each weighted by the densities of both techniques.
 //   X = w_1 f L cos / p_1 + w_2 f L cos / p_2,  w_1 + w_2 = 1 wherever p_1 + p_2 > 0.
-// Veach & Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering": one sample from each.
-// N counts pairs.
+// Veach & Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering": one sample from each. N
+// counts pairs.
 #pragma once
 
 #include "samplers/light_area.h"
 #include "samplers/mixture.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
-inline constexpr CaseSurface mis_trials[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
+inline constexpr CaseSurface mis_cases[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
     {.lobe = "phong", .sharpness = 1000, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + two disks"}};
@@ -20,7 +20,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
     static constexpr int techniques = 2;
     Mixture<F> brdf;
     LightArea<F> light;
-    explicit TwoSampleMis(const ShadingPoint<F>& site) : brdf(site), light(site) {}
+    explicit TwoSampleMis(const ShadingPoint<F>& shading_point) : brdf(shading_point), light(shading_point) {}
 
     template <int t> auto sample_technique(Vec3<F> wo, Vec2<F> u) const {
         if constexpr (t == 0) return brdf.sample(wo, u);
@@ -39,7 +39,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
 //   w_i = p_i / (p_1 + p_2)      Veach & Guibas 1995, eq. (11) with one sample from each.
 
 struct BalanceHeuristic {
-    /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and weighs 0.
+    /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and has weight 0.
     template <class F> static F weight(F own, F other) {
         const auto drawn = own > number<F>(0);
         return select(drawn, number<F>(1) / (number<F>(1) + other / select(drawn, own, number<F>(1))), number<F>(0));
@@ -56,7 +56,7 @@ template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
         .axis = "both",
         .needs_s = true,
         .combines = true,
-        .trials = mis_trials,
+        .check_cases = mis_cases,
         .gl = {5e-6, "as mixture; weights are at most 1"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, BalanceHeuristic>::TwoSampleMis;
@@ -83,10 +83,10 @@ template <class F> struct MisPower : TwoSampleMis<F, PowerHeuristic> {
         .axis = "both",
         .needs_s = true,
         .combines = true,
-        .trials = mis_trials,
+        .check_cases = mis_cases,
         .gl = {5e-6, "as mixture; weights are at most 1"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, PowerHeuristic>::TwoSampleMis;
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -1,18 +1,18 @@
 // mixture: one sample from two techniques, chosen by u1: the lobe (phong, about R) with probability q, else cosine.
 //   q = min(rho_s / (rho_s + Y(rho_d)), 9/10), and 0 on a surface without a lobe;
 //   p = q p_phong + (1 - q) p_cosine;  u1 in [0, q) is stretched to [0, 1) for the lobe, the rest for the cosine.
-// The cosine keeps a tenth at least, so that no direction above the horizon is out of reach: defensive mixture,
+// The cosine keeps at least a tenth, so that every direction above the horizon is reached: defensive mixture,
 // Hesterberg 1995, "Weighted Average Importance Sampling and Defensive Mixture Distributions".
 #pragma once
 
 #include "samplers/cosine.h"
 #include "samplers/phong.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct Mixture {
     static constexpr std::string_view name = "mixture";
-    static constexpr CaseSurface trials[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
         {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
         {.lobe = "phong", .sharpness = 1000, .lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -22,16 +22,16 @@ template <class F> struct Mixture {
         .axis = "$R$ or $n$",
         .needs_s = true,
         .combines = true,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {5e-6, "as phong; the cosine beside it bounds 1/p"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     Phong<F> lobe;
     Cosine<F> diffuse;
     F q;
-    explicit Mixture(const ShadingPoint<F>& site) : lobe(site), diffuse(site) {
-        const F sum = site.lobe + site.diffuse;
+    explicit Mixture(const ShadingPoint<F>& shading_point) : lobe(shading_point), diffuse(shading_point) {
+        const F sum = shading_point.lobe + shading_point.diffuse;
         const auto some = sum > number<F>(0);
-        q = select(some, smaller(site.lobe / select(some, sum, number<F>(1)), number<F>(0.9)), number<F>(0));
+        q = select(some, smaller(shading_point.lobe / select(some, sum, number<F>(1)), number<F>(0.9)), number<F>(0));
     }
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
@@ -46,4 +46,4 @@ template <class F> struct Mixture {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

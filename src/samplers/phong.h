@@ -1,5 +1,5 @@
-// phong: a cosine-power lobe about R = reflect(-wo, n). Part of it may lie under the horizon of n: such samples weigh
-// 0 and count; p is not renormalised.
+// phong: a cosine-power lobe about R = reflect(-wo, n). Part of it may lie below the horizon of n: such samples have
+// weight 0 and count; p is not renormalised.
 //   p = (s+1)/(2 pi) (w.R)_+^s;  cos = u1^(1/(s+1)), phi = 2 pi u2, about R.
 // On the drawn direction (w.R)^s = u1 / cos: the density costs a division, not a second power.
 #pragma once
@@ -7,11 +7,11 @@
 #include "math/functions.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct Phong {
     static constexpr std::string_view name = "phong";
-    static constexpr CaseSurface trials[] = {{.lobe = "phong", .sharpness = 8}, {.lobe = "phong", .sharpness = 32},
+    static constexpr CaseSurface check_cases[] = {{.lobe = "phong", .sharpness = 8}, {.lobe = "phong", .sharpness = 32},
         {.lobe = "phong", .sharpness = 128}, {.lobe = "phong", .sharpness = 1e4}, {.lobe = "phong", .sharpness = 1e5},
         {.lobe = "phong", .sharpness = 32, .lambert = true}, {.lambert = true}};
     static constexpr SamplerDoc manual = {.label = name,
@@ -21,9 +21,9 @@ template <class F> struct Phong {
         .axis = "the mirror direction $R$",
         .about = PdfAxis::mirror,
         .needs_s = true,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"}};
-    /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and past 90 deg from R no samples at
+    /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and beyond 90 deg from R no samples at
     /// all.
     static ExpectedBehaviour theory(const CasePoint& at) {
         if (!(at.rho_d > 0)) return {.bounded = true};
@@ -31,7 +31,7 @@ template <class F> struct Phong {
         ExpectedBehaviour t;
         t.lost = (1 - math::cos(at.theta_deg * pi / 180)) / 2;
         t.lost_of = at.rho_d;
-        t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light lies below
+        t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light is below
         t.tail_k = tilted ? at.s / (at.s + 1) : (at.s - 1) / (at.s + 1);
         if (tilted) t.wrong = "support";
         t.why = tilted
@@ -40,10 +40,10 @@ template <class F> struct Phong {
         return t;
     }
     F s, inverse, scale;
-    explicit Phong(const ShadingPoint<F>& site)
-        : s(site.s),
-          inverse(number<F>(1) / (site.s + number<F>(1))),
-          scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
+    explicit Phong(const ShadingPoint<F>& shading_point)
+        : s(shading_point.s),
+          inverse(number<F>(1) / (shading_point.s + number<F>(1))),
+          scale((shading_point.s + number<F>(1)) * number<F>(0.5 / pi)) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const Power<F> lobe = root(u.x, inverse);
@@ -51,7 +51,7 @@ template <class F> struct Phong {
         const F sin = sqrt(lobe.one_minus * (number<F>(1) + cos));
         const SinCos<F> phi = sincos_turns(u.y);
         const Frame<F> about = frame_about(mirror(wo));
-        const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 is 0, not 0/0
+        const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 gives 0, not 0/0
         return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * along}};
     }
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {
@@ -59,4 +59,4 @@ template <class F> struct Phong {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -1,4 +1,4 @@
-// What a sampler is. Directions in the local frame (n = +z, wo given, wi drawn); u in [0,1)^2; pdf in 1/sr.
+// The interface of a sampler. Directions in the local frame (n = +z, wo given, wi drawn); u in [0,1)^2; pdf in 1/sr.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include "samplers/info.h"
 #include "scene/lights/all.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 /// A density over solid angle, 1/sr.
 template <class F> struct PerSr {
@@ -20,30 +20,31 @@ template <class F> struct PerSr {
 template <class F> struct PerM2 {
     F v;
 };
-/// dw = cos dA / r^2, hence p_w = p_A r^2 / cos.
+/// dw = cos dA / r^2, so p_w = p_A r^2 / cos.
 template <class F> PerSr<F> per_sr(PerM2<F> p, F r2, F cos_light) { return {p.v * r2 / cos_light}; }
 
-/// A direction and the density it was drawn with. pdf 0: nothing was drawn, the sample weighs 0 and counts.
+/// A direction and the density it was drawn with. pdf 0: nothing was drawn, the sample has weight 0 and counts.
 template <class F> struct Drawn {
     Vec3<F> wi;
     PerSr<F> pdf;
 };
 
 /// A direction that was drawn towards a light. Whether it meets that light is known from the draw; a test of the
-/// rounded direction may fail: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
+/// rounded direction may fail: float directions are 1e-7 apart, so an area light of 1e-6 m at 3 m is only three of them
+/// wide.
 template <class F> struct DrawnToDisk : Drawn<F> {
     F disk;         // the index of that light, disks first
     MaskOf<F> met;  // wi meets it; it may still be behind another light, or hidden
 };
 
-/// A disk light as seen from the surface: everything in the local frame.
+/// A disk light as seen from the surface, in the local frame.
 template <class F> struct LocalDisk {
     Vec3<F> to_center;  // from the surface point, m
     Vec3<F> normal;     // unit
     F radius;           // m
     F two_sided;        // 1: emits from both sides
-    F power;            // Y(L) pi r^2: how much it is worth choosing
-    F along;  // to_center.normal, m; 0 where the disk's plane passes through the point, which it then gives nothing
+    F power;            // Y(L) pi r^2: the weight in the choice among lights
+    F along;  // to_center.normal, m; 0 if the disk's plane passes through the point, which receives nothing from it
 
     LocalDisk() = default;
     LocalDisk(Vec3<F> c, Vec3<F> n, F r, F sides, F share)
@@ -51,13 +52,13 @@ template <class F> struct LocalDisk {
         const F height = dot(c, n);
         along = select(abs(height) > number<F>(1e-6) * (sqrt(dot(c, c)) + r), height, number<F>(0));
     }
-    /// The surface stands before an emitting side.
+    /// Returns whether the surface is in front of an emitting side.
     [[gnu::always_inline]] MaskOf<F> faces() const {
         return (along < number<F>(0)) | ((along > number<F>(0)) & (two_sided > number<F>(0)));
     }
 };
 
-/// Everything about a surface point that a sampler may aim by.
+/// The data of a surface point that a sampler may use.
 template <class F> struct ShadingPoint {
     Vec3<F> wo;
     F s;        // Phong exponent
@@ -66,11 +67,11 @@ template <class F> struct ShadingPoint {
     F lobe;     // rho_s
     const LocalDisk<F>* disks = nullptr;
     int disk_count = 0;
-    const LocalLight<F>* others = nullptr;  // lights that are no disks
+    const LocalLight<F>* others = nullptr;  // lights other than disks
     int other_count = 0;
 };
 
-/// What holds of the arms that aim at lights alone.
+/// The light that samplers which aim only at lights cannot reach.
 inline constexpr std::string_view light_arm_misses = "the fill";
 inline ExpectedBehaviour theory_of_light_arm(const CasePoint& at) {
     ExpectedBehaviour t;
@@ -78,14 +79,14 @@ inline ExpectedBehaviour theory_of_light_arm(const CasePoint& at) {
     return t;
 }
 
-/// One direction a sample, from one density.
+/// One direction per sample, from one density.
 template <class S, class F>
 concept DrawsOne = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
     { arm.sample(wo, u) } -> std::convertible_to<Drawn<F>>;  // u in [0,1)^2
     { arm.pdf(wo, wi) } -> std::same_as<PerSr<F>>;           // 0 off the support
 };
 
-/// Two directions a sample, from a density each; the weight of a direction that technique t drew.
+/// Two directions per sample, each from its own density; the weight of a direction drawn by technique t.
 template <class S, class F>
 concept DrawsTwo = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u, Drawn<F> drawn) {
     requires S::techniques == 2;
@@ -97,12 +98,12 @@ concept DrawsTwo = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u, Draw
     { arm.template weight<1>(wo, drawn) } -> std::same_as<F>;
 };
 
-/// What an arm must have: a name, what it says of itself, and a surface point to be made from. `theory` (CasePoint ->
-/// ExpectedBehaviour) may be left out.
+/// The requirements on a sampler: a name, a description, and construction from a surface point. `theory` (CasePoint ->
+/// ExpectedBehaviour) is optional.
 template <class S, class F>
 concept Sampler = std::constructible_from<S, const ShadingPoint<F>&> && requires {
     { S::name } -> std::convertible_to<std::string_view>;
     { S::manual } -> std::convertible_to<SamplerDoc>;
 } && (DrawsTwo<S, F> || (!requires { S::techniques; } && DrawsOne<S, F>));
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

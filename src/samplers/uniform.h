@@ -1,22 +1,23 @@
-// uniform: the hemisphere of n, every solid angle alike.
+// uniform: the hemisphere of n, uniform in solid angle.
 //   p = 1/(2 pi);  cos = u1, phi = 2 pi u2, about n.
 #pragma once
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline arms {
+namespace crescent::inline samplers {
 
 template <class F> struct Uniform {
     static constexpr std::string_view name = "uniform";
-    static constexpr CaseSurface trials[] = {{.lambert = true}, {.lobe = "phong", .sharpness = 32, .lambert = true},
-        {.lobe = "ggx", .sharpness = 0.5, .lambert = true}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr CaseSurface check_cases[] = {{.lambert = true},
+        {.lobe = "phong", .sharpness = 32, .lambert = true}, {.lobe = "ggx", .sharpness = 0.5, .lambert = true},
+        {.lambert = true, .light = "fill + disk"}};
     static constexpr SamplerDoc manual = {.label = name,
         .summary = "every direction above the surface alike",
         .formula = R"(\frac{1}{2\pi})",
         .draw = R"($\cos\theta=u_1$)",
         .axis = "the normal $n$",
         .about = PdfAxis::normal,
-        .trials = trials,
+        .check_cases = check_cases,
         .gl = {2.5e-6, "cos times the lobe: (w.R)^s turns 1e-7 of w.R into s 1e-7 of the lobe"}};
     static ExpectedBehaviour theory(const CasePoint&) { return {.bounded = true}; }
     explicit Uniform(const ShadingPoint<F>&) {}
@@ -31,4 +32,4 @@ template <class F> struct Uniform {
     }
 };
 
-}  // namespace crescent::inline arms
+}  // namespace crescent::inline samplers

@@ -1,5 +1,5 @@
 // A body's shadow on the plane across the axis is an ellipse or a polygon; its azimuths are those of the two tangents
-// from the origin. An ellipse's are the roots of a quadratic form, in closed form. Radians.
+// from the origin. Those of an ellipse are the roots of a quadratic form, in closed form. Radians.
 #include "scene/body.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace crescent::inline scene {
 
 namespace {
 
-/// A point or an arrow in the plane across the axis.
+/// A point or a vector in the plane across the axis.
 struct Flat {
     double x, y;
 };
@@ -54,7 +54,7 @@ Azimuths azimuths_of_corners(std::span<const Vec3d> points, Vec3d x, const Frame
     for (std::size_t k = 0; k < points.size(); ++k) corners[k] = flat(points[k] - x, frame);
     Flat middle = {0, 0};
     for (std::size_t k = 0; k < points.size(); ++k) middle.x += corners[k].x, middle.y += corners[k].y;
-    if (middle.x == 0 && middle.y == 0) return {};  // the axis meets their hull, and there is no azimuth to count from
+    if (middle.x == 0 && middle.y == 0) return {};  // the axis meets their hull, and the azimuth is undefined
     double lo = pi, hi = -pi;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double off = math::atan2(cross(middle, corners[k]), dot(middle, corners[k]));

@@ -1,4 +1,4 @@
-// What the bodies that stand between a surface and a light share: their numbers as kernels have them, and parts of
+// Shared by the bodies that may lie between a surface and a light: their numbers as kernels have them, and parts of
 // their tests. Single precision there, distances in m.
 #pragma once
 
@@ -19,8 +19,8 @@
 
 namespace crescent::inline scene {
 
-// ---- What a kind of shape or of light is made of, one parameter at a time: what a file calls it, what it takes, where
-// it is kept. The table of an experiment file and the words of a report are made from this.
+// ---- The parameters of a kind of shape or light: name in a file, type, range and member; the table of an experiment
+// file and the words of a report are made from them.
 
 /// Bounds of a number or of every number in a list.
 struct Range {
@@ -29,7 +29,7 @@ struct Range {
     bool holds(double x) const { return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high); }
 };
 
-inline constexpr Range place_range{-1e6, 1e6};   // m; float kernels keep sub-millimetre steps well inside
+inline constexpr Range place_range{-1e6, 1e6};   // m; float kernels resolve steps below a millimetre in this range
 inline constexpr Range length_range{1e-6, 1e6};  // m
 inline constexpr Range albedo_range{0, 1};
 
@@ -41,7 +41,7 @@ template <class Kind> struct Parameter {
     Range range{};
     std::string_view unit{};
     bool unit_vector = false;
-    std::string_view default_value{};  // "": it must be given; a flag is false where it is not
+    std::string_view default_value{};  // "": required; a flag defaults to false
 };
 
 namespace parameter {
@@ -70,9 +70,9 @@ template <class Kind> constexpr Parameter<Kind> albedo(
 
 }  // namespace parameter
 
-/// What two parameters say of each other that cannot be.
+/// A contradiction between two parameters.
 struct Mistake {
-    std::string_view key;   // where it is mended
+    std::string_view key;   // the key to change
     std::string_view says;  // what was expected there, what was found
 };
 
@@ -82,7 +82,7 @@ template <class... Kind> struct KindList {
     using Any = std::variant<Kind...>;
     static constexpr std::array<std::string_view, count> names = {Kind::name...}, summaries = {Kind::summary...};
 
-    /// The kind at `index` with nothing set.
+    /// Returns the kind at `index` with nothing set.
     static Any make(std::size_t index) {
         Any out;
         std::size_t k = 0;
@@ -98,8 +98,8 @@ template <class... Kind> struct KindList {
     }
 };
 
-// ---- Which parts of a straight edge, the chord, a body hides from a point: what the bodies' own files share. Double
-// precision.
+// ---- The parts of a straight edge, the chord, that a body hides from a point: shared by the files of the bodies.
+// Double precision.
 
 /// v in [lo, hi] of the chord y(v) = y0 + v (y1 - y0), v in [0, 1]; empty where lo >= hi.
 struct Interval {
@@ -107,12 +107,12 @@ struct Interval {
     bool empty() const { return !(lo < hi); }
 };
 
-/// The part of the way from the point (0) to the light (1) on which a surface stands in between. The ends are left out,
-/// so that rounding never decides whether a body hides what lies in its own face.
+/// The part of the way from the point (0) to the light (1) on which a surface counts as between them. The ends are
+/// excluded, so that rounding never decides whether a body hides points of its own face.
 struct Between {
     double from = 0, to = 1;
 };
-inline constexpr double at_an_end = 1e-5;  // of the way; the kernels' share too
+inline constexpr double at_an_end = 1e-5;  // fraction of the way; the kernels use it too
 inline constexpr Between before_light{at_an_end, 1 - at_an_end};
 
 /// A point, and the chord as seen from it.
@@ -121,7 +121,7 @@ struct Sight {
     Between between;
 };
 
-/// v in `range` with a v^2 + 2 b v + c <= 0, known to be one interval there.
+/// Returns v in `range` with a v^2 + 2 b v + c <= 0, known to be one interval there.
 inline Interval where_negative(double a, double b, double c, Interval range) {
     if (range.empty()) return {};
     std::array<double, 4> cut = {range.lo, range.lo, range.hi, range.hi};
@@ -142,7 +142,7 @@ inline Interval where_negative(double a, double b, double c, Interval range) {
     }
     return out;
 }
-/// v in [0, 1] with p0 + v (p1 - p0) >= 0.
+/// Returns v in [0, 1] with p0 + v (p1 - p0) >= 0.
 inline Interval where_positive(double p0, double p1) {
     if (p0 >= 0 && p1 >= 0) return {0, 1};
     if (p0 < 0 && p1 < 0) return {};
@@ -150,15 +150,15 @@ inline Interval where_positive(double p0, double p1) {
     return p0 < 0 ? Interval{root, 1} : Interval{0, root};
 }
 inline Interval both(Interval a, Interval b) { return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)}; }
-/// The smallest interval that holds two.
+/// Returns the smallest interval that contains both.
 inline Interval hull(Interval a, Interval b) {
     return a.empty() ? b : b.empty() ? a : Interval{std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
 
-/// Of a convex solid: the v whose way meets it, and those whose way begins or ends in it.
+/// For a convex solid: the v whose way meets it, and those whose way begins or ends in it.
 struct Met {
     Interval way, start, end;
-    /// Its surface is crossed where the way meets it, unless it runs inside from start to end.
+    /// Returns the v at which its surface is crossed: where the way meets it, unless it runs inside from start to end.
     std::array<Interval, 2> crossed() const {
         const Interval inside = both(start, end);
         if (inside.empty()) return {way, {}};
@@ -166,16 +166,16 @@ struct Met {
     }
 };
 
-/// Where the chord's ways cross the plane through p with normal n.
+/// Where the ways to the chord cross the plane through p with normal n.
 struct OnPlane {
     Vec3d at0, step;  // from p, homogeneous: way v meets the plane at (at0 + v step) / (w0 + v w1)
     double w0, w1;
     Interval sides;  // start and end lie on different sides
 };
-/// A point on the plane of a light, seen from a surface point.
+/// Projects a point onto the plane of a light, seen from a surface point.
 inline OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
     const double hx = dot(n, s.x - p), h0 = dot(n, s.d0),
-                 h1 = h0 + dot(n, s.step);  // height of x; rise along the chord's ends
+                 h1 = h0 + dot(n, s.step);  // height of x; increase along the chord
     const double sign = hx > 0 ? 1 : -1;
     // Intersection point = x - d hx / (n.d): relative to p, times -n.d, which is linear in v.
     const Vec3d g0 = sign * (-h0 * (s.x - p) + hx * s.d0), g1 = sign * (-h1 * (s.x - p) + hx * (s.d0 + s.step));
@@ -186,28 +186,29 @@ inline OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
         hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
 }
 
-// ---- Where a ray x + t d first meets a shape. t counts in units of d; misses are infinite.
+// ---- The first intersection of a ray x + t d with a shape; t is in units of d and infinite for a miss.
 
 struct Intersection {
     double t = std::numeric_limits<double>::infinity();      // where the surface is
-    double order = std::numeric_limits<double>::infinity();  // where it takes its turn (a panel: at its opening)
-    Vec3d n{};                                               // geometric normal, not yet turned to the viewer
+    double order = std::numeric_limits<double>::infinity();  // the t by which surfaces are ordered (a panel: at its
+                                                             // opening)
+    Vec3d n{};                                               // geometric normal, not yet turned towards the viewer
     bool reveal = false;                                     // the side of a recessed panel
 };
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
-/// A surface at t that takes its turn there.
+/// Returns a surface at t that is ordered by the same t.
 inline Intersection crossing_at(double t, Vec3d n) { return {t, t, n, false}; }
 
-/// t where the ray meets the plane through `point` with normal n.
+/// Returns t where the ray meets the plane through `point` with normal n.
 inline double plane_t(Vec3d point, Vec3d n, Vec3d x, Vec3d d) {
     const double v = dot(n, d);
     const double t = v == 0 ? never : dot(n, point - x) / v;
     return t > 0 ? t : never;
 }
 
-/// t where the ray meets the parallelogram corner + a u + b v, 0 <= a, b <= 1.
+/// Returns t where the ray meets the parallelogram corner + a u + b v, 0 <= a, b <= 1.
 inline double parallelogram_t(Vec3d corner, Vec3d u, Vec3d v, Vec3d x, Vec3d d) {
     const Vec3d w = cross(u, v);
     const double t = plane_t(corner, w, x, d);
@@ -217,49 +218,49 @@ inline double parallelogram_t(Vec3d corner, Vec3d u, Vec3d v, Vec3d x, Vec3d d) 
     return a >= 0 && a <= 1 && b >= 0 && b <= 1 ? t : never;
 }
 
-// ---- Seen along an axis through a point, the azimuths at which a body may be met: what the half-planes that end in
-// the axis have to cross. Radians; double precision.
+// ---- The azimuths, as seen along an axis through a point, at which a ray may meet a body: those that half-planes
+// ending in the axis must cover. Radians; double precision.
 
 /// The azimuths [middle - half, middle + half] about the axis frame.n, counted from frame.t towards frame.b; half = pi
-/// where the axis, or its other end, meets the body.
+/// if the axis, or its other end, meets the body.
 struct Azimuths {
     double middle = 0, half = pi;
     bool whole() const { return half >= pi; }
-    /// Is any azimuth of [lo, hi] among them? Both may lie several turns away.
+    /// Returns whether any azimuth of [lo, hi] is among them. Both may differ by several turns.
     bool meet(double lo, double hi) const;
 };
 
-/// An ellipse about p with conjugate half-axes u and v, seen from the origin.
+/// Returns the azimuths of an ellipse around p with conjugate half-axes u and v, seen from the origin.
 Azimuths azimuths_of_ellipse(Vec3d p, Vec3d u, Vec3d v, const Frame<double>& frame);
-/// A ball about p.
+/// Returns the azimuths of a ball around p.
 Azimuths azimuths_of_ball(Vec3d p, double radius, const Frame<double>& frame);
-/// The hull of some points, at most eight, seen from x.
+/// Returns the azimuths of the convex hull of at most eight points, seen from x.
 Azimuths azimuths_of_corners(std::span<const Vec3d> corners, Vec3d x, const Frame<double>& frame);
 
-/// A body from the scene's origin. What a, b, c, radius and offset are is each kind's own.
+/// A body relative to the scene's origin. The meaning of a, b, c, radius and offset depends on the kind.
 struct BodyNumbers {
     Vec3d a{}, b{}, c{};
     double radius = 0, offset = 0;
 };
-/// The same for a pack of pixels.
+/// The same numbers for a pack of pixels.
 template <class F> struct PackedBody {
     Vec3<F> a, b, c;
     F radius, offset;
 };
 
-/// From here on a body is large: in single precision its centre would lie 5e-6 m and more from where it is. Such a body
-/// is held by what is nearest of it, m.
+/// The size from which a body counts as large: in single precision its centre would be off by 5e-6 m or more. Such a
+/// body is stored relative to its point nearest to the origin, m.
 inline constexpr double large_body = 100;
 
 template <class F> MaskOf<F> within(F t, F lo, F hi) { return (t > lo) & (t < hi); }
 
-/// t where o + t d meets the plane n.y = offset.
+/// Returns t where o + t d meets the plane n.y = offset.
 template <class F> F plane_at(Vec3<F> n, F offset, Vec3<F> o, Vec3<F> d) {
     const F denominator = dot(n, d);
     return (offset - dot(n, o)) / select(denominator == number<F>(0), number<F>(1e-30), denominator);
 }
 
-/// How far a disk of unit normal n reaches along `axis` from its centre, for radius 1.
+/// Returns how far a disk of unit normal n and radius 1 extends along `axis` from its centre.
 double disk_reach(Vec3d axis, Vec3d n);
 
 }  // namespace crescent::inline scene

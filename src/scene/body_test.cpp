@@ -1,4 +1,4 @@
-// The azimuths of random quads hold the azimuth of each of their points.
+// The azimuths of random quads include the azimuth of each of their points.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -29,7 +29,7 @@ TEST(Azimuths, HoldEveryPointOfAQuad) {
     }
 }
 
-/// Corners that add up to nothing leave no direction to count from.
+/// Corners whose sum is zero give no direction to count from.
 TEST(Azimuths, AreAllOfThemWhereTheAxisMeetsTheMiddle) {
     const Frame<double> up = frame_about(Vec3d{0, 0, 1});
     EXPECT_TRUE((shapes::Quad{{-1, -0.25, 2}, {2, 0, 0}, {0, 0.5, 0}}.azimuths({}, up).whole()));

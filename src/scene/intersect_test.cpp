@@ -1,5 +1,5 @@
-// Where a ray first meets a shape, against what that means: the point lies on the surface, the normal is unit and
-// turned out of it, and nothing of the shape stands before it. Random rays at random shapes of every kind.
+// The first intersection of a ray with a shape, against its definition: the point lies on the surface, the normal is
+// unit and points outwards, and no part of the shape lies before the point. Random rays at random shapes of every kind.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ private:
 
 enum class ShapeKind { sphere, box, quad, disk, plane, panel };
 
-/// The parameters of every kind, one of which is looked at.
+/// The parameters of every kind, one of which is tested.
 struct Sample {
     ShapeKind kind = ShapeKind::sphere;
     Vec3d center{}, min{}, max{}, corner{}, edge_u{}, edge_v{}, point{}, normal{};
@@ -68,7 +68,8 @@ Sample some_shape(ShapeKind kind, PrimarySample& next) {
     return q;
 }
 
-/// How far p is from the plane, and whether its place in the parallelogram u, v is within [0, 1] but for `slack`.
+/// Returns the distance of p from the plane, and whether its coordinates in the parallelogram u, v are within [0, 1] up
+/// to `slack`.
 bool on_parallelogram(Vec3d p, Vec3d corner, Vec3d u, Vec3d v, double slack) {
     const Vec3d n = normalize(cross(u, v)), w = cross(u, v), d = p - corner;
     const double a = dot(cross(d, v), w) / dot(w, w), b = dot(cross(u, d), w) / dot(w, w);
@@ -84,7 +85,7 @@ bool on_panel(const Sample& q, Vec3d p, bool reveal, double slack) {
         on_parallelogram(p, q.corner + q.edge_u, q.edge_v, down, slack);
 }
 
-/// The point lies on the shape's surface.
+/// Returns whether the point lies on the shape's surface.
 bool on_surface(const Sample& q, Vec3d p, bool reveal) {
     constexpr double slack = 1e-9;
     switch (q.kind) {
@@ -103,7 +104,7 @@ bool on_surface(const Sample& q, Vec3d p, bool reveal) {
     return false;
 }
 
-/// The normal that the surface has there, by the shape's definition, up to its sign.
+/// Returns the normal of the surface there by the shape's definition, up to its sign.
 bool normal_fits(const Sample& q, Vec3d p, const Intersection& c) {
     const auto along = [&](Vec3d n) { return std::fabs(std::fabs(dot(c.n, n)) - 1) < 1e-9; };
     switch (q.kind) {
@@ -130,7 +131,7 @@ template <class Visit> void for_each_ray(ShapeKind kind, Visit&& visit) {
     }
 }
 
-TEST(IntersectLaw, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
+TEST(IntersectConformance, NearestPointIsOnTheSurfaceWithItsNormal) {
     for (const ShapeKind kind : kinds) {
         int hits = 0;
         for_each_ray(kind, [&](const Sample& q, Vec3d x, Vec3d d) {
@@ -148,7 +149,7 @@ TEST(IntersectLaw, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
     }
 }
 
-/// Steps along the ray and looks whether it changed sides of a closed body, or crossed a flat one, before t.
+/// Steps along the ray and returns whether it changes sides of a closed body, or crosses a flat one, before t.
 bool crosses_before(const Sample& q, Vec3d x, Vec3d d, double t) {
     constexpr int steps = 400;
     const auto inside = [&](Vec3d p) {
@@ -161,7 +162,7 @@ bool crosses_before(const Sample& q, Vec3d x, Vec3d d, double t) {
     return false;
 }
 
-TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
+TEST(IntersectConformance, NothingOfAClosedBodyStandsBeforeIt) {
     for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box})
         for_each_ray(kind, [&, k = 0](const Sample& q, Vec3d x, Vec3d d) mutable {
             if (k++ % 10 != 0) return;
@@ -170,7 +171,7 @@ TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
         });
 }
 
-TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
+TEST(IntersectConformance, ASmallSphereFarAwayIsMetWhereItIs) {
     PrimarySample next(11);
     for (const double far : {1e2, 1e4, 1e5})
         for (int k = 0; k < 300; ++k) {
@@ -184,7 +185,7 @@ TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
         }
 }
 
-TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
+TEST(IntersectConformance, FromInsideABodyTheFarWallIsMet) {
     PrimarySample next(3);
     for (int k = 0; k < 2000; ++k) {
         const Sample ball = some_shape(ShapeKind::sphere, next), box = some_shape(ShapeKind::box, next);
@@ -197,7 +198,7 @@ TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
     }
 }
 
-TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
+TEST(IntersectConformance, PanelsAreEnteredOnlyFromTheFront) {
     PrimarySample next(5);
     int reveals = 0;
     for (int k = 0; k < 20'000; ++k) {
@@ -210,8 +211,8 @@ TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
         const Intersection c = intersect(q, x, d);
         ASSERT_TRUE(std::isfinite(c.t));
         EXPECT_GE(c.t, length(in_it - x) - 1e-9);                     // behind the opening
-        EXPECT_NEAR(c.order, length(in_it - x), 1e-6);                // but in its place
-        EXPECT_LE(dot(q.corner - (x + c.t * d), n), q.depth + 1e-9);  // no deeper than it is
+        EXPECT_NEAR(c.order, length(in_it - x), 1e-6);                // but ordered by its opening
+        EXPECT_LE(dot(q.corner - (x + c.t * d), n), q.depth + 1e-9);  // not deeper than the panel
         EXPECT_FALSE(std::isfinite(intersect(q, in_it - 2.0 * n, n).t));
         reveals += c.reveal;
     }

@@ -1,6 +1,6 @@
-// A primary ray goes through a pixel's centre from a pinhole; the nearest of all shapes is hit, tried one by one. Hits
-// are remembered whole up to whole_hits pixels, above that as the index of the shape alone. Positions in kernels are
-// told from the nearest of 144 hits, which is close to what is seen.
+// A primary ray goes from a pinhole through a pixel's centre; the nearest of all shapes, tested one by one, is hit.
+// Whole hits are stored up to whole_hits pixels; above that, only the index of the shape. Positions in kernels are
+// relative to the nearest of 144 hits, which is close to what is visible.
 #include "scene/scene.h"
 
 #include <cmath>

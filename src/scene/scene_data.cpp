@@ -1,4 +1,4 @@
-// The shape that s belongs to: the one that s_of names, else the first with a lobe, else the first that states an s.
+// The shape that s belongs to: the one named by s_of, else the first with a lobe, else the first that states an s.
 #include "scene/scene_data.h"
 
 #include <algorithm>
@@ -6,8 +6,8 @@
 
 namespace crescent::inline scene {
 
-// ---- rho_s is the luminance of a coloured lobe and its tint the colour over that, so that grey lobes keep their bits.
-// alpha is sqrt(2 / (s + 2)) where it is not given (Walter et al. 2007).
+// ---- rho_s is the luminance of a coloured lobe and its tint is the colour over that, so that grey lobes keep their
+// bits; the default alpha is sqrt(2 / (s + 2)) (Walter et al. 2007).
 
 void Material::set_specular(const Rgb& color) {
     const double y = luminance(color);
@@ -23,8 +23,8 @@ Surface surface_of(const Material& m, double common_s) {
     return out;
 }
 
-// ---- Each kind of shape answers for itself. A shape that is not one body, such as a panel, adds the bodies it
-// consists of.
+// ---- Calls the functions of each kind of shape; a shape that consists of several bodies, such as a panel, adds all of
+// them.
 
 Intersection intersect(const Shape& shape, Vec3d x, Vec3d d) {
     return std::visit([&](const auto& form) { return form.intersect(x, d); }, shape.form);
@@ -49,8 +49,8 @@ std::optional<Rgb> albedo_of_reveal(const Shape& shape) {
         shape.form);
 }
 
-// ---- Where a plane through the viewpoint, with normal k, cuts a disk or a quad: both ends of the segment. Positions
-// in m from the viewpoint.
+// ---- The segment in which a plane through the viewpoint, with normal k, cuts a disk or a quad; positions in m from
+// the viewpoint.
 
 std::optional<Line> cut(const shapes::Disk& disk, Vec3d center, Vec3d k) {
     const Vec3d across = k - dot(k, disk.normal) * disk.normal;

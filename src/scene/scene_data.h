@@ -17,23 +17,23 @@
 
 namespace crescent::inline scene {
 
-// ---- What a surface reflects: f = rho_d/pi + rho_s * lobe(s or alpha), albedos in [0, 1], f in 1/sr.
+// ---- The reflection of a surface: f = rho_d/pi + rho_s * lobe(s or alpha), albedos in [0, 1], f in 1/sr.
 
-/// As it is given. A Lambert surface has rho_s = 0; its s only steers the arms.
+/// A material as given. A Lambert surface has rho_s = 0; its s only affects the samplers.
 struct Material {
     Rgb rho_d{};
-    double rho_s = 0;  // of the lobe; where it has a colour, its luminance
+    double rho_s = 0;  // of the lobe; for a coloured lobe, its luminance
     LobeKind brdf{0};
     std::optional<double> s;        // Phong exponent
     std::optional<double> alpha;    // GGX roughness, (0, 1], no remapping
     bool inherits_s = false;        // s is not the shape's own but the scene's
-    std::optional<Rgb> specular{};  // the lobe's albedo where it has a colour, rho_s being its luminance
+    std::optional<Rgb> specular{};  // albedo of a coloured lobe, rho_s being its luminance
 
-    /// Gives the lobe an albedo of a colour; a grey one is a number.
+    /// Sets a coloured albedo of the lobe; a grey one is a number.
     void set_specular(const Rgb& color);
 };
 
-/// The same with every default filled in.
+/// A material with every default filled in.
 struct Surface {
     Rgb rho_d{};
     double rho_s = 0;
@@ -41,17 +41,17 @@ struct Surface {
     double s = 0, alpha = 0;
     Rgb tint = {1, 1, 1};  // the lobe's albedo is rho_s * tint
 
-    /// Y of what the lobe reflects of light of this colour, over rho_s.
+    /// Returns Y of what the lobe reflects of light of this colour, over rho_s.
     double tinted(const Rgb& light) const {
         return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
     }
 };
 
-/// A material's surface in a scene whose common exponent is s. Where it states no alpha: sqrt(2/(s+2)), as wide as a
-/// Blinn-Phong lobe of exponent s (Walter et al. 2007), so that a GGX arm has something to aim by on any surface.
+/// Returns a material's surface in a scene whose common exponent is s. The default alpha is sqrt(2/(s+2)), as wide as a
+/// Blinn-Phong lobe of exponent s (Walter et al. 2007), so that a GGX sampler works on any surface.
 Surface surface_of(const Material& material, double common_s);
 
-// ---- What shines. Radiance in W/(sr m^2), lengths in m. Seen by sampled rays only.
+// ---- Lights: radiance in W/(sr m^2), lengths in m; only sampled rays see them.
 
 inline constexpr std::size_t most_lights = 64;  // in one scene
 
@@ -62,19 +62,19 @@ struct Light {
     SourceLocation at;
     std::string_view kind() const { return LightKinds::names[form.index()]; }
 
-    /// What it puts before the lights behind it.
+    /// Returns the body with which it hides the lights behind it.
     Bodies::Any body() const {
         return std::visit([](const auto& f) -> Bodies::Any { return f.body(); }, form);
     }
-    /// An emitting side faces x.
+    /// Returns whether an emitting side faces x.
     bool shines_on(Vec3d x) const {
         return std::visit([&](const auto& f) { return f.shines_on(x); }, form);
     }
-    /// In whose directions it is seen from x.
+    /// Returns the figure whose directions it covers as seen from x.
     Figure seen_from(Vec3d x) const {
         return std::visit([&](const auto& f) { return f.seen_from(x); }, form);
     }
-    /// How much it is worth choosing: Y(L) times the largest area that it shows, over pi.
+    /// Returns the weight in the choice among lights: Y(L) times its largest projected area, over pi.
     double power() const {
         return luminance(radiance) * std::visit([](const auto& f) { return f.disk_area(); }, form);
     }
@@ -92,34 +92,34 @@ struct DiskLight {
     Light light() const { return {name, lights::Disk{center, normal, radius, two_sided}, radiance, at}; }
 };
 
-// ---- What the camera sees. Lengths in m.
+// ---- Shapes and camera. Lengths in m.
 
-/// One shape: where it lies, what it reflects.
+/// One shape: its geometry and its reflection.
 struct Shape {
     std::string name;
     Shapes::Any form;  // one of the kinds of shapes/all.h
     Material material;
-    bool occludes = false;  // whether it stands before the lights
+    bool occludes = false;  // whether it hides lights
     SourceLocation at;
     std::string_view kind() const { return Shapes::names[form.index()]; }
 };
 
-/// A convex body that can stand between a surface and a light. A shape that is not convex is made of several.
+/// A convex body that can lie between a surface and a light. A shape that is not convex consists of several.
 struct Occluder {
     Bodies::Any body;
-    int shape = -1;  // its own surface is never shadowed by it
+    int shape = -1;  // this shape is never shadowed by it
 };
 
-/// Where the ray x + t d first meets the shape.
+/// Returns where the ray x + t d first meets the shape.
 Intersection intersect(const Shape& shape, Vec3d x, Vec3d d);
 
-/// What it puts before lights, as shape `index`.
+/// Adds the bodies with which it hides lights, as shape `index`.
 void add_occluders(const Shape& shape, int index, std::vector<Occluder>& out);
 
-/// The diffuse albedo of the sides of a recess, where the shape has one and states it.
+/// Returns the diffuse albedo of the sides of a recess, if the shape has one and states it.
 std::optional<Rgb> albedo_of_reveal(const Shape& shape);
 
-// ---- A pinhole camera and the grid of pixels behind it. Lengths in m, angles in degrees; right-handed.
+// ---- A pinhole camera and its grid of pixels. Lengths in m, angles in degrees; right-handed.
 
 struct Image {
     int width = 0, height = 0;  // pixels
@@ -138,25 +138,25 @@ struct Camera {
     double vfov_deg = 0;  // vertical field of view
 };
 
-// ---- The flat figure in whose directions a light is seen from a point: what the reference integrates over. Lengths in
-// m.
+// ---- The flat figure that covers the directions of a light as seen from a point: the domain of the reference's
+// integral. Lengths in m.
 
-/// The side that a light's figure emits from.
+/// Returns the normal of the side that a light's figure emits from.
 inline Vec3d normal_of(const shapes::Disk& disk) { return disk.normal; }
 inline Vec3d normal_of(const shapes::Quad& quad) { return normalize(cross(quad.edge_u, quad.edge_v)); }
 inline Vec3d normal_of(const Figure& figure) {
     return std::visit([](const auto& f) { return normal_of(f); }, figure);
 }
-/// The centre of a figure, m.
+/// Returns the centre of a figure, m.
 inline Vec3d middle_of(const Figure& figure) {
     return std::visit([](const auto& f) { return f.middle(); }, figure);
 }
-/// How far a figure reaches from its middle along an axis, m.
+/// Returns how far a figure extends from its middle along an axis, m.
 inline double half_extent_of(const Figure& figure, Vec3d axis) {
     return std::visit([&](const auto& f) { return f.half_extent(axis); }, figure);
 }
 
-/// Of the disk about its middle that holds it, m.
+/// Returns the radius of the disk around its middle that contains it, m.
 inline double radius_of(const shapes::Disk& disk) { return disk.radius; }
 inline double radius_of(const shapes::Quad& quad) {
     const Vec3d a = quad.edge_u + quad.edge_v, b = quad.edge_u - quad.edge_v;
@@ -166,7 +166,7 @@ inline double radius_of(const Figure& figure) {
     return std::visit([](const auto& f) { return radius_of(f); }, figure);
 }
 
-/// Its area over pi, m^2.
+/// Returns its area over pi, m^2.
 inline double disk_area(const shapes::Disk& disk) { return sqr(disk.radius); }
 inline double disk_area(const shapes::Quad& quad) {
     const Vec3d n = cross(quad.edge_u, quad.edge_v);
@@ -176,14 +176,14 @@ inline double disk_area(const Figure& figure) {
     return std::visit([](const auto& f) { return disk_area(f); }, figure);
 }
 
-/// The corners of a parallelogram that holds it, in order round it.
+/// Returns the corners of a parallelogram that contains it, in order.
 inline std::array<Vec3d, 4> corners_about(const shapes::Disk& disk) {
     const Frame<double> frame = frame_about(disk.normal);
     const Vec3d side = disk.radius * frame.t, up = disk.center + disk.radius * frame.b,
                 down = disk.center - disk.radius * frame.b;
     return {up - side, up + side, down + side, down - side};
 }
-/// The corners in their order about the normal.
+/// Returns the corners in their order about the normal.
 inline std::array<Vec3d, 4> corners_about(const shapes::Quad& quad) {
     return {quad.corner, quad.corner + quad.edge_u, quad.corner + quad.edge_u + quad.edge_v, quad.corner + quad.edge_v};
 }
@@ -191,11 +191,11 @@ inline std::array<Vec3d, 4> corners_about(const Figure& figure) {
     return std::visit([](const auto& f) { return corners_about(f); }, figure);
 }
 
-/// The same directions from x, `far` times as far away.
+/// Returns a disk of the same directions from x, `far` times as far away.
 inline shapes::Disk moved(const shapes::Disk& disk, Vec3d x, double far) {
     return {x + far * (disk.center - x), disk.normal, far * disk.radius};
 }
-/// The figure seen from x, lengths over `far`.
+/// Returns the figure seen from x, lengths over `far`.
 inline shapes::Quad moved(const shapes::Quad& quad, Vec3d x, double far) {
     return {x + far * (quad.corner - x), far * quad.edge_u, far * quad.edge_v};
 }
@@ -203,7 +203,7 @@ inline Figure moved(const Figure& figure, Vec3d x, double far) {
     return std::visit([&](const auto& f) -> Figure { return moved(f, x, far); }, figure);
 }
 
-/// The figure as something that hides others.
+/// Returns the figure as a body that hides others.
 inline Bodies::Any body_of(const Figure& figure) {
     return std::visit([](const auto& f) -> Bodies::Any { return f; }, figure);
 }
@@ -212,7 +212,8 @@ inline Bodies::Any body_of(const Figure& figure) {
 struct Line {
     Vec3d from, to;
 };
-/// Where the plane of normal k through the origin cuts a figure whose middle or corner lies at `at` from there.
+/// Returns the segment in which the plane of normal k through the origin cuts a figure whose middle or corner is at
+/// `at` from there.
 std::optional<Line> cut(const shapes::Disk& disk, Vec3d at, Vec3d k);
 std::optional<Line> cut(const shapes::Quad& quad, Vec3d at, Vec3d k);
 
@@ -226,9 +227,10 @@ struct SceneData {
     std::string
         s_of;  // the shape whose exponent is the scene's; empty: the first with a lobe, else the first with an s
 
-    /// The scene's own s, which steers arms on surfaces without a lobe: that of shape_of_s(); 0 where none has one.
+    /// Returns the scene's own s, used by samplers on surfaces without a lobe: that of shape_of_s(); 0 if there is
+    /// none.
     double s() const;
-    /// The shape whose exponent that is; null where no shape has one of its own.
+    /// Returns the shape whose exponent that is; null if no shape has an exponent of its own.
     const Shape* shape_of_s() const;
     const Shape* find_shape(std::string_view name) const;
 };

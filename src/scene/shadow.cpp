@@ -1,4 +1,4 @@
-// Each kind of body answers for itself.
+// Calls the functions of each kind of body.
 #include "scene/shadow.h"
 
 #include <algorithm>
@@ -22,10 +22,10 @@ public:
     Apart(const Body& body, const Extent& from, const Light& light)
         : body_(body), from_(from), light_(light), d_(light.middle() - from.middle) {}
 
-    /// A plane across `axis` parts them.
+    /// Returns whether a plane across `axis` separates them.
     bool across(Vec3d axis) const { return is_beyond(axis) || is_beyond(-axis); }
 
-    /// So does the plane that grazes the points and the light on the side towards which `aside` points.
+    /// Returns whether the plane that touches the points and the light on the side of `aside` separates them.
     bool by_graze(Vec3d aside) const {
         const double d2 = dot(d_, d_);
         const Vec3d p = aside - (dot(aside, d_) / d2) * d_;
@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    /// The body lies beyond all of the hull along `axis`.
+    /// Returns whether the body lies beyond all of the hull along `axis`.
     bool is_beyond(Vec3d axis) const {
         const double hull = std::max(half_extent(from_.half, axis), dot(axis, d_) + light_.half_extent(axis));
         return dot(axis, body_.middle() - from_.middle) - body_.half_extent(axis) >= hull;

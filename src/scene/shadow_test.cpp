@@ -1,4 +1,4 @@
-// Random bodies between random points and disks: what is said to hide nothing is crossed by none of 200 segments.
+// Random bodies between random points and disks: none of 200 segments crosses a body that is reported to hide nothing.
 #include "scene/shadow.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ Obstacle some_obstacle(Kind kind, PrimarySample& next) {
     return s;
 }
 
-/// Of random segments from the points to the disk, those that the body crosses.
+/// Returns the number of random segments from the points to the disk that the body crosses.
 int hidden_segments(const Obstacle& s, PrimarySample& next, int segments) {
     const Frame<double> frame = frame_about(s.disk.normal);
     int hidden_ones = 0;
@@ -74,16 +74,16 @@ TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
         PrimarySample next(7 + static_cast<std::uint32_t>(kind));
         int clear = 0, unclear = 0, in_the_way = 0;
-        for (int trial = 0; trial < 1000; ++trial) {
+        for (int check_case = 0; check_case < 1000; ++check_case) {
             const Obstacle s = some_obstacle(kind, next);
             const bool parted = is_separated(s.body, s.from, s.disk.light().body());
             const int hidden_ones = hidden_segments(s, next, 200);
-            EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
+            EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << check_case;
             in_the_way += hidden_ones > 0;
             clear += parted;
             unclear += !parted && hidden_ones == 0;
         }
-        // It is worth asking: most of what hides nothing is seen to hide nothing.
+        // The test is useful: most bodies that hide nothing are recognised.
         EXPECT_GT(in_the_way, 20) << static_cast<int>(kind);
         EXPECT_GT(clear, 4 * unclear) << static_cast<int>(kind);
     }
@@ -93,17 +93,17 @@ TEST(PassesBy, IsNeverSaidOfABodyThatHidesSome) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
         PrimarySample next(17 + static_cast<std::uint32_t>(kind));
         int clear = 0, in_the_way = 0;
-        for (int trial = 0; trial < 1000; ++trial) {
+        for (int check_case = 0; check_case < 1000; ++check_case) {
             Obstacle s = some_obstacle(kind, next);
             s.from.half = {};
             const bool passes = passes_by(ball_around(s.body), s.from.middle, {s.disk.center, s.disk.radius});
             const int hidden_ones = hidden_segments(s, next, 200);
-            EXPECT_FALSE(passes && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
+            EXPECT_FALSE(passes && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << check_case;
             in_the_way += hidden_ones > 0;
             clear += passes;
         }
         EXPECT_GT(in_the_way, 20) << static_cast<int>(kind);
-        EXPECT_EQ(clear > 200, kind != Kind::plane) << static_cast<int>(kind);  // no ball holds a plane
+        EXPECT_EQ(clear > 200, kind != Kind::plane) << static_cast<int>(kind);  // no ball contains a plane
     }
 }
 

@@ -41,7 +41,7 @@ template <class F> std::shared_ptr<const SamplerAdapter> with_numbers(
 
 }  // namespace
 
-std::shared_ptr<const SamplerAdapter> subject_of(const Sampler& s) {
+std::shared_ptr<const SamplerAdapter> make_adapter(const Sampler& s) {
     Traits known;
     known.wo = s.wo;
     known.reciprocal = s.reciprocal;

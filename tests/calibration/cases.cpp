@@ -36,15 +36,15 @@ const std::vector<const Family*>& twelve() {
 
 Real real_of(Rng& d) { return d.whole(0, 1) ? Real::f32 : Real::f64; }
 
-std::vector<std::pair<double, double>> grid_of(const CaseKey& key, Traits::Asked asked) {
+std::vector<std::pair<double, double>> grid_of(const CaseKey& key, Traits::WoDomain asked) {
     Rng d = dice_for(key, "w_o");
     return random_grid(d, asked, key.wo);
 }
 
-/// The w_o of the trials, without the samplers beside them.
-std::vector<Vec3d> directions_of(const std::vector<CheckCase>& trials) {
+/// The w_o of the cases, without the samplers beside them.
+std::vector<Vec3d> directions_of(const std::vector<CheckCase>& check_cases) {
     std::vector<Vec3d> out;
-    for (const CheckCase& t : trials)
+    for (const CheckCase& t : check_cases)
         if (!t.baseline) out.push_back(t.wo);
     return out;
 }
@@ -52,7 +52,7 @@ std::vector<Vec3d> directions_of(const std::vector<CheckCase>& trials) {
 Case faulty_case(const Family& family, const Member& member, Real real, const Fault& fault, const CaseKey& key) {
     const Case right = case_of(sampler_of(family, member, real), key, State::right, "right");
     const Sampler s =
-        faulty(family, member, real, fault, directions_of(right.trials), {key.set, key.seed, key.index, "fault"});
+        faulty(family, member, real, fault, directions_of(right.check_cases), {key.set, key.seed, key.index, "fault"});
     Case c = case_of(s, key, State::wrong, std::string(word(fault)));
     c.size = fault.size;
     c.cause = cause_of(fault);
@@ -143,13 +143,13 @@ Case make_stated(const CaseKey& key) { return stated_right(stated_case(key), key
 
 }  // namespace
 
-std::vector<std::pair<double, double>> random_grid(Rng& d, Traits::Asked asked, int count) {
+std::vector<std::pair<double, double>> random_grid(Rng& d, Traits::WoDomain asked, int count) {
     std::vector<std::pair<double, double>> out;
-    if (asked == Traits::Asked::none) return out;
+    if (asked == Traits::WoDomain::none) return out;
     for (int k = 0; k < count; ++k) {
         const double theta = d.whole(0, 7) == 0 ? 0 : d.whole(0, 3) ? d.uniform(0.5, 80) : d.uniform(80, 89);
         const double azimuth = d.uniform(0, 360);
-        const bool below = d.whole(0, 1) == 1 && asked == Traits::Asked::both;
+        const bool below = d.whole(0, 1) == 1 && asked == Traits::WoDomain::both;
         out.emplace_back(below ? 180 - theta : theta, azimuth);
     }
     return out;
@@ -164,7 +164,7 @@ Case case_of(const Sampler& sampler, const CaseKey& key, State expected, std::st
     c.real = sampler.real();
     c.sampler = sampler;
     c.grid = grid_of(key, sampler.wo);
-    c.trials = make_user_cases(subject_of(sampler), key.full, c.grid);
+    c.check_cases = make_user_cases(make_adapter(sampler), key.full, c.grid);
     return c;
 }
 

@@ -23,8 +23,8 @@ struct Case {
     State expected = State::right;
     bool held_out = false;
     Real real = Real::f64;
-    std::vector<CheckCase> trials;  // of the engine: one a w_o, with other samplers beside it where f is known
-    /// Where all trials are of one sampler that can be served over a pipe.
+    std::vector<CheckCase> check_cases;  // of the engine: one a w_o, with other samplers beside it where f is known
+    /// Where all cases are of one sampler that can be served over a pipe.
     std::optional<Sampler> sampler{};
     std::vector<std::pair<double, double>> grid{};  // theta and azimuth of the w_o in degrees; empty: those of the mode
 };
@@ -42,8 +42,8 @@ const CaseSet& case_set(std::string_view name);
 
 /// w_o at random: n in one of eight, 0.5 to 80 degrees in three of four of the others, 80 to 89 in the rest; under the
 /// surface at times where the sampler answers there.
-std::vector<std::pair<double, double>> random_grid(Rng& dice, Traits::Asked asked, int count);
-/// The case of a sampler: its trials are made. `wrong`: what an engine should say.
+std::vector<std::pair<double, double>> random_grid(Rng& dice, Traits::WoDomain asked, int count);
+/// The case of a sampler: its cases are made. `wrong`: what an engine should say.
 Case case_of(const Sampler& sampler, const CaseKey& key, State expected, std::string kind);
 
 /// For set `stated`: the right sampler's member with a fault of a size that is known later.

@@ -1,4 +1,4 @@
-// What is measured: an engine that takes trials and says whether their sampler is right. One file an engine, and a word
+// What is measured: an engine that takes cases and says whether their sampler is right. One file an engine, and a word
 // in the list in engines.cpp.
 #pragma once
 
@@ -24,7 +24,7 @@ struct Result {
     State state = State::right;
     std::vector<std::string> wrong, open;  // names of the verdicts that are wrong, and inconclusive
     std::vector<std::string> causes;       // texts or identifiers of what explains them
-    std::string say;                       // the first sentence of the first verdict that is not right
+    std::string message;                   // the first sentence of the first verdict that is not right
     /// What a right verdict says could be hidden: constant, leak, hole, rotation, mismatch; none where it says nothing.
     std::map<std::string, double> stated;
     std::map<std::string, double> p;  // by verdict or family of questions, the least over the w_o
@@ -38,7 +38,7 @@ public:
     virtual ~Engine() = default;
     virtual std::string_view name() const = 0;
     /// Fills all but cpu_seconds, evaluations and wo, which are measured by measured().
-    virtual Result run(std::span<const CheckCase> trials, const Request& request) const = 0;
+    virtual Result run(std::span<const CheckCase> check_cases, const Request& request) const = 0;
 };
 
 /// The engines, in the order of the list.
@@ -46,7 +46,8 @@ const std::vector<std::unique_ptr<Engine>>& engines();
 /// Throws InputError for an unknown name.
 const Engine& engine_named(std::string_view name);
 
-/// Runs it on what `trials` makes, with CPU time and evaluations counted; programs behind pipes end before that.
-Result measured(const Engine& engine, const std::function<std::vector<CheckCase>()>& trials, const Request& request);
+/// Runs it on what `cases` makes, with CPU time and evaluations counted; programs behind pipes end before that.
+Result measured(
+    const Engine& engine, const std::function<std::vector<CheckCase>()>& check_cases, const Request& request);
 
 }  // namespace crescent::calibration

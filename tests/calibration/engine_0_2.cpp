@@ -19,20 +19,20 @@ void take_most(std::map<std::string, double>& to, const char* name, const std::o
 class Engine02 : public Engine {
 public:
     std::string_view name() const override { return "0.2"; }
-    Result run(std::span<const CheckCase> trials, const Request& request) const override {
+    Result run(std::span<const CheckCase> check_cases, const Request& request) const override {
         check::CheckSettings settings;
         if (request.full) settings.budget = check::CheckBudget::thorough();
-        if (std::ranges::any_of(trials, [](const CheckCase& t) { return t.subject->serial(); }))
+        if (std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); }))
             settings.budget = check::CheckBudget::limited();
         settings.seed = request.seed;
         ProgressMonitor monitor;
         Result out;
-        for (const check::CheckOutcome& o : check::check_samplers(trials, settings, monitor)) {
+        for (const check::CheckOutcome& o : check::check_samplers(check_cases, settings, monitor)) {
             for (const check::SmallFault& f : o.small) take(f, out);
             for (const auto& techniques : o.at)
                 for (const check::CheckAt& c : techniques) collect(c, out);
             if (!o.wrong()) continue;
-            if (const auto cause = check::cause_of(trials, o)) out.causes.push_back(cause->text);
+            if (const auto cause = check::cause_of(check_cases, o)) out.causes.push_back(cause->text);
         }
         out.state = !out.wrong.empty() ? State::wrong : !out.open.empty() ? State::inconclusive : State::right;
         return out;
@@ -41,19 +41,20 @@ public:
 private:
     static void take(const check::SmallFault& f, Result& out) {
         add_once(out.wrong, check::info(f.family).verdict);
-        out.say += fmt::format("[{} {} of {} {:.3g}: {}]", check::info(f.family).name, f.times, f.of, f.size, f.what);
+        out.message +=
+            fmt::format("[{} {} of {} {:.3g}: {}]", check::info(f.family).name, f.times, f.of, f.size, f.what);
     }
     static void collect(const check::CheckAt& c, Result& out) {
         for (const check::SmallFault& f : c.small) take(f, out);
         for (const check::Finding& f : c.findings) {
             add_once(out.wrong, check::info(f.first.family).verdict);
-            out.say += fmt::format("[{} {:.3g} of {:.4g} p {:.2g} {:.2g}]", check::info(f.first.family).name,
+            out.message += fmt::format("[{} {:.3g} of {:.4g} p {:.2g} {:.2g}]", check::info(f.first.family).name,
                 f.first.difference, f.first.expected, f.first.p, f.second.p);
         }
         if (c.inconclusive) {
             add_once(out.open, "density");
             const auto size = [](const std::optional<double>& v) { return v.value_or(-1); };
-            out.say += fmt::format("[constant {:.2g} leak {:.2g} cap {:.2g} rotation {:.2g} parameter {:.2g}]",
+            out.message += fmt::format("[constant {:.2g} leak {:.2g} cap {:.2g} rotation {:.2g} parameter {:.2g}]",
                 size(c.sizes.constant), size(c.sizes.leak), size(c.sizes.cap), size(c.sizes.rotation),
                 size(c.sizes.parameter));
         }

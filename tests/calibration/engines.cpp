@@ -82,20 +82,21 @@ const Engine& engine_named(std::string_view name) {
     throw InputError({"--engine", 0, 0}, fmt::format("no engine '{}'{}", name, did_you_mean(name, names)));
 }
 
-Result measured(const Engine& engine, const std::function<std::vector<CheckCase>()>& trials, const Request& request) {
+Result measured(
+    const Engine& engine, const std::function<std::vector<CheckCase>()>& check_cases, const Request& request) {
     const auto count = std::make_shared<std::atomic<std::uint64_t>>(0);
     const double start = cpu_seconds();
     Result out;
     int wo = 0;
     {
-        std::vector<CheckCase> all = trials();
+        std::vector<CheckCase> all = check_cases();
         std::map<const SamplerAdapter*, std::shared_ptr<const SamplerAdapter>> counted;
         for (CheckCase& t : all) {
             if (t.baseline) continue;  // it asks for f alone, of a sampler whose calls are counted elsewhere
             ++wo;
-            auto& one = counted[t.subject.get()];
-            if (!one) one = std::make_shared<Counted>(t.subject, count);
-            t.subject = one;
+            auto& one = counted[t.adapter.get()];
+            if (!one) one = std::make_shared<Counted>(t.adapter, count);
+            t.adapter = one;
         }
         out = engine.run(all, request);
     }

@@ -20,7 +20,7 @@ protected:
         Rng d = dice_of({"families_test", seed, 0, "parameters"});
         return sampler_of(family, family.member(d), real);
     }();
-    Vec3d wo = family.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
+    Vec3d wo = family.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
 };
 
 TEST_P(EveryFamily, DrawsFollowTheDensityAndTheDensityIntegratesToOne) {
@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The integral of p in single precision over the support in double is the mean of their ratio over draws in double.
 TEST(Families, SinglePrecisionKeepsTheIntegralBelowTheDetectionFloor) {
     for (const Family& f : families()) {
-        const Vec3d wo = f.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
+        const Vec3d wo = f.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
         for (std::uint64_t k = 0; k < 3; ++k) {
             Rng d = dice_of({"families_test", 100 + k, 0, f.name});
             const Member member = f.member(d);

@@ -181,7 +181,7 @@ std::vector<PlaceOfFault> places_of(
     Rng dice = dice_of(key);
     std::vector<PlaceOfFault> out;
     const std::vector<Vec3d> only = {{0, 0, 1}};
-    for (Vec3d o : right.wo == Traits::Asked::none ? std::span<const Vec3d>(only) : wo) {
+    for (Vec3d o : right.wo == Traits::WoDomain::none ? std::span<const Vec3d>(only) : wo) {
         out.push_back(std::visit(
             [&](const auto& f) {
                 return place_at(drawn_at(f, o, dice, capped ? draws_for_places : 4096), o, fault, dice);
@@ -251,9 +251,9 @@ std::string_view cause_of(const Fault& fault) {
 bool is_true_of(std::string_view kind, std::string_view family, std::string_view text) {
     static const std::map<std::string_view, std::vector<std::string_view>> words = {
         {"leak", {"spread evenly", "does not have one of the lobes"}}, {"rotation", {"turned by"}},
-        {"mismatch", {"An exponent or a roughness differs", "Across the surface p is"}}, {"exponent", {"An exponent or a roughness differs"}},
-        {"hole", {"positive where no draw falls"}}, {"one number twice", {"lie on a curve"}},
-        {"lobe's pdf", {"the chooser's probability"}}};
+        {"mismatch", {"An exponent or a roughness differs", "Across the surface p is"}},
+        {"exponent", {"An exponent or a roughness differs"}}, {"hole", {"positive where no draw falls"}},
+        {"one number twice", {"lie on a curve"}}, {"lobe's pdf", {"the chooser's probability"}}};
     const bool bounded = family == "cone" || family == "ring" || family.find(" light ") != family.npos ||
         family == "textured disk" || family == "projected solid angle of a rectangle";
     if (bounded && (kind == "leak" || kind == "mismatch") && text.find("p is a constant") != text.npos) return true;

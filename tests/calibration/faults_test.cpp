@@ -115,14 +115,14 @@ INSTANTIATE_TEST_SUITE_P(Some, EveryPowerFamily,
 TEST(Faults, SharesOfBadValuesAreTheirSize) {
     for (const FaultKind kind : {FaultKind::nan, FaultKind::negative, FaultKind::length}) {
         const Twins t("Phong", {kind, 0.01}, Real::f32);
-        const auto subject = subject_of(t.wrong);
+        const auto adapter = make_adapter(t.wrong);
         Rng dice = dice_of({"faults_test", 3, 0, "numbers"});
         int bad = 0;
         for (int k = 0; k < 1 << 16; ++k) {
             PrimarySample u;
             for (int i = 0; i < t.wrong.numbers; ++i) u[i] = std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24;
             Draw d;
-            subject->sample(0, wo, {&u, 1}, {&d, 1});
+            adapter->sample(0, wo, {&u, 1}, {&d, 1});
             bad += std::isnan(d.pdf) || d.pdf < 0 || std::fabs(dot(d.wi, d.wi) - 1) > 1e-3;
         }
         EXPECT_NEAR(bad / 65536.0, 0.01, 0.002) << word({kind});

@@ -11,7 +11,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 using Profiled = Profile<double>;
 
 Sampler without_wo(

@@ -8,7 +8,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 
 /// Slopes by Student's t: Ribardière, Bringier, Meneveaux and Simonot 2017, "STD: Student's t-Distribution of Slopes
 /// for Microfacet Based BSDFs". P(slope) = (1 + r^2 / ((g - 1) a^2))^-g / (pi a^2), D = P / cos^4.

@@ -26,9 +26,9 @@ Case make_known(const CaseKey& key) {
     c.kind = fault.name;
     c.cause = fault.cause;
     c.expected = State::wrong;
-    c.trials = fault.trials;
-    if (key.wo > 0 && c.trials.size() > static_cast<std::size_t>(key.wo))
-        c.trials.resize(static_cast<std::size_t>(key.wo));
+    c.check_cases = fault.check_cases;
+    if (key.wo > 0 && c.check_cases.size() > static_cast<std::size_t>(key.wo))
+        c.check_cases.resize(static_cast<std::size_t>(key.wo));
     return c;
 }
 

@@ -8,7 +8,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 
 /// A point of a flat light: centre + x a + y b.
 struct Plane {

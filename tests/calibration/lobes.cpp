@@ -8,7 +8,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 
 struct UniformSphere {
     static constexpr auto name = "uniform sphere", parameter = "";

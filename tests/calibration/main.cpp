@@ -58,11 +58,11 @@ std::vector<CheckCase> piped(const CaseKey& key, const Case& c) {
 Result run_case(const Engine& engine, const CaseKey& key, const Case& c, const Request& request, bool pipe) {
     try {
         if (pipe && !c.sampler) throw std::invalid_argument("this case has no sampler that can be served");
-        return measured(engine, [&] { return pipe ? piped(key, c) : c.trials; }, request);
+        return measured(engine, [&] { return pipe ? piped(key, c) : c.check_cases; }, request);
     } catch (const SamplerError& fault) {
         Result broken;
         broken.state = State::error;
-        broken.say = fault.what();
+        broken.message = fault.what();
         return broken;
     }
 }

@@ -10,7 +10,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 
 struct GgxVisible {
     static constexpr auto name = "GGX by visible normals", parameter = "roughness";

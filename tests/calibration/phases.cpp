@@ -7,7 +7,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 
 struct Greenstein {
     static constexpr auto name = "Henyey-Greenstein", parameter = "g";

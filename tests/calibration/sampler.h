@@ -43,7 +43,7 @@ enum class Broken {
 struct Sampler {
     std::string family, parameters;
     int numbers = 2;  // random numbers of a sample
-    Traits::Asked wo = Traits::Asked::upper;
+    Traits::WoDomain wo = Traits::WoDomain::upper;
     Domain domain = Domain::sphere;
     std::optional<double> eta{};  // index below over above
     bool reciprocal = true;
@@ -64,7 +64,7 @@ struct Family {
     std::string parameter;  // that a mismatch multiplies; "" where there is none
     bool held_out = false;  // never used for tuning
     int numbers = 2;
-    Traits::Asked wo = Traits::Asked::none;
+    Traits::WoDomain wo = Traits::WoDomain::none;
     Domain domain = Domain::sphere;
     std::vector<Broken> breaks;
     bool halfway = false;  // drawn through a half vector, with the Jacobian 1 / (4 w_o.m)
@@ -83,7 +83,7 @@ Sampler sampler_of(const Family& family, const Member& member, Real real, double
 Functions<float> rounded(Functions<double> exact);
 
 /// As a user's struct is taken: through UserSampler, with as many numbers, f where there is one.
-std::shared_ptr<const SamplerAdapter> subject_of(const Sampler& sampler);
+std::shared_ptr<const SamplerAdapter> make_adapter(const Sampler& sampler);
 
 /// What a family's struct says of itself. `drawn` chooses the parameters, `stretched` multiplies the named one.
 template <class T> Member member_of(Rng& dice) {

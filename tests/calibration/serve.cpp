@@ -9,8 +9,8 @@ namespace crescent::calibration {
 
 namespace {
 
-std::string greeting(const Sampler& s) {
-    const char* wo = s.wo == Traits::Asked::both ? "both" : s.wo == Traits::Asked::none ? "none" : "upper";
+std::string handshake(const Sampler& s) {
+    const char* wo = s.wo == Traits::WoDomain::both ? "both" : s.wo == Traits::WoDomain::none ? "none" : "upper";
     std::string name = s.family;
     for (char& c : name)
         if (c == '=') c = ' ';
@@ -52,10 +52,10 @@ void answer_values(const SamplerAdapter& s, bool pdf, const std::vector<double>&
 }  // namespace
 
 bool serve(const Sampler& sampler, std::FILE* in, std::FILE* out) {
-    const std::shared_ptr<const SamplerAdapter> subject = subject_of(sampler);
+    const std::shared_ptr<const SamplerAdapter> adapter = make_adapter(sampler);
     char line[4096];
     if (!std::fgets(line, sizeof line, in)) return false;
-    const std::string hello = greeting(sampler);
+    const std::string hello = handshake(sampler);
     std::fwrite(hello.data(), 1, hello.size(), out);
     std::fflush(out);
     Request request;
@@ -65,8 +65,8 @@ bool serve(const Sampler& sampler, std::FILE* in, std::FILE* out) {
         questions.resize(request.rows * static_cast<std::size_t>(samples ? 3 + sampler.numbers : 6));
         if (std::fread(questions.data(), 8, questions.size(), in) != questions.size()) return false;
         answers.clear();
-        if (samples) answer_samples(*subject, sampler.numbers, questions, answers);
-        else answer_values(*subject, std::memcmp(request.what, "pdf_", 4) == 0, questions, answers);
+        if (samples) answer_samples(*adapter, sampler.numbers, questions, answers);
+        else answer_values(*adapter, std::memcmp(request.what, "pdf_", 4) == 0, questions, answers);
         std::fwrite(&request.rows, 4, 1, out);
         std::fwrite(answers.data(), 8, answers.size(), out);
         std::fflush(out);

@@ -86,7 +86,7 @@ inline Sampler sky_sampler(
     s.family = std::move(name);
     s.parameters = std::to_string(columns) + " x " + std::to_string(rows);
     s.numbers = alias ? 4 : 2;
-    s.wo = Traits::Asked::none;
+    s.wo = Traits::WoDomain::none;
     const auto make = [&]<class F>(F) {
         return alias ? sky_by_alias<F>(rows, columns, radiance, Broken::none)
                      : sky_by_cdf<F>(rows, columns, radiance, Broken::none);

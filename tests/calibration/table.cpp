@@ -181,8 +181,8 @@ std::string causes(const Records& all) {
             const Records without = only(r, [](const Json& j) { return text(j, "cause") == ""; });
             const std::uint64_t named = count(with, names), none = count(with, silent);
             const double share = with.empty() ? 0 : static_cast<double>(named) / static_cast<double>(with.size());
-            out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} | {} | {} | {} | {} |\n", run, set, with.size(),
-                named, 100 * share, count(with, others), with.size() - named - none, none, without.size(),
+            out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} | {} | {} | {} | {} |\n", run, set,
+                with.size(), named, 100 * share, count(with, others), with.size() - named - none, none, without.size(),
                 count(without, names), count(without, others));
         }
     return out;

@@ -7,7 +7,7 @@ namespace crescent::calibration {
 
 namespace {
 
-using Wo = Traits::Asked;
+using Wo = Traits::WoDomain;
 constexpr Broken of_tables[] = {Broken::transposed_table, Broken::shifted_table, Broken::mirrored_table};
 
 /// Radiance of a sky: noise over a smooth gradient, and at times a sun of one to four texels.

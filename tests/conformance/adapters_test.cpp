@@ -1,5 +1,5 @@
-// Adapters on small classes of our own, of the shape that pbrt-v4, Nori and OpenPBR have; right ones are right, and a
-// pdf that is 3 % off is found through each.
+// Adapters on small classes with the interfaces of pbrt-v4, Nori and OpenPBR: correct ones pass, and a pdf that is 3 %
+// off is found through each.
 #include <gtest/gtest.h>
 
 #include "crescent/adapters/nori.h"
@@ -59,14 +59,14 @@ struct PbrtLike {
     float PDF(Vec wo, Vec wi, Mode) const { return wo.z > 0 ? 0.75f * off * cosine_pdf(wi) : 0; }
 };
 
-/// As some classes of pbrt are: what is asked for comes last, without a default.
-enum class Asked { none, reflection, transmission, all };
-struct AskedPbrtLike : PbrtLike {
-    std::optional<Sample> Sample_f(Vec wo, float uc, Point u, Mode mode, Asked asked) const {
-        return asked == Asked::all ? PbrtLike::Sample_f(wo, uc, u, mode) : std::nullopt;
+/// Like some classes of pbrt: the requested part is the last argument, without a default.
+enum class WoDomain { none, reflection, transmission, all };
+struct FlaggedPbrtLike : PbrtLike {
+    std::optional<Sample> Sample_f(Vec wo, float uc, Point u, Mode mode, WoDomain asked) const {
+        return asked == WoDomain::all ? PbrtLike::Sample_f(wo, uc, u, mode) : std::nullopt;
     }
-    float PDF(Vec wo, Vec wi, Mode mode, Asked asked) const {
-        return asked == Asked::all ? PbrtLike::PDF(wo, wi, mode) : 0;
+    float PDF(Vec wo, Vec wi, Mode mode, WoDomain asked) const {
+        return asked == WoDomain::all ? PbrtLike::PDF(wo, wi, mode) : 0;
     }
 };
 
@@ -135,16 +135,16 @@ template <class Sampler> void expect(const Sampler& sampler, crescent::State sta
     EXPECT_EQ(j.state, state) << crescent::what_is_wrong(j);
 }
 
-TEST(Adapters, AClassOfPbrtsShapeIsJudgedWithItsDeltaPart) {
+TEST(Adapters, PbrtClassIsCheckedWithItsDeltaPart) {
     expect(crescent::adapters::Pbrt(PbrtLike{}), crescent::State::right);
     expect(crescent::adapters::Pbrt(PbrtLike{1.03f}), crescent::State::wrong);
-    expect(crescent::adapters::Pbrt(AskedPbrtLike{}), crescent::State::right);
+    expect(crescent::adapters::Pbrt(FlaggedPbrtLike{}), crescent::State::right);
 }
 
 TEST(Adapters, AreToldWhatElseIsKnown) {
-    const crescent::Traits both{.wo = crescent::Traits::Asked::both, .reciprocal = false};
+    const crescent::Traits both{.wo = crescent::Traits::WoDomain::both, .reciprocal = false};
     const crescent::adapters::Nori known(NoriLike{}, both);
-    EXPECT_EQ(crescent::user::traits_of(known).wo, crescent::Traits::Asked::both);
+    EXPECT_EQ(crescent::user::traits_of(known).wo, crescent::Traits::WoDomain::both);
     EXPECT_FALSE(crescent::user::traits_of(crescent::adapters::Pbrt(PbrtLike{}, both)).reciprocal);
 }
 
@@ -153,7 +153,7 @@ TEST(Adapters, AClassOfNorisShapeIsJudged) {
     expect(crescent::adapters::Nori(NoriLike{1.03f}), crescent::State::wrong);
 }
 
-TEST(Adapters, FunctionsOfOpenPbrsShapeAreJudgedInColour) {
+TEST(Adapters, OpenPbrFunctionsAreCheckedInColour) {
     const auto of = [](float off) {
         return crescent::adapters::OpenPbr<Vec>([off](Vec wo) { return openpbr_like::Prepared{wo, off}; });
     };

@@ -1,4 +1,4 @@
-// Two samplers of which one has no pdf(w), or breaks off: draws, f and weights are compared, and what broke off is
+// Two samplers of which one has no pdf(w), or terminates: draws, f and weights are compared, and the terminated one is
 // named.
 #include <cmath>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 
 namespace crescent {
 namespace {
@@ -34,10 +34,10 @@ std::shared_ptr<const SamplerAdapter> power(double k, Gives gives) {
         if (gives == Gives::weight) d.weight = 0.5 / pi * i.z / p(i);
         return d;
     };
-    return subject_of(r);
+    return make_adapter(r);
 }
 
-TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
+TEST(AgainstWithoutAPdf, OnlyDifferentDrawsAreDistinguished) {
     for (const auto& [one, other] : {std::pair(Gives::pdf, Gives::weight), {Gives::weight, Gives::pdf},
              {Gives::weight, Gives::weight}, {Gives::nothing, Gives::pdf}}) {
         const std::vector<CheckCase> a = {make_user_case(power(1.5, one), 45, 130)};
@@ -49,28 +49,28 @@ TEST(AgainstWithoutAPdf, DrawsOfOneDistributionAreNotToldApartAndOthersAre) {
     }
 }
 
-/// Under an even light Var X is of cos^k: of weights that come with the draws it is the same as by p.
-TEST(AgainstWithoutAPdf, VariancesAreRankedByTheWeightsThatComeWithTheDraws) {
+/// Under constant light Var X depends on cos^k: weights returned with the draws give the same value as p.
+TEST(AgainstWithoutAPdf, VariancesAreRankedByReturnedWeights) {
     const std::vector<CheckCase> a = {make_user_case(power(0.5, Gives::weight), 45, 130)};
     const CheckResult j = against(a, sampler_against(power(0.8, Gives::pdf), a));
     const Verdict& v = named(j, "variance");
     ASSERT_EQ(v.state, State::right) << against_text(j);
-    EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.say;
-    // X is cos^(1-k) / (k+1), of p (k+1) cos^k over cos: E[X^2] = 1 / ((k+1) (3-k)), E[X] = 1/2.
+    EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.message;
+    // X is cos^(1-k) / (k+1), for p (k+1) cos^k over cos: E[X^2] = 1 / ((k+1) (3-k)), E[X] = 1/2.
     const auto variance = [](double k) { return 1 / ((k + 1) * (3 - k)) - 0.25; };
     const double ratio = variance(0.5) / variance(0.8);
-    EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.say;
-    EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.say;
+    EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.message;
+    EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.message;
 }
 
 TEST(AgainstWithoutAPdf, NorAWeightThereIsNoVariance) {
     const std::vector<CheckCase> a = {make_user_case(power(1, Gives::pdf), 45, 130)};
     const Verdict v = named(against(a, sampler_against(power(1, Gives::nothing), a)), "variance");
     EXPECT_EQ(v.state, State::skipped);
-    EXPECT_NE(v.say.find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.say;
+    EXPECT_NE(v.message.find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.message;
 }
 
-/// Answers `questions` draws and then no more.
+/// Returns `questions` draws and then terminates.
 class BreaksOff : public InProcessAdapter {
 public:
     BreaksOff(std::shared_ptr<const SamplerAdapter> sampler, std::size_t questions)
@@ -101,7 +101,8 @@ TEST(Against, WhatBreaksOffIsNamed) {
             against(a, sampler_against(first ? well : std::shared_ptr<const SamplerAdapter>(breaks), a));
         EXPECT_EQ(j.state, State::error);
         const std::string who = first ? "sampler A (fickle): " : "sampler B (fickle): ";
-        EXPECT_NE(named(j, "variance").say.find("broke off: " + who), std::string::npos) << named(j, "variance").say;
+        EXPECT_NE(named(j, "variance").message.find("broke off: " + who), std::string::npos)
+            << named(j, "variance").message;
     }
 }
 

@@ -1,4 +1,4 @@
-// What a stopped run kept is taken by the same work alone: another scene, ladder, seed or content is another work.
+// The checkpoint of a stopped run is used only by the same work: another scene, ladder, seed or content is other work.
 #include "run/checkpoint.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Listener : ProgressMonitor {
-    std::string said;
-    void log(std::string_view line) override { said += std::string(line) + "\n"; }
+    std::string message;
+    void log(std::string_view line) override { message += std::string(line) + "\n"; }
 };
 
 class Keeping : public testing::Test {
@@ -30,7 +30,7 @@ protected:
     void TearDown() override { fs::remove_all(out_); }
 
     Job job(const Experiment& e, std::size_t k = 0) const { return jobs_of(e, e.seed)[k]; }
-    static RunMetrics meter(const Experiment& e, const Job& job, std::uint64_t n) {
+    static RunMetrics metric(const Experiment& e, const Job& job, std::uint64_t n) {
         RunMetrics m;
         m.key = {job.arm, n, job.s, job.seed};
         m.regions.resize(e.regions.size());
@@ -38,20 +38,20 @@ protected:
         m.y_mean = 0.25;
         return m;
     }
-    /// What a run of `e` keeps: the meters of its first pass and one tile of its second.
+    /// Writes what a run of `e` keeps: the metrics of its first pass and one tile of its second.
     void keep(const Experiment& e) const {
         Checkpoint kept(e, "CPU", out_, 0, monitor_);
         const Job first = job(e), second = job(e, 1);
-        std::vector<RunMetrics> meters;
-        for (const std::uint64_t n : first.n) meters.push_back(meter(e, first, n));
-        kept.add(meters);
+        std::vector<RunMetrics> metrics;
+        for (const std::uint64_t n : first.n) metrics.push_back(metric(e, first, n));
+        kept.add(metrics);
         TileCheckpoint tiles = kept.tiles(second);
         std::vector<Film> films(second.n.size(), Film(4, 4, 4));
         for (Film& film : films) film.y.assign(16, 0.5f);
         tiles.begin({{0, 0, 2, 4}, {2, 0, 4, 4}}, outputs_of(films));
         tiles.add(1, 8);
     }
-    /// How many meters and tiles a run of `e` finds.
+    /// Returns how many metrics and tiles a run of `e` finds.
     std::pair<std::size_t, int> found(const Experiment& e) const {
         Checkpoint kept(e, "CPU", out_, 0, monitor_);
         const Job second = job(e, 1);
@@ -62,7 +62,7 @@ protected:
             EXPECT_EQ(films[0].y[2], 0.5f);
             EXPECT_EQ(films[0].y[0], 0) << "the other tile was not finished";
         }
-        return {kept.meters(job(e)).size(), tiles.holds(0) + tiles.holds(1)};
+        return {kept.metrics(job(e)).size(), tiles.holds(0) + tiles.holds(1)};
     }
 };
 
@@ -84,7 +84,7 @@ TEST_F(Keeping, GivesOtherWorkNothing) {
     other.seed = 8;
     EXPECT_EQ(found(other), nothing) << "another seed";
     Checkpoint by_another(experiment_, "GL", out_, 0, monitor_);
-    EXPECT_TRUE(by_another.meters(job(experiment_)).empty()) << "another instrument";
+    EXPECT_TRUE(by_another.metrics(job(experiment_)).empty()) << "another instrument";
 }
 
 TEST_F(Keeping, TwoLaddersOfOneArmAreTwoPasses) {
@@ -118,7 +118,7 @@ TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {
         Checkpoint kept(other, "CPU", out_, 0, monitor_);
         kept.discard();
     }
-    EXPECT_NE(monitor_.said.find("another, unfinished run"), std::string::npos) << monitor_.said;
+    EXPECT_NE(monitor_.message.find("another, unfinished run"), std::string::npos) << monitor_.message;
     EXPECT_EQ(found(experiment_), (std::pair<std::size_t, int>(2, 1)));
     EXPECT_EQ(found(other).first, 0u);
     Checkpoint kept(experiment_, "CPU", out_, 0, monitor_);

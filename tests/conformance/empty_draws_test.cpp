@@ -1,19 +1,19 @@
-// A sampler that draws nothing although f is not 0 is not right, whichever w_o and channels it has, with a pdf(w) or
+// A sampler that returns no samples although f is not 0 does not pass, for any w_o and channels, with a pdf(w) or
 // without.
 #include <gtest/gtest.h>
 
 #include "tests/known_samplers/correct/right.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 
 namespace crescent {
 namespace {
 
-SyntheticSampler draws_nothing(Traits::Asked wo, bool has_pdf, int channels) {
+SyntheticSampler draws_nothing(Traits::WoDomain wo, bool has_pdf, int channels) {
     SyntheticSampler r{"nothing", "", {}, {}, {}};
     r.traits.wo = wo;
     r.traits.has_pdf = has_pdf;
     r.traits.channels = channels;
-    const bool both = wo != Traits::Asked::upper;
+    const bool both = wo != Traits::WoDomain::upper;
     r.pdf = [=](Vec3d, Vec3d) { return has_pdf ? 0.0 : 1.0; };
     const auto f = [=](Vec3d, Vec3d i) { return both || i.z > 0 ? 0.2 / pi : 0.0; };
     if (channels == 1) r.f = f;
@@ -25,12 +25,13 @@ SyntheticSampler draws_nothing(Traits::Asked wo, bool has_pdf, int channels) {
 TEST(Nothing, DrawnWhereFIsNotZeroIsNotRight) {
     TestSettings settings;
     settings.budget = check::CheckBudget::limited();
-    for (Traits::Asked wo : {Traits::Asked::upper, Traits::Asked::both, Traits::Asked::none})
+    for (Traits::WoDomain wo : {Traits::WoDomain::upper, Traits::WoDomain::both, Traits::WoDomain::none})
         for (bool has_pdf : {true, false})
             for (int channels : {1, 3})
                 for (double theta : {45.0, 135.0}) {
-                    if (theta > 90 && wo != Traits::Asked::both) continue;
-                    const CheckResult j = judged_at(subject_of(draws_nothing(wo, has_pdf, channels)), theta, settings);
+                    if (theta > 90 && wo != Traits::WoDomain::both) continue;
+                    const CheckResult j =
+                        checked_at(make_adapter(draws_nothing(wo, has_pdf, channels)), theta, settings);
                     EXPECT_EQ(j.state, State::wrong)
                         << static_cast<int>(wo) << has_pdf << channels << " " << theta << what_is_wrong(j);
                     EXPECT_EQ(named(j, has_pdf ? "support" : "mean").state, State::wrong)

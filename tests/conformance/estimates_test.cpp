@@ -1,5 +1,5 @@
-// Samplers whose f, pdf and weights are random estimates, as layered surfaces have them: none is accused for it, and a
-// fault of the mean is found.
+// Samplers whose f, pdf and weights are random estimates, like layered surfaces: they do not fail for it, and a fault
+// of the mean is found.
 #include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -7,20 +7,21 @@
 #include "check/check.h"
 #include "check/sources/cases.h"
 #include "tests/known_samplers/correct/renderers.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 
 namespace crescent {
 namespace {
 
 enum class Walk { own, hashed };
 
-/// What an estimate is of its mean: 0 or 2, or exponential.
+/// The factor of an estimate: 0 or 2, or exponential.
 struct Factor {
     bool coin = false;
     double operator()(double u) const { return coin ? (u < 0.5 ? 0 : 2) : -std::log(1 - u); }
 };
 
-/// A right sampler whose answers come times a random number of mean 1; its draws keep their own pdf, times another.
+/// A correct sampler whose results are multiplied by a random number of mean 1; its draws keep their own pdf, times
+/// another.
 class Estimating : public SamplerAdapter {
 public:
     SyntheticSampler right;
@@ -83,15 +84,15 @@ private:
     }
 };
 
-CheckResult judged(std::shared_ptr<const SamplerAdapter> subject, double theta = 45) {
+CheckResult checked(std::shared_ptr<const SamplerAdapter> adapter, double theta = 45) {
     TestSettings settings;
     settings.budget = check::CheckBudget::limited();
-    return judged_at(std::move(subject), theta, settings);
+    return checked_at(std::move(adapter), theta, settings);
 }
 
-std::string all_said(const CheckResult& j) {
+std::string all_messages(const CheckResult& j) {
     std::string out;
-    for (const Verdict& v : j.verdicts) out += v.name + ": " + std::string(word(v.state)) + ". " + v.say + "\n";
+    for (const Verdict& v : j.verdicts) out += v.name + ": " + std::string(word(v.state)) + ". " + v.message + "\n";
     return out;
 }
 
@@ -99,60 +100,61 @@ TEST(Estimates, AreRecognisedAndNotAccused) {
     for (Walk walk : {Walk::own, Walk::hashed})
         for (bool coin : {false, true})
             for (const SyntheticSampler& right : {recipe_of(Layers{}), recipe_of(RoughGlass{})}) {
-                const CheckResult j = judged(std::make_shared<Estimating>(right, Factor{coin}, walk));
-                EXPECT_NE(j.state, State::wrong) << all_said(j);
-                EXPECT_NE(named(j, "valid").say.find("random estimates"), std::string::npos) << all_said(j);
+                const CheckResult j = checked(std::make_shared<Estimating>(right, Factor{coin}, walk));
+                EXPECT_NE(j.state, State::wrong) << all_messages(j);
+                EXPECT_NE(named(j, "valid").message.find("random estimates"), std::string::npos) << all_messages(j);
                 for (const char* name : {"valid", "normalised", "density", "identity"})
-                    EXPECT_EQ(named(j, name).state, State::right) << all_said(j);
-                if (!coin) EXPECT_EQ(named(j, "mean").state, State::right) << all_said(j);  // else a tail that is tied
+                    EXPECT_EQ(named(j, name).state, State::right) << all_messages(j);
+                if (!coin) EXPECT_EQ(named(j, "mean").state, State::right) << all_messages(j);  // else a tail with ties
             }
 }
 
 TEST(Estimates, OfFAloneOrOfPdfAloneAreTold) {
     for (bool of_pdf : {false, true}) {
-        const auto subject = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
-        subject->of_pdf = of_pdf, subject->of_f = !of_pdf;
-        const CheckResult j = judged(subject);
-        EXPECT_EQ(j.state, State::right) << all_said(j);
-        EXPECT_NE(named(j, "valid").say.find(of_pdf ? "pdf(w) is a random" : "f(w) is a random"), std::string::npos);
+        const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
+        adapter->of_pdf = of_pdf, adapter->of_f = !of_pdf;
+        const CheckResult j = checked(adapter);
+        EXPECT_EQ(j.state, State::right) << all_messages(j);
+        EXPECT_NE(
+            named(j, "valid").message.find(of_pdf ? "pdf(w) is a random" : "f(w) is a random"), std::string::npos);
     }
 }
 
-TEST(Estimates, WithADeterministicFAndPdfAndRandomWeightsAreRight) {
-    const auto subject = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
-    subject->of_pdf = subject->of_f = false;
-    const CheckResult j = judged(subject);
-    EXPECT_EQ(j.state, State::right) << all_said(j);
-    subject->f_off = 1.1;
-    EXPECT_EQ(named(judged(subject), "mean").state, State::wrong);
+TEST(Estimates, RandomWeightsAloneAreRight) {
+    const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
+    adapter->of_pdf = adapter->of_f = false;
+    const CheckResult j = checked(adapter);
+    EXPECT_EQ(j.state, State::right) << all_messages(j);
+    adapter->f_off = 1.1;
+    EXPECT_EQ(named(checked(adapter), "mean").state, State::wrong);
 }
 
 TEST(Estimates, OfAnFOffTheWeightAreFound) {
     for (Walk walk : {Walk::own, Walk::hashed})
         for (bool of_pdf : {false, true}) {
-            const auto subject = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, walk);
-            // Of an f that is an estimate where pdf(w) is none, few points of f are taken: the integral is known to 3
-            // %.
-            subject->f_off = walk == Walk::hashed && !of_pdf ? 1.25 : 1.1, subject->of_pdf = of_pdf;
-            const CheckResult j = judged(subject);
-            EXPECT_EQ(named(j, "mean").state, State::wrong) << all_said(j);
-            EXPECT_NE(named(j, "physics").state, State::wrong) << "an estimate of f is not reciprocal: " << all_said(j);
+            const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, walk);
+            // If f is an estimate and pdf(w) is not, few points of f are evaluated: the integral is known to 3 %.
+            adapter->f_off = walk == Walk::hashed && !of_pdf ? 1.25 : 1.1, adapter->of_pdf = of_pdf;
+            const CheckResult j = checked(adapter);
+            EXPECT_EQ(named(j, "mean").state, State::wrong) << all_messages(j);
+            EXPECT_NE(named(j, "physics").state, State::wrong)
+                << "an estimate of f is not reciprocal: " << all_messages(j);
         }
 }
 
 TEST(Estimates, WhoseChannelsAreExchangedAreFound) {
-    const auto subject = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
-    subject->swapped = true;
-    const CheckResult j = judged(subject);
-    EXPECT_EQ(named(j, "mean").state, State::wrong) << all_said(j);
+    const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
+    adapter->swapped = true;
+    const CheckResult j = checked(adapter);
+    EXPECT_EQ(named(j, "mean").state, State::wrong) << all_messages(j);
 }
 
 /// The visible normals of another roughness: draws that do not follow the mean of pdf(w).
 TEST(Estimates, OfADensityThatIsNotDrawnAreFound) {
     SyntheticSampler r = recipe_of(Layers{.alpha = 0.3});
     r.sample = recipe_of(Layers{.alpha = 0.45}).sample;
-    const CheckResult j = judged(std::make_shared<Estimating>(r, Factor{}, Walk::own));
-    EXPECT_EQ(named(j, "density").state, State::wrong) << all_said(j);
+    const CheckResult j = checked(std::make_shared<Estimating>(r, Factor{}, Walk::own));
+    EXPECT_EQ(named(j, "density").state, State::wrong) << all_messages(j);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a program is asked: no more than quick mode promises, right samplers are conclusive within that, and the faults
-// that renderers have are caught within it.
+// The queries of a program: no more than quick mode states, correct samplers are conclusive within that number, and
+// typical faults of renderers are found within it.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -15,13 +15,13 @@
 #include "check/user.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/faulty/planted.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 #include "tests/support/sanitized.h"
 
 namespace crescent {
 namespace {
 
-/// A sampler as a program behind a pipe is one: a single thread asks it, and its answers are counted.
+/// A sampler with the restrictions of a program behind a pipe: a single thread queries it, and its queries are counted.
 class Counted : public SamplerAdapter {
 public:
     explicit Counted(std::shared_ptr<const SamplerAdapter> inner) : inner_(std::move(inner)) {}
@@ -53,20 +53,20 @@ private:
 };
 
 struct Seen {
-    CheckResult judgement;
+    CheckResult result;
     std::uint64_t most = 0;  // at one w_o
 };
 
-/// Every w_o is judged by a call of its own.
-Seen judged(const std::vector<CheckCase>& trials) {
+/// Every w_o is checked by a call of its own.
+Seen checked(const std::vector<CheckCase>& check_cases) {
     Seen out;
-    for (const CheckCase& t : trials) {
-        const auto program = std::make_shared<Counted>(t.subject);
+    for (const CheckCase& t : check_cases) {
+        const auto program = std::make_shared<Counted>(t.adapter);
         CheckCase one = t;
-        one.subject = program;
+        one.adapter = program;
         ProgressMonitor monitor;
-        const CheckResult j = judge({&one, 1}, TestSettings::quick(), monitor);
-        for (const Verdict& v : j.verdicts) out.judgement.verdicts.push_back(v);
+        const CheckResult j = run_checks({&one, 1}, TestSettings::quick(), monitor);
+        for (const Verdict& v : j.verdicts) out.result.verdicts.push_back(v);
         out.most = std::max(out.most, program->spending().answers);
     }
     return out;
@@ -74,45 +74,45 @@ Seen judged(const std::vector<CheckCase>& trials) {
 
 std::vector<CheckCase> at(const SyntheticSampler& recipe, std::initializer_list<std::pair<double, double>> grid) {
     std::vector<CheckCase> out;
-    for (const auto& [theta, azimuth] : grid) out.push_back(make_user_case(subject_of(recipe), theta, azimuth));
+    for (const auto& [theta, azimuth] : grid) out.push_back(make_user_case(make_adapter(recipe), theta, azimuth));
     return out;
 }
 
 constexpr std::uint64_t promised = 500000, in_process = 1500000;
 
-/// Seen from the denser side, past the angle of total reflection, a number chooses at a few points alone.
-TEST(Programs, OfRightGlassAreConclusiveWithinWhatTheyAreAsked) {
+/// From the denser side, beyond the angle of total reflection, a number selects at only a few points.
+TEST(Programs, CorrectGlassIsConclusiveInQuickMode) {
     const RoughGlass sharp{0.05, 1.5}, broad{0.5, 1.5};
     for (const SyntheticSampler& r : {recipe_of(sharp), recipe_of(broad)}) {
-        const Seen seen = judged(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
-        for (const Verdict& v : seen.judgement.verdicts)
+        const Seen seen = checked(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
+        for (const Verdict& v : seen.result.verdicts)
             EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
-                << r.parameters << " " << v.trial << " " << v.name << ": " << v.say;
+                << r.parameters << " " << v.check_case << " " << v.name << ": " << v.message;
         EXPECT_LE(seen.most, promised);
         EXPECT_GT(seen.most, 100000u);
     }
 }
 
-TEST(Programs, OfCoatsLayersAndAnisotropicLobesAreConclusiveWithinWhatTheyAreAsked) {
+TEST(Programs, CorrectLayersAreConclusiveInQuickMode) {
     Layers layers;
     layers.alpha = 0.1;
     for (const SyntheticSampler& r : {recipe_of(SmoothCoat{}), recipe_of(layers), ggx_visible_at(0.05, 0.5)}) {
-        const Seen seen = judged(at(r, {{45, 130}, {89, 180}}));
-        for (const Verdict& v : seen.judgement.verdicts)
+        const Seen seen = checked(at(r, {{45, 130}, {89, 180}}));
+        for (const Verdict& v : seen.result.verdicts)
             EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
-                << r.family << " " << v.trial << " " << v.name << ": " << v.say;
+                << r.family << " " << v.check_case << " " << v.name << ": " << v.message;
         EXPECT_LE(seen.most, promised) << r.family;
     }
 }
 
-/// p jumps along thousands of curves, and is not what is drawn.
+/// p jumps along thousands of curves, and is not the density of the draws.
 TEST(Programs, AreAskedNoMoreWhereNothingIsSettled) {
     SyntheticSampler wrinkled = ggx_visible_at(0.3, 0.3);
     wrinkled.pdf = [](Vec3d, Vec3d wi) {
         return wi.z > 0 ? (std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 1.9 : 0.1) / (2 * pi)
                         : 0.0;
     };
-    EXPECT_LE(judged(at(wrinkled, {{75, 310}})).most, promised);
+    EXPECT_LE(checked(at(wrinkled, {{75, 310}})).most, promised);
 }
 
 /// A program that mixes up the rows of its blocks: of draws, of pdf(w) or of f(w).
@@ -160,8 +160,8 @@ TEST(Programs, ThatMixUpTheRowsOfABlockAreFound) {
     for (auto answers : {Mixed::Answers::draws, Mixed::Answers::pdf, Mixed::Answers::f})
         for (auto how :
             {Mixed::How::last_repeated, Mixed::How::first_two_exchanged, Mixed::How::late_rows_of_long_blocks}) {
-            const auto program = std::make_shared<Mixed>(subject_of(lobe), answers, how);
-            const CheckResult j = judged_at(program, 45, TestSettings::quick());
+            const auto program = std::make_shared<Mixed>(make_adapter(lobe), answers, how);
+            const CheckResult j = checked_at(program, 45, TestSettings::quick());
             EXPECT_EQ(named(j, "identity").state, State::wrong)
                 << static_cast<int>(answers) << static_cast<int>(how) << what_is_wrong(j);
         }
@@ -169,17 +169,18 @@ TEST(Programs, ThatMixUpTheRowsOfABlockAreFound) {
 
 /// All w_o of the grid in one call: 3.6 million evaluations, the greatest share of which none needs.
 TEST(Programs, AreEvaluatedNoMoreThanInAll) {
-    const auto program = std::make_shared<Counted>(subject_of(recipe_of(RoughGlass{0.3, 1.5})));
-    std::vector<CheckCase> trials = make_user_cases(program, false);
-    ASSERT_EQ(std::count_if(trials.begin(), trials.end(), [](const CheckCase& t) { return !t.baseline; }), 12);
+    const auto program = std::make_shared<Counted>(make_adapter(recipe_of(RoughGlass{0.3, 1.5})));
+    std::vector<CheckCase> check_cases = make_user_cases(program, false);
+    ASSERT_EQ(
+        std::count_if(check_cases.begin(), check_cases.end(), [](const CheckCase& t) { return !t.baseline; }), 12);
     ProgressMonitor monitor;
-    const CheckResult j = judge(trials, TestSettings::quick(), monitor);
+    const CheckResult j = run_checks(check_cases, TestSettings::quick(), monitor);
     EXPECT_NE(j.state, State::wrong) << what_is_wrong(j);  // a twelfth of all leaves two w_o open
     EXPECT_LE(j.questions, 3600000u);
     EXPECT_EQ(j.questions, program->spending().answers);
 }
 
-/// GGX by visible normals whose p jumps along thousands of curves, as a struct that counts what it is asked.
+/// GGX by visible normals whose p jumps along thousands of curves, as a struct that counts its queries.
 struct Aimed {
     Vec3d wi;
     double pdf;
@@ -206,8 +207,8 @@ struct WrinkledForMany : Wrinkled<std::atomic<std::uint64_t>> {
     double pdf(Vec3d, Vec3d wi) const { return wrinkled(wi); }
 };
 
-/// A struct in this process is asked as often as an arm of the list, whether one thread asks it or all, and it is told
-/// how often it was asked.
+/// A struct in this process receives as many queries as a built-in sampler, for one thread or many, and their number is
+/// reported.
 TEST(Structs, AreCountedAndSparedAsArmsAre) {
     TestSettings settings = TestSettings::quick();
     settings.wo = {{30, 0}, {85, 75}};
@@ -222,32 +223,32 @@ TEST(Structs, AreCountedAndSparedAsArmsAre) {
     EXPECT_LE(by_many, 12 * in_process);
 }
 
-/// However many threads ask it, a struct is asked the same.
+/// The queries of a struct do not depend on the number of threads.
 TEST(Structs, AreAskedTheSameByAnyNumberOfThreads) {
     TestSettings settings = TestSettings::quick();
     settings.wo = {{30, 0}, {60, 40}, {85, 75}};
     std::atomic<std::uint64_t> asked = 0;
-    const auto told = [&] {
+    const auto describe = [&] {
         const CheckResult j = check_sampler("wrinkled", WrinkledForMany{{&asked}}, settings);
         std::string out = fmt::format("{} questions\n", j.questions);
         for (const Verdict& v : j.verdicts)
-            if (v.name != "efficiency") out += v.trial + " " + v.say + "\n";  // that one tells times
+            if (v.name != "efficiency") out += v.check_case + " " + v.message + "\n";  // efficiency reports times
         return out;
     };
-    EXPECT_EQ(told(), on_threads(1, told));
+    EXPECT_EQ(describe(), on_threads(1, describe));
 }
 
 class FaultsOfPrograms : public testing::TestWithParam<std::size_t> {};
 
-/// A fourth of the faults of renderers, each at one w_o after the other until it is caught.
+/// A fourth of the faults of renderers, each at one w_o after the other until it is found.
 TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
     const std::vector<PlantedFault> faults = renderer_faults();
     for (std::size_t i = GetParam(); i < faults.size(); i += 4 * test::every) {
         bool caught = false;
-        for (const CheckCase& trial : faults[i].trials) {
-            const Seen seen = judged({trial});
+        for (const CheckCase& check_case : faults[i].check_cases) {
+            const Seen seen = checked({check_case});
             EXPECT_LE(seen.most, promised) << faults[i].name;
-            for (const Verdict& v : seen.judgement.verdicts) caught = caught || v.state == State::wrong;
+            for (const Verdict& v : seen.result.verdicts) caught = caught || v.state == State::wrong;
             if (caught) break;
         }
         EXPECT_TRUE(caught) << faults[i].name;
@@ -255,8 +256,8 @@ TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
 }
 INSTANTIATE_TEST_SUITE_P(Quarter, FaultsOfPrograms, testing::Values(0u, 1u, 2u, 3u));
 
-TEST(AskedOnce, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
-    const auto program = std::make_shared<Counted>(subject_of(ggx_visible_at(0.3, 0.3)));
+TEST(CachingAdapter, QueriesOnlyWhatIsNotCached) {
+    const auto program = std::make_shared<Counted>(make_adapter(ggx_visible_at(0.3, 0.3)));
     const auto kept = cached(program);
     const Vec3d wo = tilt(30), a = tilt(20, 10), b = tilt(50, 200), c = tilt(70, 300);
     const std::vector<Pair> first = {{wo, a}, {wo, b}, {wo, a}}, second = {{wo, c}, {wo, b}, {a, b}};
@@ -272,32 +273,32 @@ TEST(AskedOnce, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
     EXPECT_EQ(out, direct);
 }
 
-/// An arm of the list has a trial for every surface and light; a program held against it gives the same answers in all
+/// A built-in sampler has a case for every surface and light; a program compared with it gives the same results in all
 /// of them.
 TEST(Against, AsksAProgramOnceAtEachDirection) {
     const std::vector<CheckCase> a = make_cases("cosine", {}, false, {{45, 0}});
     ASSERT_GE(a.size(), 4u);
-    const auto answers = [&](std::span<const CheckCase> trials) {
-        const auto program = std::make_shared<Counted>(a[0].subject);
+    const auto answers = [&](std::span<const CheckCase> check_cases) {
+        const auto program = std::make_shared<Counted>(a[0].adapter);
         TestSettings settings;
         settings.budget = check::CheckBudget::limited();
         ProgressMonitor monitor;
-        compare_samplers(trials, sampler_against(program, trials), settings, false, monitor);
+        compare_samplers(check_cases, sampler_against(program, check_cases), settings, false, monitor);
         return program->spending().answers;
     };
     EXPECT_LT(answers(a), 2 * answers(std::span(a).first(1)));
 }
 
-/// Files are of equal bytes for equal calls, with the questions that were answered in them, whatever else is written.
-TEST(Asked, PicturesTakeNoQuestionsOfTheirOwn) {
+/// Files have equal bytes for equal calls, including the number of queries, for any other outputs.
+TEST(WoDomain, PicturesTakeNoQuestionsOfTheirOwn) {
     const auto answers = [](bool pictures) {
-        CheckCase trial = make_cases("cosine", {}, false, {{45, 0}})[0];
-        trial.subject = std::make_shared<Counted>(trial.subject);
+        CheckCase check_case = make_cases("cosine", {}, false, {{45, 0}})[0];
+        check_case.adapter = std::make_shared<Counted>(check_case.adapter);
         TestSettings settings;
         settings.budget = check::CheckBudget::limited();
         settings.pictures = pictures;
         ProgressMonitor monitor;
-        return verdict_json(judge({&trial, 1}, settings, monitor), {});
+        return verdict_json(run_checks({&check_case, 1}, settings, monitor), {});
     };
     EXPECT_EQ(answers(true), answers(false));
 }

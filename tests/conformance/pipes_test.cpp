@@ -1,4 +1,4 @@
-// What programs say of themselves, and what is said of those that break the protocol.
+// The handshake of programs, and the errors for those that break the protocol.
 #include <csignal>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace crescent {
 namespace {
 
-/// What is said of a program that is waited for that long and asked for so many draws.
+/// Returns the error for a program with this time limit and number of draws.
 std::string fault_of(const std::string& command, double seconds = 30, std::size_t draws = 100) {
     PipeLimits limits;
     limits.hello_seconds = limits.quiet_seconds = seconds;
@@ -35,7 +35,7 @@ TEST(Pipes, SayWhatAProgramDidWrongAndWhere) {
     EXPECT_NE(fault_of("tr -d '\\n' < /dev/zero").find("more than 4096 bytes"), std::string::npos);
 }
 
-/// A library leaves the signals of the process that it is in alone, and does not let a program's end kill it.
+/// The library does not change the signals of its process, and a program's end does not kill it.
 TEST(Pipes, ThatBreakTouchNoSignal) {
     const auto before = std::signal(SIGPIPE, SIG_DFL);
     try {
@@ -56,8 +56,8 @@ TEST(Pipes, ThatBreakTouchNoSignal) {
 TEST(Greetings, SayWhatAProgramIs) {
     Handshake g;
     EXPECT_EQ(
-        read_greeting("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
-                      "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
+        read_handshake("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
+                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
             g)
             .got,
         "");
@@ -66,7 +66,7 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_EQ(g.traits.channels, 3);
     EXPECT_TRUE(g.traits.delta && g.weight && g.f_cos && g.blocks && g.traits.importance && g.traits.own_random);
     EXPECT_FALSE(g.traits.reciprocal || g.hemisphere);
-    EXPECT_EQ(g.traits.wo, Traits::Asked::both);
+    EXPECT_EQ(g.traits.wo, Traits::WoDomain::both);
     EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
     EXPECT_EQ(g.traits.bits, 24);
 }
@@ -74,7 +74,7 @@ TEST(Greetings, SayWhatAProgramIs) {
 TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     const auto fault = [](const char* answer) {
         Handshake g;
-        const GreetingFault fault = read_greeting(answer, g);
+        const HandshakeError fault = read_handshake(answer, g);
         return fault ? "expected " + fault.expected + ", " + fault.got : "";
     };
     EXPECT_NE(fault("hello 2 x colour=3").find("expected one of u, domain, wo, channels"), std::string::npos);
@@ -88,7 +88,7 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     EXPECT_EQ(fault("hello 1 x y=z"), "") << "protocol 1 has no keys: that is its name";
 }
 
-/// The answer to f is a block of one NaN; then come an error, and a block of another size.
+/// The response to f is a block of one NaN; then an error, and a block of another size.
 TEST(Greetings, BlocksThatSayAnErrorAreTold) {
     const std::string start =
         "read hello; echo hello 2 x block=f64; head -c 56 >/dev/null; printf "

@@ -1,5 +1,4 @@
-// Users' own structs: what they may look like, what is said where they cannot be judged, and what happens when
-// they throw.
+// Structs of users: their accepted forms, the messages for those that cannot be checked, and their exceptions.
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -93,8 +92,8 @@ struct NoPdf {
     Drawn sample(V3, V2 u) const { return cosine(u); }
 };
 
-/// As renderers hand their classes around: behind a base class, with functions for members, or with overloads that a
-/// wrapper has to choose from.
+/// In the forms of renderers' classes: behind a base class, with functions as members, or with overloads that a wrapper
+/// has to select from.
 struct Base {
     virtual ~Base() = default;
     virtual Drawn sample(const V3& wo, const V2& u) const = 0;
@@ -165,14 +164,14 @@ TEST(Doors, PointersFunctionsAndLambdasAreTaken) {
     EXPECT_FALSE(UserSampler("told", sampler_of(sample, doubled, f, {.reciprocal = false})).traits().reciprocal);
 }
 
-TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
+TEST(Doors, ThrowIsAnErrorAtItsPlaceOnly) {
     const CheckResult j = check_sampler("throws", Throws{}, few());
     EXPECT_EQ(j.state, State::error);
     std::size_t errors = 0;
     for (const Verdict& v : j.verdicts) errors += v.state == State::error;
     EXPECT_EQ(errors, 2 * verdict_names.size() + 1) << what_is_wrong(j);  // w_o at 85 and 89 deg; special w_o
     for (const Verdict& v : j.verdicts) EXPECT_TRUE(v.evidence.is_object()) << v.name;
-    EXPECT_EQ(unseen_told(j), "") << "what is right is not the whole";
+    EXPECT_EQ(unseen_text(j), "") << "what is right is not the whole";
     EXPECT_NE(what_is_wrong(j).find("sample(wo, u) threw 'no grazing light' at w_o = ("), std::string::npos)
         << what_is_wrong(j);
 }

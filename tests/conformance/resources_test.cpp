@@ -1,4 +1,4 @@
-// A run that the machine cannot hold is refused before it begins, in words that say what would fit.
+// A run that exceeds the machine's memory is rejected before it begins, with a size that would fit.
 #include "run/resources.h"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ TEST(Needs, GrowWithThePixelsAndTheRungs) {
     EXPECT_GT(memory_needed(e), before + std::uint64_t{3} * 30 * 2048 * 2048);
 }
 
-TEST(Needs, LeavePointsToBeMadeAgainWhereMemoryIsShort) {
+TEST(Needs, PointsAreNotKeptIfMemoryIsShort) {
     const RunPlan small = plan(tiny(96, 54)), large = plan(tiny(8192, 8192));
     EXPECT_TRUE(can_keep_points(small, Scene(small.experiment), 1'000'000'000));
     EXPECT_FALSE(can_keep_points(large, Scene(large.experiment), 20'000'000'000));
@@ -36,11 +36,11 @@ TEST(Needs, LeavePointsToBeMadeAgainWhereMemoryIsShort) {
 
 TEST(Needs, ThatAreNotThereAreToldWithWhatWouldFit) {
     EXPECT_EQ(why_too_large(tiny(96, 54), 2'000'000'000), "");
-    const std::string say = why_too_large(tiny(16384, 16384), 8'000'000'000);
-    EXPECT_THAT(say, testing::HasSubstr("and 8 GB are to be had"));
-    const std::size_t at = say.find("image.width=");
-    ASSERT_NE(at, std::string::npos) << say;
-    const int width = std::stoi(say.substr(at + 12));
+    const std::string message = why_too_large(tiny(16384, 16384), 8'000'000'000);
+    EXPECT_THAT(message, testing::HasSubstr("and 8 GB are to be had"));
+    const std::size_t at = message.find("image.width=");
+    ASSERT_NE(at, std::string::npos) << message;
+    const int width = std::stoi(message.substr(at + 12));
     EXPECT_GT(width, 2048);
     EXPECT_EQ(why_too_large(tiny(width, width), 8'000'000'000), "") << "what it proposes fits";
 }

@@ -1,4 +1,4 @@
-// The steps of a run: each alone, in any order of jobs, stopped by a flag, and nothing of the process changed by them.
+// The steps of a run: each alone, in any order of jobs, stopped by a flag, without changes to the process.
 #include "run/run.h"
 
 #include <OpenEXR/ImfThreading.h>
@@ -27,7 +27,7 @@ Experiment tiny(std::vector<std::string> overrides = {}) {
 
 std::string metrics_of(Measured measured) { return metrics_json(report_inputs(measured)); }
 
-TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
+TEST(RunSteps, AnyOrderOfJobsGivesTheSameNumbers) {
     ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny());
     Prepared prepared = prepare(plan, {.threads = 1}, monitor);
@@ -46,7 +46,7 @@ TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
     EXPECT_TRUE(stepwise.monte_carlo.empty());
 }
 
-TEST(RunSteps, ComputeTheNotesReferenceWhereTheExperimentAsksForIt) {
+TEST(RunSteps, ComputeTheArticleReferenceOnRequest) {
     ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny({"reference.monte_carlo=true", "seeds=1"}));
     const Prepared prepared = prepare(plan, {}, monitor);
@@ -93,7 +93,7 @@ struct Process {
     bool operator==(const Process&) const = default;
 };
 
-/// Looks at the process whenever work is done, from whichever thread does it.
+/// Checks the process whenever work is done, on the thread that does it.
 struct Looker : ProgressMonitor {
     Process before;
     std::atomic<int> changed{0};
@@ -113,7 +113,7 @@ TEST(RunSteps, ChangeNothingThatBelongsToTheProcess) {
 }
 
 TEST(RunPlans, TakeAPartOfTheSeriesOfSeeds) {
-    const Experiment e = tiny({"seeds=9"});  // the last --set holds: tiny() asks for 2
+    const Experiment e = tiny({"seeds=9"});  // the last --set applies: tiny() sets 2
     EXPECT_EQ(plan(e).seeds.size(), 2u);
     Experiment five = e;
     five.seeds = 5;

@@ -1,5 +1,5 @@
-// Built-in arms have the verdicts that theory says, also at the limits of their parameters; what is inconclusive says
-// what would settle it. scripts/judged.sh checks every arm at its usual parameters.
+// Built-in samplers have the verdicts predicted by theory, also at the limits of their parameters; inconclusive
+// verdicts name a next step. tests/system/check.sh checks every sampler at its usual parameters.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -8,26 +8,27 @@
 #include "check/print.h"
 #include "check/sources/cases.h"
 #include "check/sources/pipe.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 #include "tests/support/sanitized.h"
 
 namespace crescent {
 namespace {
 
-CheckResult of_trials(const std::vector<CheckCase>& trials, const TestSettings& settings = TestSettings::quick()) {
+CheckResult check_quickly(
+    const std::vector<CheckCase>& check_cases, const TestSettings& settings = TestSettings::quick()) {
     ProgressMonitor monitor;
-    return judge(trials, settings, monitor);
+    return run_checks(check_cases, settings, monitor);
 }
 
-const Verdict& find(const CheckResult& j, const std::string& trial, const std::string& name) {
+const Verdict& find(const CheckResult& j, const std::string& check_case, const std::string& name) {
     for (const Verdict& v : j.verdicts)
-        if (v.trial.find(trial) != std::string::npos && v.name == name) return v;
-    throw std::runtime_error("no verdict " + name + " on " + trial);
+        if (v.check_case.find(check_case) != std::string::npos && v.name == name) return v;
+    throw std::runtime_error("no verdict " + name + " on " + check_case);
 }
 
-/// Phong's lobe does not reach the horizon, where Lambert's light comes from too.
+/// Phong's lobe does not reach the horizon, where part of Lambert's light is.
 TEST(Arms, PhongOnLambertLosesSupport) {
-    const CheckResult j = of_trials(make_cases("phong", {{"s", 32}}, false, {{60, 250}}));
+    const CheckResult j = check_quickly(make_cases("phong", {{"s", 32}}, false, {{60, 250}}));
     EXPECT_EQ(find(j, "w_o 60 deg az 250, s=32, Lambert + Phong", "support").state, State::wrong);
     EXPECT_EQ(find(j, "w_o 60 deg az 250, s=32, Phong", "support").state, State::right);
 }
@@ -46,33 +47,34 @@ TEST_P(ArmsAtTheLimits, OfTheSchemaHaveTheVerdictsOfTheory) {
     for (std::size_t k = 0; k < arms.size(); k += test::every) {
         const Settings& settings = at[GetParam()];
         if (!reads(arms[k], settings)) continue;
-        const CheckResult j = of_trials(make_cases(arms[k], settings, false, {{45, 130}}));
+        const CheckResult j = check_quickly(make_cases(arms[k], settings, false, {{45, 130}}));
         EXPECT_TRUE(j.as_expected) << arms[k] << " " << settings.begin()->first << "=" << settings.begin()->second
                                    << "\n"
                                    << verdict_table(j);
         for (const Verdict& v : j.verdicts)
             if (v.state == State::inconclusive)
-                EXPECT_FALSE(v.say.empty() || settling(v).empty()) << v.arm << " [" << v.trial << "] " << v.name;
+                EXPECT_FALSE(v.message.empty() || settling(v).empty())
+                    << v.arm << " [" << v.check_case << "] " << v.name;
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Settings, ArmsAtTheLimits, testing::Range(0, 4));
 
-TEST(Programs, TooSlowAreInconclusiveAndSayWhatWasLeftOut) {
+TEST(Programs, TooSlowOnesAreInconclusive) {
     PipeLimits limits;
     limits.total_seconds = 0.5;
     const std::string slow =
         "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
-    const CheckResult j = of_trials(make_user_cases(start_pipe(slow, limits), false));
+    const CheckResult j = check_quickly(make_user_cases(start_pipe(slow, limits), false));
     EXPECT_EQ(j.state, State::inconclusive);
     EXPECT_EQ(j.left_out.size(), 8u);
     for (const Verdict& v : j.verdicts) {
-        EXPECT_EQ(v.state, State::inconclusive) << v.name << v.say;
+        EXPECT_EQ(v.state, State::inconclusive) << v.name << v.message;
         EXPECT_FALSE(settling(v).empty()) << v.name;
     }
 }
 
-TEST(LightsOfATrial, AreSeenByTheNearest) {
+TEST(LightsOfACase, AreSeenByTheNearest) {
     const CaseLighting light = case_setup(LobeKind::none, true, "fill + two disks", 32).light;
     ASSERT_EQ(light.disks.size(), 2u);
     int both = 0, front = 0, back = 0;
@@ -95,15 +97,15 @@ TEST(LightsOfATrial, AreSeenByTheNearest) {
     EXPECT_GT(back, 50);
 }
 
-TEST(LightsOfATrial, BallHidesTheRectangleBehindIt) {
+TEST(LightsOfACase, BallHidesTheRectangleBehindIt) {
     int hidden = 0;
     const CaseLighting light = case_setup(LobeKind::none, true, "sphere + rectangle", 32).light;
     for (double theta = 0; theta < 90; ++theta)
         for (double azimuth = 90; azimuth < 180; ++azimuth) {
             const Vec3d wi = tilt(theta, azimuth);
-            const bool both = light.lamps[0].distance(wi) && light.lamps[1].distance(wi);
+            const bool both = light.area_lights[0].distance(wi) && light.area_lights[1].distance(wi);
             hidden += both;
-            if (both) EXPECT_EQ(light(wi), light.lamps[0].radiance);
+            if (both) EXPECT_EQ(light(wi), light.area_lights[0].radiance);
         }
     EXPECT_GT(hidden, 50);
 }

@@ -1,4 +1,4 @@
-// Samplers that are known from files alone: a table that tells p at points says less beyond its last row.
+// Samplers known only from files: a table of p at points is less informative beyond its last row.
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -41,12 +41,12 @@ std::shared_ptr<const SamplerAdapter> lobe_in_files(Vec3d axis) {
     return std::make_shared<SampleFile>(samples, table);
 }
 
-TEST(SamplesOfFiles, BesideThePoleAreNotAccusedOfWhatTheirTableDoesNotSay) {
+TEST(SamplesOfFiles, CoarseTableNearAPoleIsNotWrong) {
     for (const double degrees : {5.0, 20.0}) {
         const double angle = degrees * pi / 180;
         ProgressMonitor monitor;
-        const CheckCase trial = make_user_case(lobe_in_files({std::sin(angle), 0, std::cos(angle)}), 0, 0);
-        const CheckResult j = judge({&trial, 1}, TestSettings::quick(), monitor);
+        const CheckCase check_case = make_user_case(lobe_in_files({std::sin(angle), 0, std::cos(angle)}), 0, 0);
+        const CheckResult j = run_checks({&check_case, 1}, TestSettings::quick(), monitor);
         EXPECT_NE(j.state, State::wrong) << degrees << " deg: " << what_is_wrong(j);
     }
 }

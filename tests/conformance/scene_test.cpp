@@ -113,7 +113,7 @@ TEST(Primaries, OfALargeImageAreRememberedToTheLastBit) {
         }
 }
 
-TEST(Surfaces, TakeTheCommonExponentAndAnAlphaAsWideWhereTheyStateNone) {
+TEST(Surfaces, DefaultToCommonExponentAndEqualWidth) {
     Material m;
     m.rho_d = {0.1, 0.2, 0.3}, m.rho_s = 0.4, m.brdf = lobe_named("blinn-phong");
     const Surface bare = surface_of(m, 48);
@@ -128,7 +128,7 @@ TEST(Surfaces, TakeTheCommonExponentAndAnAlphaAsWideWhereTheyStateNone) {
     EXPECT_DOUBLE_EQ(surface_of(m, 48).alpha, 0.5);  // of its own s
 }
 
-TEST(Surfaces, TheSidesOfARecessHaveTheirOwnAlbedoAndNoLobe) {
+TEST(Surfaces, RecessSidesHaveTheirAlbedoAndNoLobe) {
     Experiment e = wall();
     Shape panel;
     panel.form = shapes::Panel{};
@@ -150,7 +150,7 @@ TEST(Origin, LiesWhereTheCameraSees) {
     EXPECT_NEAR(origin.z, 0, 1e-12);
     EXPECT_LT(length(origin), 4);
     const Scene empty(wall({"camera.target=[0, 0, 8]"}));
-    EXPECT_EQ(empty.origin().z, 4);  // nothing is seen: the eye
+    EXPECT_EQ(empty.origin().z, 4);  // nothing is visible: the eye
 }
 
 }  // namespace

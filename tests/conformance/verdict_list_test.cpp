@@ -1,4 +1,4 @@
-// The list of verdicts is what a judgement holds, in its order, and what the manual says.
+// The list of verdicts equals those of a result, in its order, and those of the manual.
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -13,14 +13,14 @@ TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
     TestSettings few;
     few.wo = {{45, 0}};
     ProgressMonitor monitor;
-    const CheckResult j = judge(make_cases("uniform", {}, false, few.wo), few, monitor);
+    const CheckResult j = run_checks(make_cases("uniform", {}, false, few.wo), few, monitor);
     ASSERT_EQ(j.verdicts.size() % verdict_names.size(), 0u);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i)
         EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);
 }
 
-/// Every row is of a verdict of the list, in its order; `crescent list verdicts` has those that have no row yet.
-TEST(VerdictList, TheManualTellsItInItsOrderWithItsQuestions) {
+/// Every row is for a verdict of the list, in its order; `crescent list verdicts` also has those without a row.
+TEST(VerdictList, ManualListsVerdictsInOrder) {
     std::ifstream manual(std::string(CRESCENT_SOURCE_DIR) + "/docs/check.md");
     std::vector<std::string> rows;
     bool in_table = false;

@@ -1,5 +1,5 @@
-// Expectations of the caller: what is waived does not count, an expectation that nothing meets does, and a word that is
-// not known is told with its place and the nearest that is.
+// Expectations of the caller: a waived verdict does not count, an unmatched expectation does, and an unknown word is
+// reported with its place and the nearest known one.
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@ CheckResult of(std::initializer_list<std::tuple<const char*, const char*, State>
     for (const auto& [arm, name, state] : verdicts) {
         Verdict v;
         v.arm = arm;
-        v.trial = "w_o 45 deg";
+        v.check_case = "w_o 45 deg";
         v.name = name;
         v.state = state;
-        v.say = "So it is.";
+        v.message = "So it is.";
         v.expected = state == State::right;
         j.verdicts.push_back(v);
     }
@@ -37,7 +37,7 @@ std::string fault_of(const std::string& text) {
     return "";
 }
 
-TEST(Waivers, TakeWhatIsExpectedOutOfTheStateOfTheWhole) {
+TEST(Waivers, ExpectedFailureDoesNotChangeTheState) {
     CheckResult j = of({{"phong", "support", State::wrong}, {"phong", "valid", State::right}});
     EXPECT_EQ(waived(j, {}), State::wrong);
     EXPECT_EQ(waived(j, {"phong support=wrong: it never reaches the horizon"}), State::right);
@@ -47,7 +47,7 @@ TEST(Waivers, TakeWhatIsExpectedOutOfTheStateOfTheWhole) {
     EXPECT_NE(verdict_table(j).find("phong: wrong support as waived"), std::string::npos) << verdict_table(j);
 }
 
-TEST(Waivers, HoldForTheArmVerdictAndStateThatTheyNameAlone) {
+TEST(Waivers, ApplyOnlyToTheNamedArmAndVerdict) {
     const auto state = [](const char* text) {
         CheckResult j = of({{"my glass", "tail", State::inconclusive}, {"other", "tail", State::inconclusive}});
         return waived(j, {text});

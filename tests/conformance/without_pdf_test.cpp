@@ -1,5 +1,5 @@
-// Samplers without pdf(w): random estimates are held to their means, and draws to lights from several sides; where
-// nothing can be held against anything, that is said.
+// Samplers without pdf(w): random estimates are tested for their means, and draws to lights from several sides; if no
+// comparison is possible, that is reported.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
-#include "tests/support/judged.h"
+#include "tests/support/checked.h"
 
 namespace crescent {
 namespace {
@@ -21,14 +21,14 @@ TestSettings limited() {
     return settings;
 }
 
-CheckResult judged(const SyntheticSampler& recipe, double theta = 45) {
-    return judged_at(subject_of(recipe), theta, limited());
+CheckResult checked(const SyntheticSampler& recipe, double theta = 45) {
+    return checked_at(make_adapter(recipe), theta, limited());
 }
 
 Vec3d cosine(double u1, double u2) { return math::spherical(std::sqrt(u1), std::sqrt(1 - u1), 2 * pi * u2); }
 
-/// Lambert of 0.5 whose f is a walk's estimate, between 0.1 and 0.9; its weights are estimates too, `scale` times what
-/// they ought to be.
+/// Lambert of 0.5 whose f is a random walk's estimate, between 0.1 and 0.9; its weights are estimates too, `scale`
+/// times the correct ones.
 SyntheticSampler by_walk(double scale, bool own, int channels = 1) {
     SyntheticSampler r{"walk", "", {}, {}, {}};
     r.traits.has_pdf = false;
@@ -60,9 +60,9 @@ SyntheticSampler by_walk(double scale, bool own, int channels = 1) {
 TEST(WithoutAPdf, EstimatesOfFAreHeldToTheirMeansAlone) {
     for (bool own : {false, true})
         for (int channels : {1, 3}) {
-            const CheckResult right = judged(by_walk(1, own, channels));
+            const CheckResult right = checked(by_walk(1, own, channels));
             EXPECT_EQ(right.state, State::right) << own << channels << what_is_wrong(right);
-            const CheckResult wrong = judged(by_walk(1.1, own, channels));
+            const CheckResult wrong = checked(by_walk(1.1, own, channels));
             EXPECT_EQ(wrong.state, State::wrong) << own << channels << what_is_wrong(wrong);
         }
 }
@@ -88,11 +88,11 @@ SyntheticSampler resampled(bool by_root) {
     return r;
 }
 
-TEST(WithoutAPdf, DrawsThatGoElsewhereThanTheirWeightsSayAreFound) {
-    const CheckResult right = judged(resampled(false)), wrong = judged(resampled(true));
+TEST(WithoutAPdf, DrawsThatContradictWeightsAreFound) {
+    const CheckResult right = checked(resampled(false)), wrong = checked(resampled(true));
     EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
-    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").say;
-    EXPECT_EQ(named(wrong, "physics").state, State::right) << named(wrong, "physics").say;
+    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").message;
+    EXPECT_EQ(named(wrong, "physics").state, State::right) << named(wrong, "physics").message;
 }
 
 TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
@@ -101,14 +101,14 @@ TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
     r.pdf = [](Vec3d, Vec3d) { return 1.0; };
     r.f = [](Vec3d, Vec3d i) { return i.z > 0 ? 0.5 / pi : 0; };
     r.sample = [](Vec3d, const PrimarySample& u) { return Draw{cosine(u[0], u[1]), 1}; };
-    const CheckResult j = judged(r);
+    const CheckResult j = checked(r);
     EXPECT_EQ(j.state, State::inconclusive);
     const Verdict& v = named(j, "density");
-    EXPECT_NE(v.say.find("could not be examined"), std::string::npos) << v.say;
-    EXPECT_NE(v.settle.find("weight=yes"), std::string::npos) << v.settle;
+    EXPECT_NE(v.message.find("could not be examined"), std::string::npos) << v.message;
+    EXPECT_NE(v.next_step.find("weight=yes"), std::string::npos) << v.next_step;
 }
 
-/// (k+1)/(2 pi) cos^k about n, asked of no pdf, with a weight; `halves`: one number chooses it or the cosine.
+/// (k+1)/(2 pi) cos^k about n, without a pdf, with a weight; `halves`: one number selects it or the cosine.
 SyntheticSampler power_lobe(double k, bool halves) {
     SyntheticSampler r{"power", "", {}, {}, {}};
     r.traits.has_pdf = false;
@@ -129,7 +129,7 @@ SyntheticSampler power_lobe(double k, bool halves) {
 CheckResult pictured(const SyntheticSampler& recipe) {
     TestSettings settings;
     settings.pictures = true;
-    return judged_at(subject_of(recipe), 45, settings);
+    return checked_at(make_adapter(recipe), 45, settings);
 }
 
 TEST(WithoutAPdf, ThePeakIsStatedWithItsStandardError) {
@@ -141,12 +141,12 @@ TEST(WithoutAPdf, ThePeakIsStatedWithItsStandardError) {
                      se = v.evidence["implied_peak"]["standard_error"].get<double>();
         EXPECT_GT(se, 0);
         EXPECT_LT(se, 0.15 * peak) << "a cell of a handful of draws";
-        EXPECT_NEAR(peak, due, 0.05 * due + 4 * se) << v.say;
-        EXPECT_NE(v.say.find(" +- "), std::string::npos) << v.say;
+        EXPECT_NEAR(peak, due, 0.05 * due + 4 * se) << v.message;
+        EXPECT_NE(v.message.find(" +- "), std::string::npos) << v.message;
     }
 }
 
-/// Cells cover the sphere, and what is in them sums to one.
+/// Cells cover the sphere, and their contents sum to one.
 TEST(WithoutAPdf, TheImpliedDensityIntegratesToOne) {
     const CheckResult j = pictured(power_lobe(20, true));
     double area = 0, mass = 0;
@@ -159,7 +159,7 @@ TEST(WithoutAPdf, TheImpliedDensityIntegratesToOne) {
     EXPECT_NEAR(mass, 1, 1e-9);
 }
 
-/// The mean over each ring is what the lobe has there, to five standard errors.
+/// The mean over each ring equals that of the lobe there, to five standard errors.
 TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
     constexpr double k = 20;
     const CheckResult j = pictured(power_lobe(k, false));
@@ -173,7 +173,7 @@ TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
     }
 }
 
-TEST(WithoutAPdf, ThePageHasOneMapAndATableAndTheTerminalALine) {
+TEST(WithoutAPdf, ReportHasOneMapAndATable) {
     const CheckResult j = pictured(power_lobe(20, false));
     const std::string page = verdict_html(j), text = verdict_table(j);
     EXPECT_EQ(page.find("<figcaption>expected"), std::string::npos) << "a copy of what was observed";

@@ -1,4 +1,4 @@
-"""Several lobes in one sampler: which is chosen, how often, and what the density says of it."""
+"""Several lobes in one sampler: selection, probabilities, and densities."""
 
 import numpy as np
 from parts import cosine, cosine_pdf, dot, ggx_f, ggx_pdf, half, lambert, reflect, sample_ggx_m
@@ -21,8 +21,8 @@ def gloss(wo, u):
 
 
 def blend(share, said_share=None, said=None):
-    """Lambert with the probability share(wo), else GGX; `said_share`: what pdf(w) takes for it; `said`: the pdf that
-    comes with a draw."""
+    """Lambert with the probability share(wo), else GGX; `said_share`: the share used by pdf(w); `said`: the pdf
+    returned with a draw."""
     weight = said_share or (lambda wo, wi: share(wo))
 
     def pdf(wo, wi):

@@ -1,4 +1,4 @@
-"""Diffuse lobes that were drawn otherwise than their density says."""
+"""Diffuse lobes whose draws do not follow their density."""
 
 import numpy as np
 from parts import above, cosine, cosine_pdf, drawn_with, lambert, polar, unit

@@ -21,9 +21,9 @@ def cell_of(wi):
 
 
 def sky(with_sine=True, pmf=1.0, shift=0.0, reached=None):
-    """Cells by radiance and sin theta, evenly inside in theta and phi; `with_sine`: p is divided by it.
+    """Cells by radiance and sin theta, uniform inside in theta and phi; `with_sine`: p is divided by it.
 
-    `pmf`: of this light among others, drawn and left out of p; `shift`: of the draws, in columns; `reached`: the
+    `pmf`: of this light among others, drawn and omitted from p; `shift`: of the draws, in columns; `reached`: the
     columns that are drawn."""
     weights = SKY * SINE if reached is None else SKY * SINE * reached
     share = (weights / weights.sum()).ravel()
@@ -51,7 +51,7 @@ RIGHT = sky()
 
 
 def disk(solid_angle=True):
-    """A disk of radius 0.8 at height 1, leant by 27 degrees, by area."""
+    """A disk of radius 0.8 at height 1, tilted by 27 degrees, by area."""
     x = np.cross(TILT, [0.0, 1.0, 0.0])
     x /= np.linalg.norm(x)
     y = np.cross(TILT, x)

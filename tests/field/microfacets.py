@@ -1,4 +1,4 @@
-"""Microfacets: Jacobians, shadowing, and which direction is which."""
+"""Microfacets: Jacobians, shadowing, and the roles of directions."""
 
 import numpy as np
 from parts import (
@@ -63,7 +63,7 @@ def gtr1(wo, u):
 
 
 def gtr1_without_root(wo, u):
-    """sin theta is 1 - cos^2 theta, and the vector is brought to unit length afterwards."""
+    """sin theta is 1 - cos^2 theta, and the vector is normalised afterwards."""
     cos2, phi = gtr1_cos2(u), 2 * np.pi * u[:, 1]
     sine = 1 - cos2
     m = np.stack([sine * np.cos(phi), sine * np.sin(phi), np.sqrt(cos2)], -1)

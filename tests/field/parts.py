@@ -1,4 +1,4 @@
-"""What the faults beside this file are made of: warps, GGX, frames, the choice of a lobe. Local frame, n = +z."""
+"""Building blocks of the faults in this folder: warps, GGX, frames, the selection of a lobe. Local frame, n = +z."""
 
 import numpy as np
 
@@ -70,14 +70,14 @@ def sample_ggx_visible(wo, u, alpha):
 
 
 def half(wo, wi):
-    """The half vector; n where wi is opposite to wo."""
+    """The half vector; n if wi is opposite to wo."""
     h = wo + wi
     size = np.linalg.norm(h, axis=1, keepdims=True)
     return np.where(size > 1e-12, h / np.where(size > 1e-12, size, 1), [0.0, 0.0, 1.0])
 
 
 def ggx_f(alpha, rho=1.0):
-    """rho D G1 G1 / (4 cos cos), Fresnel apart."""
+    """rho D G1 G1 / (4 cos cos), without Fresnel."""
 
     def f(wo, wi):
         up = (wo[:, 2] > 0) & (wi[:, 2] > 0)
@@ -90,12 +90,12 @@ def ggx_f(alpha, rho=1.0):
 
 
 def above(wi, p):
-    """Nothing is drawn under the horizon: p is 0 there."""
+    """No sample is returned below the horizon: p is 0 there."""
     return np.where(wi[:, 2] > 0, p, 0.0)
 
 
 def ggx_pdf(alpha):
-    """D (m.n) / (4 (wo.m)) over the upper hemisphere; what is reflected under it draws nothing."""
+    """D (m.n) / (4 (wo.m)) over the upper hemisphere; directions reflected below it return no sample."""
 
     def pdf(wo, wi):
         m = half(wo, wi)
@@ -114,7 +114,7 @@ def visible_pdf(alpha):
 
 
 def drawn_with(sample, pdf):
-    """sample(wo, u) -> wi, with the pdf of a function beside it."""
+    """sample(wo, u) -> wi, with the pdf of a function."""
 
     def both(wo, u):
         wi = sample(wo, u)

@@ -1,5 +1,5 @@
-// Any bytes as an experiment file: it is read, or refused with an InputError that says something. Lines that start with
-// "--set " are overrides. What is read keeps the promises of experiment.h.
+// Any bytes as an experiment file: it is read, or rejected with an InputError that has a message. Lines that start with
+// "--set " are overrides. An experiment that is read satisfies the guarantees of experiment.h.
 #include <cstdint>
 #include <string>
 #include <string_view>

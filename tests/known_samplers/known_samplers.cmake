@@ -1,5 +1,5 @@
-# Samplers whose verdict is known: planted faults and right samplers. `crescent check --planted` and `--right` and
-# tests check them; no library that is installed has them.
+# Samplers with a known verdict: planted faults and correct samplers. `crescent check --planted` and `--right` and tests
+# check them; no installed library contains them.
 file(GLOB known CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*/*.cpp)
 add_library(crescent_known_samplers STATIC EXCLUDE_FROM_ALL ${known})
 target_include_directories(crescent_known_samplers PUBLIC ${PROJECT_SOURCE_DIR})

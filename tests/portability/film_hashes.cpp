@@ -1,6 +1,7 @@
-// The bits of what crescent computes: functions of math/, and, for every experiment, each film at its own seed on each
-// instruction set of this machine, and its references. Two builds agree where this prints the same; it needs none of
-// the folders that draw and report, so that a second compiler has little to build.
+// The bits of crescent's results: functions of math/, and, for every experiment, each film at its own seed on each
+// instruction set of this machine, and its references. Two builds agree if this prints the same; it needs no folder
+// that draws or reports, so that a second compiler has little to build.
+//
 //
 //   film_hashes FILE.toml...            the hashes
 //   film_hashes --fewer FILE.toml...    of small images and few samples
@@ -23,7 +24,7 @@ namespace {
 
 using namespace crescent;
 
-/// The bits of f over an even sweep of [a, b].
+/// Prints the bits of f over an even sweep of [a, b].
 template <class Function> void print_function(const char* name, Function f, double a, double b) {
     std::vector<double> values;
     constexpr int count = 4096;

@@ -1,4 +1,4 @@
-// WebAssembly as Debian's libraries have it knows no exceptions: what throws says what it threw, and ends the program.
+// Debian's libraries for WebAssembly have no exceptions: a throw prints its message and ends the program.
 #include <cstdio>
 #include <cstdlib>
 #include <typeinfo>

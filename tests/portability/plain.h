@@ -1,5 +1,5 @@
-// What the core reads of an experiment, as plain numbers and words in one order: written on a machine that reads TOML,
-// read on one that has no files. Doubles are hexadecimal, so that not a bit is lost.
+// The inputs of the core from an experiment, as plain numbers and words in one order: written on a machine that reads
+// TOML, read on one that has no files. Doubles are hexadecimal, so that no bit is lost.
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,7 @@
 
 namespace crescent::plain {
 
-/// One item after another to a stream.
+/// Writes one item after another to a stream.
 struct Writer {
     std::ostream& to;
     void item(const double& x) { to << std::hexfloat << x << '\n'; }
@@ -24,7 +24,7 @@ struct Writer {
     static constexpr bool reads = false;
 };
 
-/// The same items from a stream.
+/// Reads the same items from a stream.
 struct Reader {
     std::istream& from;
     std::string line() {

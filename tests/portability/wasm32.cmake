@@ -1,5 +1,5 @@
-# WebAssembly with its 128-bit vectors, through clang, wasi-libc and libc++. No relaxed vectors: their results are the
-# machine's choice.
+# WebAssembly with its 128-bit vectors, through clang, wasi-libc and libc++. No relaxed vectors: their results depend on
+# the machine.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
 set(CMAKE_CXX_COMPILER clang++-19)

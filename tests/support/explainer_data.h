@@ -1,9 +1,10 @@
-// A small run of everything the film needs, made once for all tests: a glossy ball before a lamp, 96 x 54 pixels.
+// A small run of everything the explainer needs, made once for all tests: a glossy ball before an area light, 96 x 54
+// pixels.
 #pragma once
 
 #include "data.h"
 
-namespace crescent::film::test {
+namespace crescent::explainer::test {
 
 inline Experiment small_experiment() {
     return parse(R"(
@@ -64,4 +65,4 @@ inline const Data& small_data() {
     return data;
 }
 
-}  // namespace crescent::film::test
+}  // namespace crescent::explainer::test

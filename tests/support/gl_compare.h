@@ -1,5 +1,6 @@
-// A GL film beside the CPU's. Where no sample of a pixel changed sides of an edge (the same number under the horizon,
-// the same number on the lights), Y may differ by rounding alone; where one did, the pixel is counted and not compared.
+// A GL film compared with the CPU's. If no sample of a pixel changed sides of an edge (the same number below the
+// horizon, the same number on the lights), Y may differ only by rounding; if one did, the pixel is counted and not
+// compared.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +11,16 @@
 
 namespace crescent::gl::test {
 
-// One sample's X = f L cos / p. Directions are off by about 1.5e-7 absolute, so cos by as much and X relative to the
-// larger of itself and the pixel's Lambert level by a few such steps; what an arm divides by, or raises to a power,
-// adds to that. The arms state their bounds: each is about three times the largest difference among 270,000 samples on
-// llvmpipe, stated in docs/gl.md.
-/// A GPU's compiler may contract a b + c, and its square roots and reciprocals are good to 1 or 2 ULP instead of half
-/// of one.
+// One sample's X = f L cos / p. Directions are off by about 1.5e-7 absolute, so cos by the same and X relative to the
+// larger of itself and the pixel's Lambert level by a few such steps; divisions and powers in a sampler add to that.
+// The samplers state their bounds: each is about three times the largest difference among 270,000 samples on llvmpipe,
+// given in docs/gl.md.
+/// A GPU's compiler may contract a b + c, and its square roots and reciprocals are accurate to 1 or 2 ULP instead of
+/// half of one.
 inline constexpr double gpu_factor = 8;
-/// Samples that may change sides, of all: an edge must lie within the 1.5e-7 by which a direction is off. Each of the
-/// scene's edges is a few units long, so about 1e-6 of the samples of an arm that is spread over the hemisphere, more
-/// where an arm aims at an edge (phong at grazing angles, light-area at rims).
+/// The share of samples that may change sides: an edge must be within the 1.5e-7 by which a direction is off. Each of
+/// the scene's edges is a few units long, so about 1e-6 of the samples of a sampler that covers the hemisphere, more if
+/// a sampler aims at an edge (phong at grazing angles, light-area at outlines).
 inline constexpr double software_side_rate = 1e-5, gpu_side_rate = 8e-5;
 
 struct Difference {

@@ -1,5 +1,5 @@
-// A small scene for the tests of this folder, with one of everything that a shader has a line for: every lobe, every
-// kind of body before the lights, two lights of which one emits from both sides.
+// A small scene for the tests of this folder, with everything that a shader supports: every lobe, every kind of body
+// before the lights, two lights of which one emits from both sides.
 #pragma once
 
 #include <cstdlib>
@@ -121,7 +121,7 @@ inline Experiment small_scene(const std::vector<std::string>& overrides = {}) {
     return parse(scene_text, "test.toml", overrides);
 }
 
-/// Every built-in sampler that has a GLSL copy.
+/// Every built-in sampler with a GLSL version.
 inline std::vector<std::string> all_arms() {
     std::vector<std::string> names;
     for (const SamplerInfo& arm : sampler_infos())
@@ -129,8 +129,8 @@ inline std::vector<std::string> all_arms() {
     return names;
 }
 
-/// What the tests draw with, opened once: CRESCENT_GL_CONTEXT (egl, osmesa), by default the instrument's own choice.
-/// EGL's and OSMesa's drivers share tables within a process, so that one process has one of them.
+/// The context of the tests, opened once: CRESCENT_GL_CONTEXT (egl, osmesa), by default the back end's own choice.
+/// EGL's and OSMesa's drivers share tables within a process, so that one process uses only one of them.
 inline Context& context() {
     const char* kind = std::getenv("CRESCENT_GL_CONTEXT");
     static const std::unique_ptr<Context> one = open_context({kind ? kind : "", -1});

@@ -1,5 +1,5 @@
 // The functions of simd/math.h over arrays, in the packs of one instruction set: math_<isa>_test.cpp makes the table,
-// math_isa_test.cpp asks each. Plain arrays and no library calls, because these files are compiled for processors that
+// math_isa_test.cpp calls each. Plain arrays and no library calls, because these files are compiled for processors that
 // the machine may not have.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Renders that are held in memory, for the tests: what differs is put where a test wants it.
+// Renders that are held in memory, for tests that change single pixels.
 #pragma once
 
 #include <map>
@@ -7,12 +7,12 @@
 #include "compare/compare.h"
 #include "compare/synthetic.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 /// Renders by name; all of arm "a" begin with a, of "b" with b.
 class MemoryRenders {
 public:
-    /// A grey render of normal noise of 10 %, mean 1, so many pixels a side.
+    /// A grey render of normal noise of 10 %, mean 1, `side` pixels per side.
     Render& put(const std::string& name, std::uint32_t seed, int side = 16) {
         Render r(name, side, side);
         for (std::size_t i = 0; i < r.size(); ++i)
@@ -27,7 +27,7 @@ public:
     CompareResult compare(const std::vector<CompareFlag>& flags = {}) const {
         ProgressMonitor monitor;
         const ComparePlan planned = plan(flags);
-        return judge(planned, read_all(planned, monitor, source()), monitor);
+        return test_differences(planned, read_all(planned, monitor, source()), monitor);
     }
     std::map<std::string, Render> renders;
 
@@ -51,4 +51,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

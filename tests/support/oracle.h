@@ -1,6 +1,6 @@
-// A second opinion on a pixel, for tests: plain Monte Carlo in double, with rays of its own. Draws cosine-weighted,
-// from the lobe and on each disk, weighed by the balance heuristic (Veach 1997). Shares nothing with the quadrature but
-// lobes/.
+// An independent reference for a pixel, for tests: plain Monte Carlo in double, with rays of its own. Draws
+// cosine-weighted, from the lobe and on each disk, weighted by the balance heuristic (Veach 1997). Shares only lobes/
+// with the quadrature.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace crescent::test {
 
-/// Does the surface of a body cross x + t d for a t in (lo, hi)?
+/// Returns whether the surface of a body crosses x + t d for a t in (lo, hi).
 struct Crosses {
     Vec3d x, d;
     double lo, hi;
@@ -53,7 +53,7 @@ struct Crosses {
         return in(t) && dot(p, p) <= sqr(o.radius);
     }
     bool operator()(const shapes::Plane& o) const { return in(on_plane(o.point, o.normal)); }
-    /// A kind that has no form here: where a camera's ray from lo on meets it.
+    /// A kind without a form here: where a camera ray from lo on meets it.
     bool operator()(const auto& o) const { return o.intersect(x + lo * d, d).t < hi - lo; }
 };
 
@@ -71,7 +71,7 @@ public:
           wo_(frame_.to_local(hit.wo)),
           next_(seed) {}
 
-    /// `n` draws of each technique. Lambert under the fill is known; all else is drawn.
+    /// `n` draws of each technique. Lambert under the fill is known; the rest is drawn.
     Opinion operator()(int n) {
         Opinion out;
         for (std::size_t k = 0; k < techniques(); ++k) {
@@ -88,8 +88,8 @@ public:
         return out;
     }
 
-    /// A drawn direction, local: Y of f L cos there, but for Lambert under the fill; the sum of the techniques'
-    /// densities, 1/sr, 0 where nothing was drawn.
+    /// A drawn direction, local: Y of f L cos there, except for Lambert under the fill; the sum of the techniques'
+    /// densities, 1/sr, 0 if nothing was drawn.
     struct Direction {
         Vec3d wi{};
         double worth = 0, density = 0;
@@ -98,7 +98,7 @@ public:
     Direction draw(std::size_t technique) {
         if (technique == 1 && !(surface_.rho_s > 0)) return {};
         const Vec3d wi = technique == 0 ? cosine() : technique == 1 ? lobe() : on_light(technique - 2);
-        const bool aimed_at =  // a lamp's back is not
+        const bool aimed_at =  // not the back of an area light
             technique < 2 || lit(scene_.lights()[technique - 2], frame_.to_world(wi)).t < 1e300;
         return aimed_at ? at(wi) : Direction{};
     }
@@ -162,7 +162,7 @@ private:
         return towards(ball.center + ball.radius * polar(z, std::sqrt(1 - z * z)));
     }
     Vec3d on(const lights::Rectangle& r) { return towards(r.corner + u() * r.edge_u + u() * r.edge_v); }
-    /// A kind that has no form here: on the figure that it is seen as.
+    /// A kind without a form here: on the figure of its outline.
     Vec3d on(const auto& light) {
         const auto among = [&]<class Figure>(const Figure& f) {
             if constexpr (std::is_same_v<Figure, shapes::Disk>) return on(lights::Disk{f.center, f.normal, f.radius});
@@ -174,7 +174,7 @@ private:
         return std::visit([&](const auto& light) { return on(light); }, scene_.lights()[k].form);
     }
 
-    /// Where a direction meets a light first, and with which density in 1/sr points drawn on it would lie there.
+    /// Where a direction meets a light first, and the density in 1/sr of points drawn on it.
     struct Lit {
         double t = 1e300, pdf = 0;
     };

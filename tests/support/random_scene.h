@@ -1,5 +1,6 @@
-// Scenes drawn at random for tests: one surface in view with any lobe of any sharpness, one to three lamps of any size,
-// most of them where the surface mirrors the camera's view, and bodies that touch, hold, cut or cover what they can.
+// Random scenes for tests: one surface in view with any lobe of any sharpness, one to three area lights of any size,
+// most of them where the surface mirrors the camera's view, and bodies that touch, contain, cut or cover the other
+// objects.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +18,8 @@ namespace crescent::test {
 
 class RandomScene {
 public:
-    /// `newcomers`: the first lamp is a ball or a rectangle of about its size instead of a disk. `far`: a body of 1e2
-    /// to 1e6 m ends in its light, and the scene stands up to 1e6 m from (0, 0, 0).
+    /// `newcomers`: the first area light is a ball or a rectangle of about its size instead of a disk. `far`: a body of
+    /// 1e2 to 1e6 m ends in its light, and the scene is up to 1e6 m from (0, 0, 0).
     explicit RandomScene(std::uint32_t seed, bool newcomers = false, bool far = false)
         : next_(seed), newcomers_(newcomers), far_(far) {}
 
@@ -30,7 +31,7 @@ public:
         const double up = std::pow(10, between(-1.5, 0));  // the sine of the camera's height
         const Vec3d view = turned(std::sqrt(1 - up * up), up);
         e.camera.eye = between(1, 4) * view, e.camera.up = {0, 1, 0.1}, e.camera.vfov_deg = between(0.5, 15);
-        lamps(e, {-view.x, view.y, -view.z});
+        area_lights(e, {-view.x, view.y, -view.z});
         const int bodies = static_cast<int>(between(0, 3.5));
         for (int k = 0; k < bodies; ++k) body(e);
         if (newcomers_) newcomer(e);
@@ -79,7 +80,7 @@ private:
         }
         e.shapes.push_back(s);
     }
-    void lamps(Experiment& e, Vec3d mirror) {
+    void area_lights(Experiment& e, Vec3d mirror) {
         DiskLight l;
         l.name = "lamp", l.radius = once_in(4) ? scale(1e-6, 1e-2) : scale(1e-2, 3);
         const double far = scale(0.2, 4);
@@ -102,10 +103,11 @@ private:
         what += " + second";
     }
     void body(Experiment& e) {
-        const DiskLight& lamp = e.disks[0];
-        const double far = std::sqrt(dot(lamp.center, lamp.center)),
-                     size = scale(1e-4, 1) * std::max(lamp.radius, 0.1 * far);
-        const Vec3d middle = between(0.1, 0.95) * lamp.center + between(0, 1) * (lamp.radius + size) * direction();
+        const DiskLight& area_light = e.disks[0];
+        const double far = std::sqrt(dot(area_light.center, area_light.center)),
+                     size = scale(1e-4, 1) * std::max(area_light.radius, 0.1 * far);
+        const Vec3d middle =
+            between(0.1, 0.95) * area_light.center + between(0, 1) * (area_light.radius + size) * direction();
         Shape s;
         s.name = "body" + std::to_string(e.shapes.size()), s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3},
         s.material.s = 10;
@@ -121,42 +123,45 @@ private:
             case 3: quad(middle, size * direction(), size * direction()); break;
             case 4: ball({0, 0, 0}, scale(0.1, 10)); break;  // round the surface, and more
             case 5: box({0.01, 0.02, 0}, scale(0.1, 10) * Vec3d{1, 1, 1}); break;
-            case 6: ball(lamp.center, scale(0.3, 3) * lamp.radius); break;  // round the lamp, or in it
-            case 7: box(lamp.center + Vec3d{0, between(-1, 1), 0} * size, {size, size, size}); break;
+            case 6:
+                ball(area_light.center, scale(0.3, 3) * area_light.radius);
+                break;  // round the area light, or in it
+            case 7: box(area_light.center + Vec3d{0, between(-1, 1), 0} * size, {size, size, size}); break;
             case 8:
-                box(lamp.center + Vec3d{0, size, 0}, {2 * size, size, 2 * size});
-                break;  // its lower face at the lamp
+                box(area_light.center + Vec3d{0, size, 0}, {2 * size, size, 2 * size});
+                break;  // its lower face at the area light
             case 9: disk({0, 0, 0}, {0, 1, 0}, scale(0.001, 1)), s.material = e.shapes[0].material; break;  // a mat
             case 10: quad({0, 0, 0}, scale(0.01, 1) * turned(1, 0), scale(0.01, 1) * turned(1, 0)); break;
             default:
-                quad(lamp.center, 3 * size * frame_about(lamp.normal).t, size * frame_about(lamp.normal).b);
-                break;  // in the lamp's plane
+                quad(area_light.center, 3 * size * frame_about(area_light.normal).t,
+                    size * frame_about(area_light.normal).b);
+                break;  // in the area light's plane
         }
         e.shapes.push_back(s);
         what += ", body " + std::to_string(kind) + " size " + std::to_string(size);
     }
 
     void newcomer(Experiment& e) {
-        const DiskLight lamp = e.disks[0];
+        const DiskLight area_light = e.disks[0];
         e.disks.erase(e.disks.begin());
-        Light light = lamp.light();
+        Light light = area_light.light();
         if (once_in(2)) {
-            light.form =
-                lights::Sphere{lamp.center, std::min(lamp.radius, 0.9 * std::sqrt(dot(lamp.center, lamp.center)))};
+            light.form = lights::Sphere{area_light.center,
+                std::min(area_light.radius, 0.9 * std::sqrt(dot(area_light.center, area_light.center)))};
         } else {
-            const Frame<double> frame = frame_about(lamp.normal);
-            const Vec3d u = 2 * lamp.radius * frame.t, v = scale(0.1, 2) * lamp.radius * frame.b;
-            light.form = lights::Rectangle{lamp.center - 0.5 * (u + v), u, v, lamp.two_sided};
+            const Frame<double> frame = frame_about(area_light.normal);
+            const Vec3d u = 2 * area_light.radius * frame.t, v = scale(0.1, 2) * area_light.radius * frame.b;
+            light.form = lights::Rectangle{area_light.center - 0.5 * (u + v), u, v, area_light.two_sided};
         }
         e.lights.push_back(light);
         what += ", which is a " + std::string(light.kind());
     }
 
-    /// Its edge, or a side of it, passes between the surface and the lamp.
+    /// Its edge, or a side of it, passes between the surface and the area light.
     void large_body(Experiment& e) {
-        const Vec3d lamp = std::visit([](const auto& form) { return form.body().middle(); }, e.lights[0].form);
+        const Vec3d area_light = std::visit([](const auto& form) { return form.body().middle(); }, e.lights[0].form);
         const double size = scale(1e2, 1e6);
-        const Vec3d p = between(0.2, 0.9) * lamp, n = direction();
+        const Vec3d p = between(0.2, 0.9) * area_light, n = direction();
         const Frame<double> frame = frame_about(n);
         Shape s;
         s.name = "large", s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3}, s.material.s = 10;

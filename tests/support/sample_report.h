@@ -1,5 +1,5 @@
-// A small run for the tests of this folder: two arms, two regions, three seeds, one plate, evidence. The tests change
-// what they are about.
+// A small run for the tests of this folder: two arms, two regions, three seeds, one plate, article checks. Each test
+// changes the part that it tests.
 #pragma once
 
 #include <stdexcept>
@@ -19,15 +19,15 @@ struct Sample {
     Sample();
     ReportInputs inputs() const { return {experiment, metrics, evidence, provenance, plates}; }
     std::string html() const { return report_html(inputs()); }
-    /// The meter of a region at one seed, to be changed.
+    /// The metric of a region at one seed, which may be changed.
     RegionMetrics& region(const std::string& arm, const std::string& name, std::uint32_t seed);
-    SeedSpread& band(const std::string& arm, const std::string& meter);
+    SeedSpread& band(const std::string& arm, const std::string& metric);
 };
 
-inline void add_band(Sample& s, const RunKey& key, const std::string& meter, double value, double published) {
+inline void add_band(Sample& s, const RunKey& key, const std::string& metric, double value, double published) {
     SeedSpread b;
     b.key = key;
-    b.meter = meter;
+    b.metric = metric;
     b.measured = value;
     b.band = {0.9 * value, value, 1.1 * value, 3, false};
     b.published = published;
@@ -125,10 +125,10 @@ inline RegionMetrics& Sample::region(const std::string& arm, const std::string& 
     throw std::out_of_range(arm + " " + name);
 }
 
-inline SeedSpread& Sample::band(const std::string& arm, const std::string& meter) {
+inline SeedSpread& Sample::band(const std::string& arm, const std::string& metric) {
     for (SeedSpread& b : metrics.bands)
-        if (b.key.arm == arm && b.meter == meter) return b;
-    throw std::out_of_range(arm + " " + meter);
+        if (b.key.arm == arm && b.metric == metric) return b;
+    throw std::out_of_range(arm + " " + metric);
 }
 
 }  // namespace crescent::testing

@@ -1,6 +1,6 @@
-// The films of arms beside a reference film, for tests. Of all arms each pixel is held against the one whose variance
-// there is least, as draws of a double-precision oracle measure it, which meet every lobe and every lamp: an arm that
-// misses a peak has a large variance, whatever its own few samples say.
+// The films of arms compared with a reference film, for tests. Each pixel is compared with the arm of least variance
+// there, as measured by draws of a double-precision estimator, which meet every lobe and every area light: an arm that
+// misses a peak has a large variance, although its own few samples may not show it.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,13 +21,13 @@ namespace crescent::test {
 
 inline constexpr std::uint64_t samples = 8192;
 inline constexpr int moment_draws = 250;
-/// What an arm in single precision may be off, relative: as much as check grants the density of one.
+/// The relative error allowed for an arm in single precision: as much as check allows for the density of one.
 inline constexpr double single_precision = 1e-4;
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// What each built-in arm does at a pixel, as draws of the oracle tell: int F^2 / p, and how X varies; F = f L cos.
-/// Arms of two techniques are left out but for mis-balance.
+/// Each built-in sampler at a pixel, measured by draws of the oracle: int F^2 / p, and the variance of X; F = f L cos.
+/// Samplers of two techniques are omitted, except mis-balance.
 class ArmsAtPixel {
 public:
     ArmsAtPixel(const Scene& scene, const Hit& hit, int i, int j, std::uint32_t seed)
@@ -38,8 +38,8 @@ public:
         for (std::size_t k = 0; k < oracle_.techniques(); ++k)
             for (int n = 0; n < moment_draws; ++n) add(oracle_.draw(k));
     }
-    /// The arm of the least second moment, hence of the least variance: all have the same mean. Empty where each has
-    /// directions that it never draws.
+    /// Returns the sampler of the smallest second moment, and so of the smallest variance, because all have the same
+    /// mean. Empty if each has directions that it never draws.
     std::string best() const {
         std::string out;
         double least = infinite;
@@ -50,11 +50,12 @@ public:
         }
         return out;
     }
-    /// Of one X of an arm whose films have this mean and this share of samples under the horizon, where X is 0. About
-    /// its mean, direction by direction: a difference of moments would be as coarse as the draws are few.
+    /// Returns the variance of one X of a sampler whose films have this mean and this share of samples below the
+    /// horizon, where X is 0. Computed about its mean, direction by direction, because a difference of moments would be
+    /// imprecise for few draws.
     double variance(const std::string& arm, double mean, double under) const {
         const auto k = static_cast<std::size_t>(std::ranges::find(arms_, arm) - arms_.begin());
-        double second = 0;  // what the second of two techniques gives
+        double second = 0;  // contribution of the second of two techniques
         for (const Direction& d : drawn_)
             if (d.other[k] > 0) second += d.F / (d.p[k] + d.other[k]) * d.other[k] * d.share;
         double out = sqr(mean) * under;
@@ -66,7 +67,7 @@ public:
     }
 
 private:
-    /// `other`: the density of the second technique, 0 where an arm has one.
+    /// `other`: the density of the second technique, 0 if a sampler has one.
     struct Direction {
         double F, share;
         std::vector<double> p, other;
@@ -87,10 +88,10 @@ private:
     std::vector<Direction> drawn_;
 };
 
-/// How the pixels of a scene compare: those that an arm knows to 2 % and those of them that are off.
+/// The comparison of the pixels of a scene: those that a sampler knows to 2 %, and the deviating ones among them.
 struct Compared {
     int known = 0, off = 0, pixels = 0;
-    std::string told;
+    std::string describe;
 };
 
 class ArmsOf {
@@ -130,8 +131,8 @@ inline Compared compare_scene(const Scene& scene, const ReferenceFilm& reference
             const double allowed = stated + 5 * std::sqrt(variance) + single_precision * y;
             if (std::fabs(y - mean) <= allowed) continue;
             ++out.off;
-            out.told += fmt::format(" ({}, {}) {}: reference {:.5g} +- {:.2g}, arm {:.5g} +- {:.2g};", i, j, best, y,
-                stated, mean, std::sqrt(variance));
+            out.describe += fmt::format(" ({}, {}) {}: reference {:.5g} +- {:.2g}, arm {:.5g} +- {:.2g};", i, j, best,
+                y, stated, mean, std::sqrt(variance));
         }
     return out;
 }

@@ -1,7 +1,8 @@
-// Whether tests run under AddressSanitizer, which makes them about ten times slower.
+// The cost of tests: under AddressSanitizer everything is about ten times slower, and ./test --matrix runs all cases.
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 
 namespace crescent::test {
 
@@ -17,7 +18,10 @@ inline constexpr bool sanitized = false;
 inline constexpr bool sanitized = false;
 #endif
 
-/// Of many cases that are alike each `every`-th is tried: sanitizers look at the code, which is the same in all.
+/// Of many similar cases each `every`-th is tested: sanitizers check the code, which is the same in all.
 inline constexpr std::size_t every = sanitized ? 3 : 1;
+
+/// Returns whether every case is tested instead of a sample.
+inline bool whole_matrix() { return std::getenv("CRESCENT_TEST_MATRIX") != nullptr; }
 
 }  // namespace crescent::test

@@ -1,4 +1,4 @@
-// A folder that goes with the test.
+// A folder that is removed after the test.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
 class ScratchFolder : public ::testing::Test {
 protected:
@@ -32,7 +32,7 @@ protected:
         std::ifstream in(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     }
-    /// What an InputError says; "" where there is none.
+    /// Returns the message of an InputError; "" if there is none.
     template <class Work> static std::string refusal(const Work& work) {
         try {
             (void)work();
@@ -45,4 +45,4 @@ private:
     static inline int count_ = 0;
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -1,4 +1,4 @@
-// A small scene for tests: a glossy ball on a box before a wall, two lamps, penumbrae in view.
+// A small scene for tests: a glossy ball on a box before a wall, two area lights, with penumbrae visible.
 #pragma once
 
 #include <span>

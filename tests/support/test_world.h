@@ -1,4 +1,4 @@
-// An experiment with noise for films: what the tests of plates need, and nothing else.
+// An experiment with noise for films, for the tests of plates.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace crescent::plates {
 
-/// Whether these words are on the sheet, in whatever place.
+/// Returns whether these words are anywhere on the sheet.
 inline bool has(const std::vector<Setting>& settings, const std::string& words) {
     return std::ranges::any_of(settings, [&](const Setting& s) { return s.text.find(words) != std::string::npos; });
 }
@@ -22,7 +22,7 @@ struct World {
     ShapeMap shapes;
     std::map<std::string, Film> films;
     ReferenceFilm reference;
-    std::string instrument = "CPU";
+    std::string backend = "CPU";
 
     World(int w, int h) : reference(w, h, 32) {
         e.title = "test";
@@ -58,8 +58,8 @@ struct World {
         for (const Region& r : e.regions) m.regions.push_back({r.name, 1.234, 0.5, 10, {}});
         m.fireflies = 12345;
         metrics.runs.push_back(m);
-        for (const char* meter : {"rmse.H", "rmse.S", "fireflies", "var.H", "horizon_frac", "y_mean"}) {
-            metrics.bands.push_back({m.key, meter, 1.2, {1.1, 1.2, 1.3, 16, false}, 1.25, 0.4});
+        for (const char* metric : {"rmse.H", "rmse.S", "fireflies", "var.H", "horizon_frac", "y_mean"}) {
+            metrics.bands.push_back({m.key, metric, 1.2, {1.1, 1.2, 1.3, 16, false}, 1.25, 0.4});
         }
         films[to_string(m.key)] = std::move(f);
     }
@@ -80,7 +80,7 @@ struct World {
                 auto at = films.find(to_string(k));
                 return at == films.end() ? nullptr : &at->second;
             },
-            [this](double s) { return s == 32 ? &reference : nullptr; }, instrument};
+            [this](double s) { return s == 32 ? &reference : nullptr; }, backend};
     }
 
     std::vector<Setting> settings(const PlatePlan& p) const {

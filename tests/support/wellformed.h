@@ -1,4 +1,4 @@
-// Whether text is well-formed XML, as expat reads it.
+// Returns whether text is well-formed XML, using expat.
 #pragma once
 
 #include <expat.h>
@@ -8,7 +8,7 @@
 
 namespace crescent::testing {
 
-/// "" where the text is well-formed, else what is wrong, where, and what stands there.
+/// Returns "" for well-formed text, else the error, its place, and the text there.
 inline std::string xml_error(const std::string& text) {
     const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate("UTF-8"), XML_ParserFree);
     if (XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), 1) == XML_STATUS_OK) return "";

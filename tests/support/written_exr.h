@@ -13,16 +13,16 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline comparing {
+namespace crescent::inline comparison {
 
-/// One part; a channel's value at a pixel is smooth in x and y and another for each channel.
+/// One part; a channel's value at a pixel is smooth in x and y and differs between channels.
 struct WrittenExr {
     std::vector<std::string> channels = {"R", "G", "B"};
     Imath::Box2i data{{0, 0}, {20, 12}}, display{{0, 0}, {20, 12}};
     Imf::PixelType type = Imf::FLOAT;
     Imf::Compression compression = Imf::ZIP_COMPRESSION;
     bool tiled = false;
-    Imf::LevelMode levels = Imf::ONE_LEVEL;               // of tiles; the full resolution alone is written
+    Imf::LevelMode levels = Imf::ONE_LEVEL;               // of tiles; only the full resolution is written
     std::vector<std::pair<std::string, float>> constant;  // channels of one value
     Imf::Header more;                                     // its attributes that the others lack are written too
 
@@ -74,4 +74,4 @@ struct WrittenExr {
     }
 };
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline comparison

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Samplers of one's own: a struct built against an installed crescent, programs behind a pipe, draws in a file; what is
-# wrong with a call is told with exit 2, before anything is judged.
+# Samplers of users: a struct built against an installed crescent, programs behind a pipe, draws in a file; a wrong call
+# is reported with exit 2 before anything is checked.
 . "$(dirname "$0")/common.sh"
 
 without=
@@ -16,7 +16,8 @@ printf '%s\n' '#include "check/user.h"' 'struct V { double x, y, z; };' \
 grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep -c 'error:' said)" -eq 1 ] ||
     die "no sentence: $(grep error: said)"
 
-# refused MEMBERS WORDS: a sampler with these members beside sample is refused with one sentence that has these words.
+# refused MEMBERS WORDS: a sampler with these members in addition to sample is rejected with one sentence that has these
+# words.
 refused() {
     printf '%s\n' '#include "check/user.h"' 'struct V { float x, y, z; };' 'struct U { float x, y; };' \
         "struct S { struct D { V wi; float pdf; }; D sample(V, U) const; $1 };" \
@@ -30,7 +31,7 @@ refused 'const char* pdf(V, V) const;' "pdf returns one number, 1/sr"
 
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
-# Every built-in arm gets the verdicts that are expected of it.
+# Every built-in sampler gets its expected verdicts.
 expect 0 "$CRESCENT" check --quiet
 
 expect 0 "$CRESCENT" check --quiet --exec ./cosine --json c.json --junit c.xml --html c.html
@@ -110,7 +111,8 @@ asked=$(sed -n 's/.*"questions": \([0-9]*\).*/\1/p' c.json)
 [ "${asked:-0}" -gt 100000 ] && [ "$asked" -le 3600000 ] || die "cosine.c was asked '$asked' questions"
 expect 3 "$CRESCENT" check cosine --json /nowhere/x.json
 
-# What is known is waived, with its reason; what is waived and right fails; doubt may be allowed.
+# Known failures are waived, with a reason; a waived verdict that passes is an error; inconclusive results may be
+# allowed.
 expect 1 "$CRESCENT" check phong --quiet --wo 60
 waiver='phong support=wrong: it never reaches the horizon'
 expect 0 "$CRESCENT" check phong --quiet --wo 60 --expect "$waiver" --allow-inconclusive --json waived.json

@@ -1,5 +1,5 @@
-# What the scripts of this folder share. They get the program as $CRESCENT and the repository as $CRESCENT_SOURCE; each
-# works in a folder of its own, and ends with the first thing that is not so.
+# Shared by the scripts of this folder. They get the program as $CRESCENT and the repository as $CRESCENT_SOURCE; each
+# works in a folder of its own, and ends at the first failure.
 set -u
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tiny="$here/tiny.toml"
@@ -18,7 +18,7 @@ skip() {
     exit 77
 }
 
-# expect CODE COMMAND...: runs it, keeping what it says in `said` and `printed`; another exit code ends the script.
+# expect CODE COMMAND...: runs it, storing stderr in `said` and stdout in `printed`; another exit code ends the script.
 expect() {
     local code=$1 got=0
     shift
@@ -37,5 +37,57 @@ build_example() {
     expect 0 cmake --build "$1/build"
 }
 
-# same_outputs A B: equal but for what varies from run to run.
+# same_outputs A B: equal except for what varies from run to run.
 same_outputs() { diff -r -x timing.json "$1" "$2" >difference || die "$1 and $2 differ: $(head -n 5 difference)"; }
+
+# own_namespace: the rest of the script runs in namespaces of its own; what it mounts and every process ends with it.
+own_namespace() {
+    [ -z "${IN_OWN_NAMESPACE:-}" ] || { mount -t proc proc /proc && return; }
+    [ "$(id -u)" -eq 0 ] || skip "not root"
+    unshare -m true 2>/dev/null || skip "no mount namespaces here"
+    IN_OWN_NAMESPACE=1 unshare -mpf --kill-child bash "$0"
+    exit
+}
+
+# bare_root FOLDER [PACKAGE...]: a root of this machine's Debian with these packages and no others, in own_namespace().
+# Packages come from where this machine's do.
+bare_root() {
+    local folder=$1 packages=${*:2} mirror file
+    command -v debootstrap >/dev/null || skip "no debootstrap here"
+    . /etc/os-release
+    [ "$ID" = debian ] || skip "this is not Debian"
+    mirror=$(apt-get indextargets --format '$(REPO_URI) $(CODENAME) $(COMPONENT)' 'Created-By: Packages' |
+        awk -v name="$VERSION_CODENAME" '$2 == name && $3 == "main" { print $1; exit }')
+    [ -n "$mirror" ] || skip "apt has no list of $VERSION_CODENAME (apt-get update)"
+    debootstrap --variant=minbase ${packages:+--include="${packages// /,}"} "$VERSION_CODENAME" "$folder" "$mirror" \
+        >log 2>&1 || skip "debootstrap could not make a root: $(tail -n 1 log)"
+    for file in /etc/apt /etc/resolv.conf /etc/hosts /etc/ssl /usr/share/keyrings /usr/share/ca-certificates; do
+        [ -e "$file" ] || continue
+        rm -rf "${folder:?}$file" && cp -rL "$file" "$folder$file" || die "cannot copy $file into the root"
+    done
+    mount -t proc proc "$folder/proc"
+    trap 'umount -l "'"$folder"'/proc"; rm -rf "$work"' EXIT
+}
+
+# inside COMMAND: a shell command in $root, in $folder, with the PATH of an image.
+folder=/
+inside() {
+    chroot "${root:?a bare root}" env -i PATH="${image_path:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}" \
+        ${http_proxy:+http_proxy="$http_proxy"} DEBIAN_FRONTEND=noninteractive HOME=/root sh -c "cd '$folder' && $1"
+}
+
+# wheels_of_this_build: sets `wheels` to those of dist/; skips where ./wheel has not made them of the commit that
+# $CRESCENT was built from.
+wheels_of_this_build() {
+    local file ours theirs
+    wheels=("$CRESCENT_SOURCE"/dist/crescent_bench-*.whl)
+    [ -f "${wheels[0]}" ] || skip "no wheel in dist/: ./wheel makes it"
+    ours=$("$CRESCENT" --version | head -n 1)
+    for file in "${wheels[@]}"; do
+        rm -rf unpacked && python3 -m zipfile -e "$file" unpacked && chmod +x unpacked/crescent/bin/crescent ||
+            die "cannot unpack $file"
+        theirs=$(unpacked/crescent/bin/crescent --version | head -n 1)
+        [ "$theirs" = "$ours" ] || skip "${file##*/} is $theirs, and this build is $ours: ./wheel makes the wheel anew"
+    done
+    rm -rf unpacked
+}

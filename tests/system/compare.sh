@@ -1,5 +1,5 @@
 #!/bin/bash
-# `crescent compare` as its users call it: our own films give the meters that run gave; equal inputs give equal bytes;
+# `crescent compare` as its users call it: our own films give the metrics of their run; equal inputs give equal bytes;
 # exit codes; bad input is named and nothing is written; its JSON obeys docs/compare.schema.json, its XML is
 # well-formed.
 . "$(dirname "$0")/common.sh"
@@ -49,13 +49,13 @@ expect 0 "$CRESCENT" compare --arm 'a=s%d/films/uniform.exr' --arm 'b=s%02d/film
 grep -q '"paired": true' paired/metrics.json || die "--pair did not pair"
 expect 0 "$CRESCENT" compare --schema
 
-# Rungs of a ladder are known by their names; --spp without a name is for all arms, of the file too.
+# The sample counts of a ladder are known by their names; --spp without a name is for all arms, of the file too.
 printf '[arms.u-%d]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=%d"\n' 16 16 4 4 >ladder.toml
 expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --reference s7/films/reference.exr \
     --layer 'reference=quadrature s=32' --region ball=40,20,56,34 --out ladder --quiet
 expect 0 /usr/bin/python3 -c 'import xml.etree.ElementTree as e; e.parse("ladder/plates/ladders.svg")'
 [ -s ladder/plates/ladders.png ] || die "no plate of the ladders"
-# Without a reference the page draws what its caption names: the standard deviation, read off the chart's own ticks.
+# Without a reference the page draws what its caption names: the standard deviation, read from the chart's own ticks.
 expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --out bare --quiet
 expect 0 /usr/bin/python3 - <<'END'
 import json, math, re
@@ -90,7 +90,7 @@ expect 0 /usr/bin/python3 -c 'import json; json.load(open("keys.json"))'
 expect 0 "$CRESCENT" compare --error-rates 3 --quiet
 grep -q '^### Power' printed || die "no rates: $(cat printed)"
 
-# Differences that are none of mean Y: values that are not finite, hue at equal luminance, renders of equal seeds.
+# Differences other than mean Y: values that are not finite, hue at equal luminance, renders of equal seeds.
 expect 0 /usr/bin/python3 - <<'END'
 import random, struct
 def write(name, pixels, side=32):
@@ -176,7 +176,7 @@ bad "--pair: expected" --arm 'a=s[78]/films/uniform.exr' --arm 'b=s[789]/films/c
     --layer b=n=16 --pair
 bad "did you mean 'same'?" --arm 'a=s[78]/films/uniform.exr' --layer a=n=16 --expect sane
 
-# Windows that differ are aligned or cropped, and --layer without an arm is of all files.
+# Windows that differ are aligned or cropped, and --layer without an arm is for all files.
 printf 'PF\n2 2\n-1.0\n%048d' 0 >two.pfm
 printf 'PF\n2 2\n-1.0\n%048d' 7 >other.pfm
 expect 0 "$CRESCENT" compare --arm a=two.pfm --arm b=other.pfm --align display --out aligned --quiet
@@ -194,7 +194,7 @@ mkfifo pipe
 bad "found a pipe" --arm a=pipe
 bad "found a device" --arm a=/dev/zero
 
-# Headers of a few bytes that promise gigabytes: refused before memory is taken.
+# Headers of a few bytes that state gigabytes: rejected before memory is allocated.
 printf 'PF\n60000 60000\n-1.0\n1234' >huge.pfm
 printf '#?RADIANCE\n\n-Y 60000 +X 60000\n1234' >huge.hdr
 printf '\223NUMPY\1\0\107\0%-70s\n1234' "{'descr': '<f8', 'fortran_order': False, 'shape': (60000, 60000, 4)}" \
@@ -203,7 +203,7 @@ printf '\223NUMPY\1\0\107\0%-70s\n1234' "{'descr': '<f8', 'fortran_order': False
 import struct
 exr = open("s7/films/uniform.exr", "rb").read()
 key, other = b"dataWindow\0box2i\0", b"DataWindow\0box2i\0"
-while key in exr:  # its lower right corner is 4 + 8 bytes behind
+while key in exr:  # its lower right corner is 4 + 8 bytes further
     at = exr.index(key)
     corner = at + len(key) + 12
     exr = exr[:at] + other + exr[at + len(key):corner] + struct.pack("<2i", 59999, 59999) + exr[corner + 8:]

@@ -1,6 +1,7 @@
 #!/bin/bash
 # g++ and clang make the same films, bit for bit, on every instruction set; so does clang without optimisation, of
-# smaller films. $FILM_HASHES, $FILM_HASHES_GCC and $FILM_HASHES_DEBUG are the program of tests/portability built by each.
+# smaller films. $FILM_HASHES, $FILM_HASHES_GCC and $FILM_HASHES_DEBUG are the program of tests/portability built by
+# each.
 . "$(dirname "$0")/common.sh"
 [ -x "${FILM_HASHES_GCC:-}" ] || skip "nothing built by g++ (cmake --preset gcc && ninja -C build-gcc film_hashes)"
 
@@ -21,7 +22,7 @@ mv printed clang
 expect 0 "$FILM_HASHES_GCC" "${experiments[@]}"
 [ "$(wc -l <clang)" -gt 20 ] || die "too few films: $(cat clang)"
 diff clang printed >difference || die "films differ between compilers: $(cat difference)"
-# And between instruction sets: without its word, each line is there once a set.
+# And between instruction sets: without its name, each line appears once per set.
 grep -v -e ' quadrature ' -e '^function ' clang | awk '{ $2 = ""; print }' | sort | uniq -c |
     awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
     die "films differ between instruction sets"

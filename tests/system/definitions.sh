@@ -1,7 +1,7 @@
 #!/bin/bash
-# One definition a name. A kernel that is compiled for an instruction set shares no function with other files: the
-# linker would keep one of them for everybody, and processors without that set would stop there. No two files define
-# types of one name in one namespace, read from all sources; of what makes films g++ asks it too, as it links them
+# One definition per name. A kernel that is compiled for an instruction set shares no function with other files: the
+# linker would keep one of them for all, and processors without that set would crash there. No two files define types of
+# one name in one namespace, read from all sources; for the code that makes films g++ checks this too when it links
 # (preset gcc).
 . "$(dirname "$0")/common.sh"
 cd "$CRESCENT_SOURCE" || exit 1
@@ -15,7 +15,7 @@ for isa in sse4 avx2 avx512; do
 done
 [ -n "${checked:-}" ] || skip "no kernels for other instruction sets here"
 
-# doubles FILE...: types of one name in one namespace in two files, that nothing keeps to one of them.
+# doubles FILE...: types of one name in one namespace in two files, unless they are local to the file.
 doubles() {
     awk '
         FNR == 1 { space = ""; hidden = 0 }
@@ -35,7 +35,7 @@ doubles() {
     ' "$@"
 }
 
-# It finds two that are there, and takes no type for one that an unnamed namespace keeps to its file.
+# It finds two that exist, and ignores a type that an unnamed namespace keeps local to its file.
 for name in a b; do printf 'namespace crescent {\nstruct Twice {\n    int %s;\n};\n}\n' "$name" >"$work/$name.cpp"; done
 for name in c d; do
     printf 'namespace crescent {\nnamespace {\nstruct Own {\n};\n}  // namespace\n}\n' >"$work/$name.cpp"

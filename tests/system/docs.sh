@@ -1,5 +1,5 @@
 #!/bin/bash
-# Every code block of the documentation runs as it is printed (tests/system/docs/run_blocks.py); what is wrong on a page is
+# Every code block of the documentation runs as it is printed (tests/system/docs/run_blocks.py); errors on a page are
 # found.
 . "$(dirname "$0")/common.sh"
 : "${CRESCENT_BUILD:?the build folder}"
@@ -11,7 +11,7 @@ run_blocks() {
         --work "$work/pages" "$@"
 }
 
-# One block of each language that is wrong, each found by its line; a mark is counted, a right block runs.
+# One wrong block of each language, each found by its line; a mark is counted, a correct block runs.
 cat >wrong.md <<'PAGE'
 ```sh
 crescent schema >schema.txt
@@ -22,7 +22,7 @@ crescent list >list.txt  # exit 1
 crescent run nowhere.toml  # exit 2
 ```
 ```sh
-crescent run nowhere.toml  # exit 2: a right block
+crescent run nowhere.toml  # exit 2: a correct block
 test -s list.txt
 ```
 ```python

@@ -1,10 +1,10 @@
-"""What the public face does not explain: documented.py HEADER... prints every class, enumeration, function and public
-member function that no comment belongs to, and exits with 1 where there are any.
+"""Finds undocumented public declarations: documented.py HEADER... prints every class, enumeration, function and public
+member function without a comment, and exits with 1 if there are any.
 
 A comment belongs to a declaration that follows it, and to those that follow that one without an empty line between; a
-remark on the declaration's first or last line will do. Constructors that are not explicit, destructors, assignments and
-operators need none, nor does what overrides, is private, in a namespace `detail` or inside a function. Headers are read
-as clang-format leaves them.
+remark on the declaration's first or last line is sufficient. Constructors that are not explicit, destructors,
+assignments and operators need none, nor do declarations that override, are private, in a namespace `detail` or inside a
+function. Headers are expected in clang-format's layout.
 """
 import re
 import sys
@@ -21,7 +21,8 @@ def indent(line):
 
 
 def statements(lines):
-    """Yields (first, last, text) of each declaration head: lines up to one that ends it, bodies left to the caller."""
+    """Yields (first, last, text) of each declaration head: lines up to one that ends it; bodies are handled by the
+    caller."""
     n = 0
     while n < len(lines):
         first, text = n, lines[n].strip()

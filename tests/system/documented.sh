@@ -1,12 +1,12 @@
 #!/bin/bash
-# Every class, function and public member function of the headers that crescent/crescent.h includes, and of the matchers for
-# GoogleTest, has a comment: what it takes and gives. Every file of C and C++ opens with one.
+# Every class, function and public member function of the headers that crescent/crescent.h includes, and of the matchers
+# for GoogleTest, has a comment. Every file of C and C++ opens with one.
 . "$(dirname "$0")/common.sh"
 command -v python3 >/dev/null || skip "no python3 here"
 cd "$CRESCENT_SOURCE/src" || exit 1
 look() { python3 "$CRESCENT_SOURCE/tests/system/documented.py" "$@"; }
 
-# It finds each kind that is there without a comment, and none that has one.
+# It finds each kind without a comment, and none that has one.
 cat >"$work/planted.h" <<'END'
 namespace planted {
 
@@ -50,7 +50,7 @@ mapfile -t headers < <(sed -n 's/^#include "\(.*\)"$/\1/p' ../include/crescent/c
 [ "${#headers[@]}" -gt 25 ] || die "too few headers in crescent/crescent.h: ${headers[*]}"
 look "${headers[@]}" check/gtest.h >"$work/found" || die "$(cat "$work/found")"
 
-# unopened FILE...: those whose first line is no comment.
+# unopened FILE...: those whose first line is not a comment.
 unopened() { awk 'FNR == 1 && !/^\/[\/*]/ { print FILENAME; nextfile }' "$@"; }
 printf '// What it holds.\n#pragma once\n' >"$work/opened.h"
 printf '\n// Too late.\n' >"$work/late.h"

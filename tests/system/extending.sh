@@ -1,7 +1,6 @@
 #!/bin/bash
-# docs/extending.md to the letter, in a copy of the tree: every section adds its fixture, which is built and run, and
-# may touch one new file and one file that was there. The copy stays in the build folder, so that only what changed is
-# built again.
+# Follows docs/extending.md exactly, in a copy of the tree: every section adds its fixture, which is built and run, and
+# may touch one new file and one existing file. The copy stays in the build folder, so that only changes are rebuilt.
 . "$(dirname "$0")/common.sh"
 : "${CRESCENT_BUILD:?the build folder}"
 page=$CRESCENT_SOURCE/docs/extending.md
@@ -52,7 +51,7 @@ $(cat differences)"
     touched=$count
 done
 
-# What changed since the last time goes into the copy that is built.
+# Changes since the last run go into the copy that is built.
 mkdir -p "$tree"
 (cd "$tree" && find . -type f) | while read -r file; do [ -f "fresh/$file" ] || rm "$tree/$file"; done
 (cd fresh && find . -type f) | while read -r file; do

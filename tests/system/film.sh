@@ -1,5 +1,5 @@
 #!/bin/bash
-# The film as its users make it: a short cut at 640 x 360, what a player finds in it, equal frames, captions, a voice, a
+# The explainer video as its users make it: a short cut at 640 x 360, its streams, equal frames, captions, a voice, a
 # stop.
 . "$(dirname "$0")/common.sh"
 
@@ -34,7 +34,7 @@ expect 0 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:12 --out again
 cmp -s cut/frames.json again/frames.json || die "frames depend on threads or the instruction set"
 cmp -s cut/crescent.srt again/crescent.srt || die "captions depend on threads or the instruction set"
 
-# Ctrl-C: exit 130, the last good film stands.
+# Ctrl-C: exit 130, the last good video stays.
 cp -a cut before
 set -m
 "$CRESCENT" film "$small" --size 360p --out cut >printed 2>said &
@@ -47,7 +47,7 @@ code=$?
 [ "$code" -eq 130 ] || die "SIGINT: exit $code: $(cat said)"
 diff -r -x '.crescent-*' before cut >difference || die "SIGINT touched the last film: $(cat difference)"
 
-# What is missing or wrong is told before the work.
+# Missing or wrong parts are reported before the work.
 mkdir nothing
 PATH="$work/nothing" expect 3 "$CRESCENT" film "$small" --out none --quiet
 grep -q 'install the package ffmpeg' said || die "a missing ffmpeg is not told: $(cat said)"
@@ -60,7 +60,7 @@ grep -q "no arm here samples by 'phong'" said || die "a missing arm is not named
 expect 3 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:09 --voice false --out none --quiet
 grep -q "voice 'false' ended with exit code 1" said || die "a voice that fails is not told: $(cat said)"
 
-# An ffmpeg that ends well and leaves no film, or an empty one, or that does not read its frames: an error that says so.
+# An ffmpeg that exits with 0 and writes no video, or an empty one, or that does not read its frames: a clear error.
 mkdir fake
 for what in 'cat >/dev/null|not there' 'cat >/dev/null; : >"${!#}"|is empty' 'exit 0|could not encode' \
     'kill -9 $$|SIGKILL'; do

@@ -1,5 +1,5 @@
 #!/bin/bash
-# All C++ is what clang-format 19 makes of it with .clang-format, GLSL too. Its other versions differ in details.
+# All C++ and GLSL is formatted by clang-format 19 with .clang-format. Its other versions differ in details.
 . "$(dirname "$0")/common.sh"
 formatter=$(command -v clang-format-19) || skip "no clang-format-19 here"
 cd "$CRESCENT_SOURCE" || exit 1
@@ -7,7 +7,7 @@ cd "$CRESCENT_SOURCE" || exit 1
 # formatted FILE: FILE taken as C++.
 formatted() { "$formatter" --assume-filename="$CRESCENT_SOURCE/src/x.cpp" --dry-run -Werror <"$1" 2>/dev/null; }
 
-# It finds what is not formatted.
+# It finds a file that is not formatted.
 printf 'int  twice(int x)\n{ return 2*x; }\n' >"$work/planted"
 formatted "$work/planted" && die "an unformatted function is not found"
 

@@ -1,6 +1,6 @@
 #!/bin/bash
-# --instrument gl, as its users meet it: both contexts, the CPU's numbers, where the outputs say they come from, and
-# what happens where a part of GL is missing, wrong or too old.
+# --instrument gl, as users call it: both contexts, the CPU's numbers, the provenance of outputs, and the errors if a
+# part of GL is missing, wrong or too old.
 . "$(dirname "$0")/common.sh"
 
 code=0
@@ -9,7 +9,7 @@ code=0
 [ "$code" -eq 0 ] || skip "$(head -n 1 said)"
 expect 0 "$CRESCENT" run "$tiny" --quiet --out cpu
 
-# like A B: the figures of two runs, number by number, to 1e-4; their films' own bits are no part of metrics.csv.
+# like A B: the numbers of two runs agree to 1e-4; film hashes are not part of metrics.csv.
 like() {
     paste -d '\n' "$1/metrics.csv" "$2/metrics.csv" | tr -d '\r' | awk '
         NR % 2 { n = split($0, first, ","); next }
@@ -25,7 +25,7 @@ like() {
 }
 like cpu egl
 
-# The driver's words stand in the provenance; the same run gives the same bytes.
+# The driver's words are in the provenance; the same run gives the same bytes.
 for word in GL_VERSION GL_RENDERER 'EGL surfaceless' '--instrument gl' 'is complete RGBA32F' \
     'has GL_FRAMEBUFFER_SRGB off' 'has no MSAA'; do
     grep -q -- "$word" egl/metrics.json || die "metrics.json says nothing of $word"
@@ -39,7 +39,7 @@ grep -q '^0  ' printed || die "no device 0: $(cat printed)"
 expect 0 "$CRESCENT" run "$tiny" --quiet --instrument gl --gl-device 0 --out device
 grep -q -- '--gl-device 0' device/metrics.json || die "the command does not name the device"
 
-# OSMesa, where it is installed.
+# OSMesa, if it is installed.
 if "$CRESCENT" run "$tiny" --quiet --instrument gl --gl-context osmesa --out osmesa >printed 2>said; then
     like cpu osmesa
     grep -q '"context": "OSMesa"' osmesa/metrics.json || die "the provenance does not name OSMesa"
@@ -48,7 +48,7 @@ else
     grep -q libOSMesa said || die "OSMesa fails for another reason than that it is missing: $(cat said)"
 fi
 
-# A driver that has core 3.3 and no more.
+# A driver that has only core 3.3.
 if grep -q llvmpipe egl/metrics.json; then
     expect 0 env MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 "$CRESCENT" run "$tiny" --quiet \
         --instrument gl --out old
@@ -56,7 +56,7 @@ if grep -q llvmpipe egl/metrics.json; then
     like cpu old
 fi
 
-# What is missing is named, nothing is written, and the CPU needs none of it.
+# Missing parts are named, nothing is written, and the CPU needs none of them.
 no_outputs() {
     [ ! -e "$1" ] || [ -z "$(find "$1" -type f)" ] || die "outputs of a run that failed: $(find "$1" -type f)"
 }
@@ -75,7 +75,7 @@ expect 0 env LD_LIBRARY_PATH="$work/broken" __EGL_VENDOR_LIBRARY_FILENAMES="$wor
     --quiet --out without
 same_outputs cpu without
 
-# A wrong choice is the reader's.
+# A wrong choice is an input error.
 expect 2 "$CRESCENT" run "$tiny" --instrument gl --gl-device 99
 grep -q 'crescent list devices' said || die "no hint at the list of devices: $(cat said)"
 expect 2 "$CRESCENT" run "$tiny" --instrument gl --gl-device first

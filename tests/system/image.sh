@@ -1,51 +1,34 @@
 #!/bin/bash
-# The last stage of the Dockerfile, its own lines run in a bare root of Debian 12 that debootstrap makes: what the
-# recipe installs is all that the program needs to start and to make a run. The program is the one built here; where the
-# recipe copies it from the stage `build`, `cmake --install` has put it. Packages come from where this machine's do.
+# The Dockerfile without Docker: the environment of its stage `build` is made by the recipe's own command from the wheel
+# in dist/, which ./wheel made as that stage does, and the lines of the last stage run in a bare root of Debian 12 that
+# debootstrap makes. So what the recipe installs is all that the program needs.
 . "$(dirname "$0")/common.sh"
+wheels_of_this_build
 
 recipe="$CRESCENT_SOURCE/Dockerfile"
-# What the first stage builds is what ./run builds: it installs no packages of its own.
 joined() { sed -e ':next' -e '/\\$/{N;s/\\\n/ /;b next' -e '}' -e '/^#/d' "$recipe" | sed 's/  */ /g'; }
 build=$(joined | sed -n '/ AS build$/,/^FROM [^ ]*$/p' | sed -n 's/^RUN //p')
-prefix=$(sed -nE 's/.*cmake --install build --prefix ([^ ]+).*/\1/p' <<<"$build")
-[ -n "$prefix" ] || die "the stage 'build' has no cmake --install: $build"
-grep -q '\./run' <<<"$build" || die "the stage 'build' does not build as ./run does: $build"
-! grep -q 'apt-get.* install' <<<"$build" || die "the stage 'build' has a list of packages beside tools/packages.txt"
+[ "$(head -n 1 <<<"$build")" = "apt-get update && ./wheel /usr/bin/python3" ] ||
+    die "the stage 'build' does not make the wheel as ./wheel does: $build"
+environment=$(sed -n 2p <<<"$build")
+prefix=$(sed -nE 's/^python3 -m venv ([^ ]+) .*/\1/p' <<<"$environment")
+[[ $prefix == /opt/* ]] || die "the stage 'build' makes no environment in /opt: $build"
 
 # Each instruction of the last stage on a line.
 last_stage() { joined | awk '/^FROM / { n = 0 } { line[++n] = $0 } END { for (i = 1; i <= n; ++i) print line[i] }'; }
 from=$(last_stage | sed -n 's/^FROM debian:\([0-9]*\).*/\1/p')
 . /etc/os-release
 [ "$ID $VERSION_ID" = "debian $from" ] || skip "this is not Debian $from, which the image is"
-[ "$(id -u)" -eq 0 ] || skip "not root"
-command -v debootstrap >/dev/null || skip "no debootstrap here"
-unshare -m true 2>/dev/null || skip "no mount namespaces here"
-
-# Own namespaces: what is mounted, and every process, ends with the script.
-if [ -z "${IN_OWN_NAMESPACE:-}" ]; then
-    IN_OWN_NAMESPACE=1 unshare -mpf --kill-child bash "$here/image.sh"
-    exit
-fi
-mount -t proc proc /proc
+own_namespace
+mount -t tmpfs opt /opt
+tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+mkdir -p build/dist && cp "$CRESCENT_SOURCE"/dist/crescent_bench-*-"$tag"-"$tag"-*.whl build/dist ||
+    skip "dist/ has no wheel for this machine's python3"
+(cd build && PATH="/usr/bin:$PATH" bash -ec "$environment") >log 2>&1 || skip "$environment: $(tail -n 1 log)"
 root="$work/root"
-mirror=$(apt-get indextargets --format '$(REPO_URI) $(CODENAME) $(COMPONENT)' 'Created-By: Packages' |
-    awk -v name="$VERSION_CODENAME" '$2 == name && $3 == "main" { print $1; exit }')
-[ -n "$mirror" ] || skip "apt has no list of $VERSION_CODENAME (apt-get update)"
-debootstrap --variant=minbase "$VERSION_CODENAME" "$root" "$mirror" >log 2>&1 ||
-    skip "debootstrap could not make a root: $(tail -n 1 log)"
-for file in /etc/apt /etc/resolv.conf /etc/hosts /etc/ssl /usr/share/keyrings /usr/share/ca-certificates; do
-    [ -e "$file" ] || continue
-    rm -rf "${root:?}$file" && cp -rL "$file" "$root$file" || die "cannot copy $file into the root"
-done
-mount -t proc proc "$root/proc"
-trap 'umount -l "$root/proc"; rm -rf "$work"' EXIT
+bare_root "$root"
 
-expect 0 cmake --install "$CRESCENT_BUILD" --prefix "$work/install" --strip
-folder=/ entry='' preset=''
-# inside COMMAND: in the root, as the image would start it.
-inside() { chroot "$root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-    ${http_proxy:+http_proxy="$http_proxy"} DEBIAN_FRONTEND=noninteractive sh -c "cd '$folder' && $1"; }
+entry='' preset='' image_path=''
 words() { tr -d '[]",' <<<"$1"; }
 while read -r instruction rest; do
     case $instruction in
@@ -53,13 +36,9 @@ while read -r instruction rest; do
     RUN) inside "$rest" >log 2>&1 || die "RUN $rest: $(tail -n 20 log)" ;;
     COPY)
         read -r stage source target <<<"$rest"
-        [ "$stage" = --from=build ] || die "COPY $rest: not from the stage 'build'"
-        case $source in
-        "$prefix"*) source="$work/install${source#"$prefix"}" ;;
-        /crescent/*) source="$CRESCENT_SOURCE${source#/crescent}" ;;
-        *) die "COPY $rest: the stage 'build' has no $source" ;;
-        esac
+        [ "$stage $source" = "--from=build $prefix" ] || die "COPY $rest: not from the stage 'build'"
         mkdir -p "$root$target" && cp -r "$source/." "$root$target/" || die "COPY $rest" ;;
+    ENV) [[ $rest == PATH=* ]] && image_path=${rest#PATH=} || die "ENV $rest: this script knows PATH alone" ;;
     WORKDIR) folder=$rest && mkdir -p "$root$rest" ;;
     ENTRYPOINT) entry=$(words "$rest") ;;
     CMD) preset=$(words "$rest") ;;
@@ -69,11 +48,9 @@ done < <(last_stage)
 
 expect 0 inside "$entry $preset"
 [ -s printed ] || die "$entry $preset prints nothing"
-expect 0 inside "$entry --version"
 expect 0 "$CRESCENT" --version
 cp printed here && expect 0 inside "$entry --version" && cmp here printed ||
     die "another version in the image: $(cat printed)"
-[ "$(inside 'ls experiments')" = "$(ls "$CRESCENT_SOURCE/experiments")" ] || die "the image has other experiments"
 
 # A small run with its plates and report, the same numbers as here.
 cp "$tiny" "$root/tiny.toml"
@@ -81,6 +58,8 @@ expect 0 inside "$entry run /tiny.toml --quiet --out /out"
 expect 0 "$CRESCENT" run "$tiny" --quiet --out out
 [ -s "$root/out/report.html" ] && ls "$root"/out/plates/*.png >/dev/null || die "no report or no plates"
 cmp out/metrics.csv "$root/out/metrics.csv" || die "other numbers in the image"
+expect 0 inside "$entry run gallery --seeds 1 --only metrics --quiet --out /gallery"
 
-# What the image leaves out ends in a sentence.
+# What the image omits is reported in a sentence.
 expect 3 inside "$entry run /tiny.toml --quiet --instrument gl --out /gl"
+grep -q 'install the packages' said || die "what --instrument gl needs is not named: $(cat said)"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The folders of src/ depend on each other as CMakeLists.txt states, which the build itself checks; this shows that a
-# wrong include fails it. Programs, examples and benchmarks include only the public headers and their own files.
+# wrong include makes it fail. Programs, examples and benchmarks include only the public headers and their own files.
 . "$(dirname "$0")/common.sh"
 cd "$CRESCENT_SOURCE" || exit 1
 

@@ -1,6 +1,6 @@
 #!/bin/bash
 # `cmake --install` into an empty prefix, then examples/find_package, examples/in_memory and the README's snippets built
-# against it outside the tree, these without the libraries that the check alone does not need.
+# against it outside the tree, the snippets without the libraries that the check alone does not need.
 . "$(dirname "$0")/common.sh"
 
 build_example find_package
@@ -33,7 +33,7 @@ readme() { # FOLDER PAGE
 }
 none=()
 for name in OpenEXR Imath Boost tomlplusplus hwy PNG PkgConfig; do none+=("-DCMAKE_DISABLE_FIND_PACKAGE_$name=ON"); done
-# A program of somebody else that loads a plugin: it is executed again as the plugin's host, before its own main().
+# A user's program that loads a plugin: it is executed again as the plugin's host, before its own main().
 cat >plugin.cpp <<'END'
 #include <cstdio>
 
@@ -52,7 +52,7 @@ expect 0 cmake --build readme/build
 expect 0 readme/build/my_tests
 grep -q '1 test' printed || die "the README's sampler is not judged: $(cat printed)"
 readme fetched docs/install.md -DFETCHCONTENT_SOURCE_DIR_CRESCENT="$CRESCENT_SOURCE"  # subproject.sh compiles it
-# Without components: crescent::check where the rest lacks a library; asked for by name, the rest is an error.
+# Without components: only crescent::check if the rest lacks a library; requested by name, the rest is an error.
 for components in '' 'COMPONENTS check' 'COMPONENTS run'; do
     rm -rf lacking && mkdir lacking
     {
@@ -75,7 +75,7 @@ expect 0 readme/build/plugin ./libcosine.so
 [ "$(cat printed)" = "main
 cosine in C 0.159155" ] || die "a plugin in another program: $(cat printed)"
 
-# A run in memory: an interval for each arm, no file, a stop that is an answer.
+# A run in memory: an interval for each arm, no file, and a stop returned as a value.
 build_example in_memory
 mkdir empty && cd empty || exit 1
 expect 0 ../in_memory/build/in_memory

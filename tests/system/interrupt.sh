@@ -1,5 +1,5 @@
 #!/bin/bash
-# Ctrl-C and SIGTERM at any moment: exit 130 within a second, and what is said of the outputs is so: not changed, or
+# Ctrl-C and SIGTERM at any moment: exit 130 within a second, and the message about the outputs is true: not changed, or
 # those of the new run. From the first milliseconds to the end of the run.
 . "$(dirname "$0")/common.sh"
 
@@ -7,7 +7,7 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --out good
 cp -a good before
 visible() { (cd "$1" && find -L . -type f ! -path './.*' ! -name timing.json -exec sha256sum {} + | sort -k 2); }
 visible before >of_before
-# Before main the handlers are not there yet: the dynamic loader is at work, and a sanitizer's start-up takes its time.
+# Before main the handlers are not installed yet: the dynamic loader runs, and a sanitizer's start takes time.
 case "$CRESCENT" in *sanitize*) silent="0 0.02 0.1" ;; *) silent="0" ;; esac
 for signal in INT TERM; do
     for after in 0 0.02 0.1 0.6; do
@@ -16,7 +16,7 @@ for signal in INT TERM; do
         "$CRESCENT" run "$tiny" --out good --set 'arms.cosine.n=[16777216]' >printed 2>said &
         run=$!
         set +m
-        # The shell's child is not yet crescent.
+        # The shell's child is not crescent yet.
         until [ "$(readlink /proc/$run/exe)" = "$(readlink -f "$CRESCENT")" ]; do :; done
         sleep "$after"
         start=$(date +%s%N)

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Parts of one experiment's seeds, run apart, are one run: `crescent join` makes the bytes of the whole from them. What
-# needs seeds that are not there is skipped; what does not belong together is refused.
+# Parts of one experiment's seeds, run separately, equal one run: `crescent join` makes the bytes of the whole from
+# them. What needs missing seeds is skipped; parts that do not belong together are rejected.
 . "$(dirname "$0")/common.sh"
 
 cat "$tiny" - >all.toml <<'END'
@@ -45,7 +45,7 @@ run 1 1:7 whole --only metrics
 run 0 1:2 a --only metrics
 run 0 3:5 b # with films, plates and report
 run 0 5:7 c --only metrics
-# Without what says where it comes from.
+# Without the provenance.
 bare() {
     /usr/bin/python3 -c 'import json, sys; m = json.load(sys.stdin); m.pop("provenance"); print(json.dumps(m))' \
         <"$1/metrics.json"
@@ -64,12 +64,12 @@ same whole again
 expect 1 "$CRESCENT" join joined --out again
 same whole again
 
-# Whole runs of fewer seeds are parts as well: the number of seeds does not change the experiment.
+# Whole runs of fewer seeds are parts too: the number of seeds does not change the experiment.
 expect 1 "$CRESCENT" run all.toml --quiet --set ball.s=32 --seeds 4 --only metrics --out four
 expect 1 "$CRESCENT" join four c --out again
 same whole again
 
-# Skipped, in every output, is what needs seeds that are not there; the rest decides.
+# In every output, what needs missing seeds is skipped; the rest decides.
 skipped() { /usr/bin/python3 - "$1" "$2" <<'END'
 import json, sys, xml.etree.ElementTree as xml
 want = dict(pair.split("=") for pair in sys.argv[2].split(","))
@@ -92,7 +92,7 @@ same late late-whole
 expect 1 "$CRESCENT" join gap late --out again
 same whole again
 
-# What does not belong together.
+# Parts that do not belong together.
 expect 0 "$CRESCENT" run all.toml --quiet --set ball.s=31 --seeds 7 --seed-range 1:2 --only metrics --out other
 expect 2 "$CRESCENT" join other b --out nowhere
 grep -q 'ball.*s is 31 there and 32 here' said || die "the key that differs is not named: $(cat said)"

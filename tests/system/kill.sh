@@ -1,6 +1,6 @@
 #!/bin/bash
-# kill -9 at any moment: all that a reader finds is of one run, the one before or the new one, and the next run leaves
-# what a run that was never killed leaves, with the user's files and nothing else. The two runs are of different
+# kill -9 at any moment: a reader finds the files of one run, the previous or the new one, and the next run leaves the
+# same files as after a run that was never killed, with the user's files and nothing else. The two runs are of different
 # experiments. files_test.cpp ends before each single change; here whole processes are killed at any time.
 . "$(dirname "$0")/common.sh"
 
@@ -11,7 +11,7 @@ start=$(date +%s%N)
 expect 0 "$CRESCENT" run "$other" --quiet --out second
 length=$((($(date +%s%N) - start) / 1000000))
 
-# visible FOLDER: what is there but for the user's files and what varies from run to run.
+# visible FOLDER: its contents without the user's files and what varies from run to run.
 visible() {
     (cd "$1" && find . -type f ! -name timing.json ! -name notes.txt ! -path '*/mine*' -exec sha256sum {} + | sort -k 2)
 }
@@ -27,8 +27,8 @@ prepare() {
         mkdir -p "$(dirname "killed/$name")" && echo mine >"killed/$name"
     done
 }
-# judge HOW WHEN: after a kill, and after the next run. one_by_one: files may be of two runs in between.
-judge() {
+# check_outputs HOW WHEN: checks after a kill, and after the next run. one_by_one: files may be of two runs in between.
+check_outputs() {
     visible killed >of_killed
     if [ "$1" = whole ]; then
         cmp -s of_killed of_second && reached=1
@@ -49,7 +49,7 @@ kill_at() { # PERMILLE HOW [COMMAND...]: kills a run at that part of its time
     sleep "$(awk "BEGIN { print $length * $1 / 1000000 }")"
     kill -s KILL "$run" 2>/dev/null
     wait "$run" 2>/dev/null
-    judge "$2" "after $1/1000 of a run"
+    check_outputs "$2" "after $1/1000 of a run"
 }
 
 for part in 50 300 500 700 800 850 900 950 1000 1050; do
@@ -57,7 +57,7 @@ for part in 50 300 500 700 800 850 900 950 1000 1050; do
     kill_at $part whole
 done
 
-# A file system that cannot exchange two folders, or refuses to rename one; and a kill at calls that publish.
+# A file system that cannot exchange two folders, or that fails to rename one; and a kill at system calls that publish.
 if command -v strace >/dev/null && strace -qq -o /dev/null true 2>/dev/null; then
     for fault in renameat2:error=EINVAL renameat2:error=EXDEV renameat2:signal=KILL linkat:error=EPERM \
         unlink:signal=KILL:when=1 unlink:signal=KILL:when=3 rmdir:signal=KILL:when=1 rename:signal=KILL:when=1; do
@@ -67,11 +67,11 @@ if command -v strace >/dev/null && strace -qq -o /dev/null true 2>/dev/null; the
         case $fault in
             *error*) visible killed | diff of_second - >difference || die "with $fault: $(cat difference)" ;;
         esac
-        reached=1 judge whole "by $fault"
+        reached=1 check_outputs whole "by $fault"
     done
 fi
 
-# Where OUT cannot be renamed: a mount point, which has its stage inside where nothing can be made beside it.
+# If OUT cannot be renamed: a mount point, with its stage inside if nothing can be created next to it.
 rm -rf killed && mkdir killed
 if mount -t tmpfs -o size=64m none killed 2>/dev/null; then
     trap 'umount "$work/killed"; rm -rf "$work"' EXIT

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Outputs do not depend on which sin or exp the machine's C library picks. glibc has variants for processors with fused
-# multiply-add and without, which differ in the last bit: a run with either writes the same bytes.
+# Outputs do not depend on the variant of sin or exp that the machine's C library selects. glibc has variants for
+# processors with and without fused multiply-add, which differ in the last bit: a run with either writes the same bytes.
 . "$(dirname "$0")/common.sh"
 without=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable
 

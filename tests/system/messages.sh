@@ -1,6 +1,6 @@
 #!/bin/bash
-# What `check` writes: JSON that docs/check.schema.json describes and that equal calls repeat byte for byte, JUnit that
-# says what is wrong, a summary that comes first and says each thing once.
+# Outputs of `check`: JSON that obeys docs/check.schema.json and that equal calls repeat byte for byte, JUnit that
+# states the failures, a summary that comes first and states each finding once.
 . "$(dirname "$0")/common.sh"
 /usr/bin/python3 -c 'import jsonschema' 2>said || die "python3-jsonschema is missing: $(cat said)"
 
@@ -33,7 +33,7 @@ html = open("a.html", encoding="utf-8").read()
 assert "<title>phong: wrong" in html and "class=matrix" in html
 PY
 
-# One line a finding: 8 w_o with the same fault are told in one line, before the table.
+# One line per finding: the same fault at 8 w_o is reported in one line, before the table.
 expect 0 "${CC:-cc}" -O2 -o slow "$here/slow.c" -lm
 expect 1 check --exec './slow 100000000 0.3' --json bad.json --junit bad.xml
 fits bad.json

@@ -1,5 +1,6 @@
 #!/bin/bash
-# What ./run installs: every package that dpkg does not call installed, also on a machine where it knows none of them.
+# The packages that ./run installs: every package that dpkg does not list as installed, also on a machine where it knows
+# none of them.
 . "$(dirname "$0")/common.sh"
 
 root="$work/tree"
@@ -24,7 +25,7 @@ dpkg_says "ii  cmake" "rc  g++"
 dpkg_says "ii  cmake" "ii  g++"
 [ -z "$(missing cmake g++)" ] || die "missing: $(missing cmake g++ | xargs)"
 
-# Where clang++-19 is not installed, as outside Debian and Ubuntu, another compiler is taken.
+# If clang++-19 is not installed, as outside Debian and Ubuntu, another compiler is used.
 mkdir compilers
 [ -z "$(PATH=$work/compilers other_compiler release)" ] || die "a compiler that is not there is taken"
 for name in g++ clang++; do
@@ -34,7 +35,7 @@ done
 cp compilers/g++ compilers/clang++-19
 [ -z "$(PATH=$work/compilers other_compiler release)" ] || die "another compiler than clang++-19 is taken"
 
-# What the configuration cannot do without is installed by ./run as well, which configures the tests with the rest.
+# ./run also installs what the configuration requires, because it configures the tests with the rest.
 key() { tr '[:upper:]' '[:lower:]' <<<"$1" | sed -E 's/^lib//; s/-dev$//; s/[^a-z]//g'; }
 cd "$CRESCENT_SOURCE" || exit 1
 calls='(find_package|pkg_check_modules)\(\w+ (REQUIRED|QUIET)( IMPORTED_TARGET [^)]+)?'
@@ -48,4 +49,11 @@ for need in $needs; do
         [[ $(key "$need") == "$(key "$package")"* ]] && found=$package
     done
     [ -n "$found" ] || die "$need is needed to configure, and no package of the group 'build' is it"
+done
+
+# Every file that has to state the version states that of VERSION.
+version=$(cat VERSION)
+for stated in "CITATION.cff:^version: $version$" "examples/vcpkg/ports/crescent/vcpkg.json:\"version\": \"$version\"" \
+    "CHANGELOG.md:^## \[$version\]"; do
+    grep -q "${stated#*:}" "${stated%%:*}" || die "${stated%%:*} has another version than $version"
 done

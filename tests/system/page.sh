@@ -10,7 +10,7 @@ esbuild "$CRESCENT_SOURCE/tests/system/browser/hashes.ts" \
     --bundle --format=iife --target=es2022 --log-level=warning >hashes.js || die "hashes.ts"
 expect 0 node "$CRESCENT_SOURCE/apps/web/pack.mjs" "$CRESCENT_PAGE" "$work/crescent.html"
 
-# axe-core, of the version and content that package-lock.json names; without npm or a network that one law is left out.
+# axe-core, of the version and content that package-lock.json names; without npm or a network this test is skipped.
 cp "$CRESCENT_SOURCE"/tests/system/browser/package*.json . && command -v npm >/dev/null &&
     npm ci --ignore-scripts --no-audit --no-fund --prefer-offline >npm.log 2>&1 &
 fetched=$!
@@ -39,26 +39,26 @@ wait "$programs" && diff native.json "$CRESCENT_SOURCE/apps/web/native.json" >di
     die "apps/web/native.json is not the program's (node apps/web/native.mjs build/crescent): $(cat native.log difference)"
 
 # The verdicts, which pause in the page.
-esbuild "$CRESCENT_SOURCE/apps/web/door.ts" --format=esm --target=es2022 --log-level=warning --outfile=door.mjs ||
-    die "door.ts"
+esbuild "$CRESCENT_SOURCE/apps/web/api.ts" --format=esm --target=es2022 --log-level=warning --outfile=api.mjs ||
+    die "api.ts"
 "$CRESCENT" check phong --wo 60 --quiet --json phong.json >/dev/null
-expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/verdicts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/verdicts.mjs" "$work/api.mjs" "$CRESCENT_PAGE/crescent.wasm" \
     phong.json 60
 cat printed
-expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/parts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/parts.mjs" "$work/api.mjs" "$CRESCENT_PAGE/crescent.wasm" \
     "$CRESCENT_SOURCE/experiments/gallery.toml"
 cat printed
 
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
     $python -c 'import selenium' 2>/dev/null || skip "no Chromium that can be driven"
-# What the page itself shows under a picture of an experiment of the tree.
+# The hash that the page itself shows under a picture of an experiment of the tree.
 expect 0 "$FILM_HASHES" "$CRESCENT_SOURCE/experiments/three-glosses.toml"
 SHOWN=$(awk '$3 == "phong" && $4 == "n=16" { print $5; exit }' printed)
 export SHOWN
 
 wait "$fetched"
-# A second engine, where there is one, at the same time.
+# A second browser engine, if there is one, at the same time.
 engine=
 if command -v WebKitWebDriver >/dev/null && command -v xvfb-run >/dev/null; then
     xvfb-run -a $python "$CRESCENT_SOURCE/tests/system/browser/webkit.py" crescent.html "$SHOWN" >engine.log 2>&1 &

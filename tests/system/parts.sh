@@ -1,6 +1,6 @@
 #!/bin/bash
-# A run in parts: --only writes what was asked for, --seed-range splits the series so that its parts are the whole, and
-# metrics.csv has a column for each key that --set gave, and no two of one name.
+# A run in parts: --only writes what was requested, --seed-range splits the series so that its parts equal the whole,
+# and metrics.csv has a column for each key that --set gave, with unique names.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 5 --out whole
@@ -38,7 +38,7 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --set seed=9 --set n=4 -
 head -n 1 twice/metrics.csv | grep -q ',value,set.seed,set.n' ||
     die "two columns of one name: $(head -n 1 twice/metrics.csv)"
 
-# A preview is one picture, beside what an earlier run left, and its boxes follow --set.
+# A preview is one picture, written next to the files of an earlier run, and its boxes follow --set.
 expect 0 "$CRESCENT" run "$tiny" --preview --quiet --out metrics
 head -c 8 metrics/preview.png | cmp -s - <(printf '\211PNG\r\n\032\n') || die "no PNG: $(names metrics)"
 [ -e metrics/report.html ] || die "a preview took what a run had left"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Arms from outside: cosine as a shared library gives the built-in's figures to 1e-6, on a scene with lights, lobes,
-# furnaces and plates; a program draws as well; one that is missing, odd or breaks off is told with its arm's name.
+# External samplers: cosine as a shared library gives the built-in's numbers to 1e-6, on a scene with lights, lobes,
+# furnaces and plates; a program works too; one that is missing, faulty or terminates is reported with its arm's name.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/src" -I"$CRESCENT_SOURCE/include" -o libcosine.so \
@@ -24,7 +24,7 @@ pairs = [(a, runs[("cosine",) + key[1:]]) for key, a in runs.items() if key[0] =
 assert len(pairs) == 4, runs.keys()
 for a, b in pairs:
     assert a.keys() == b.keys() and len(a) > 8, a
-    for key in a:  # a tail is a fit to the largest samples, whose order is that of their last bits
+    for key in a:  # a tail is a fit to the largest samples, whose order depends on their last bits
         tol = 1e-2 if "/tail/" in key else 1e-6
         assert math.isclose(a[key], b[key], rel_tol=tol, abs_tol=1e-9), (key, a[key], b[key])
 f = {x["name"]: x for x in m["furnace"]}
@@ -66,8 +66,8 @@ sed 's|pdf\[i\] = cos_theta / pi|pdf[i] = i == 3 ? NAN : cos_theta / pi|
 sed 's|^plugin = .*|plugin = "bad.so"|; s|bad(mixture)|bad(mine)|' mine.toml >bad.toml
 expect 1 "$CRESCENT" run bad.toml --out bad --quiet
 
-# The rose asks a library for its density, and a program, and shows both as cosine; of a library that exports none it
-# says so: no colours then.
+# The rose evaluates the density of a library, and of a program, and shows both as cosine; a library that exports none
+# is reported: it has no colours.
 cat >colours.py <<'PY'
 # The numbers of colours in the left and the right half of a PNG of 8-bit RGB.
 import struct, sys, zlib
@@ -118,8 +118,8 @@ m = json.load(open('$1/metrics.json'))
 del m['provenance']
 print(json.dumps(m))"; }
 
-# None of this changes a film, a number, the place of an output or the next run: threads of its own, another rounding
-# mode, another folder, mask or environment, handlers, text on stdout, a child that lives on or that returns here too.
+# None of these changes a film, a number, the place of an output or the next run: threads of its own, another rounding
+# mode, another folder, mask or environment, handlers, text on stdout, a child that survives or that returns here too.
 odd plain
 expect 0 "$CRESCENT" run plain.toml --out plain --quiet --only metrics
 films >of_plain && [ "$(wc -l <of_plain)" = 7 ] || die "films: $(cat of_plain)"
@@ -162,14 +162,14 @@ assert all((r['bad'] > 0) == (r['arm'] == 'mine') for r in m['runs']), m['runs']
 n=0
 for pdf in INFINITY NAN -1.0 1e39 1e-46; do bad "pdf$((n += 1))" -D "PDF=$pdf"; done
 bad long -D LENGTH=1.01
-# Of the pdfs that single precision holds the largest is used, and the smallest where cos / p is a number too.
+# Of the pdfs in single precision the largest is used, and the smallest if cos / p is finite too.
 for pdf in 1e-30 3.4e38; do
     odd "used$((n += 1))" -D "PDF=$pdf"
     expect 0 "$CRESCENT" run "used$n.toml" --out "used$n" --quiet --only metrics
 done
 
-# A plugin that ends its process, throws or does not answer is an error, exit 3: what was called and how it ended. It is
-# an error of the sampler, and the outputs of before are kept, with nothing half-written beside them.
+# A plugin that ends its process, throws or does not respond is an error, exit 3: the call and how it ended. It is an
+# error of the sampler, and earlier outputs are kept, without half-written files.
 odd exits -D 'ON_CALL=exit(0)'
 odd slips -D 'ON_CALL=_exit(7)'
 odd crashes -D 'ON_CALL=raise(SIGSEGV)'
@@ -211,7 +211,7 @@ END
 expect 3 timeout 60 "$CRESCENT" film film.toml --out film --still 0:01 --timeout 1 --quiet
 grep -q "the plugin .*loops.so.*after 1 s" said || die "film: $(cat said)"
 
-# What a plugin and a program print reaches the terminal line by line behind their name, and moves no cursor there.
+# Output of a plugin or a program reaches the terminal line by line after its name, and moves no cursor there.
 junk='\033[2J\033]0;title\007 caf\303\251 \302\233 \377'
 printf "$junk" >junk && head -c 100000 /dev/zero | tr '\0' y >>junk && printf 'end\0of it' >>junk
 odd noisy -D 'ON_LOAD=system("cat junk >&2; printf part; printf ial >&2")'
@@ -229,7 +229,7 @@ PY
 expect 0 "$CRESCENT" check --quiet --wo 45 --exec "cat junk >&2; exec ./cosine"
 grep -q '^cat junk >&2; exec ./cosine: .*x1b\[2J.* café' said || die "of a program: $(cat -v said | cut -c 1-300)"
 
-# Ctrl-C that reaches crescent alone ends a plugin too, and so does a kill that it cannot see.
+# Ctrl-C that reaches only crescent ends a plugin too, and so does a kill that it cannot handle.
 odd "waits$$" -D 'ON_CALL=start_thread(); if (fork() == 0) pause(); for (;;) {}'
 hosts() { pgrep -f "^crescent-plugin-host waits$$.so" >pids || true; }
 for signal in INT TERM KILL; do

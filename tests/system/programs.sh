@@ -1,9 +1,9 @@
 #!/bin/bash
-# Programs on trial that are slow, break off or break the protocol: what was not looked at is said and never passes,
-# and a program that cannot be asked is an error, not a wrong sampler.
+# Checked programs that are slow, terminate or break the protocol: skipped parts are reported and never pass, and a
+# program that cannot be queried is an error, not a wrong sampler.
 . "$(dirname "$0")/common.sh"
 
-# fields FILE CODE: a line of Python over the judgement `j`.
+# fields FILE CODE: a line of Python over the result `j`.
 fields() { python3 -c "import json; j = json.load(open('$1')); $2" || die "$1: not so: $2"; }
 check() { "$CRESCENT" check --quiet "$@"; }
 
@@ -17,9 +17,9 @@ for file in printed few.xml few.html; do
 done
 expect 0 check --exec './slow 900000' --patience 20 --accept-few --json few.json
 fields few.json "assert $everywhere and len(j['left_out']) > 0 and j['state'] == 'right'"
-expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among the w_o that there is no time for
+expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among the w_o that are skipped for lack of time
 
-# broken WORDS PROGRAM: an error, told with these words.
+# broken WORDS PROGRAM: an error, reported with these words.
 broken() {
     expect 3 check --exec "$2" --json broken.json --junit broken.xml
     grep -q -- "$1" printed || die "it does not say '$1': $(cat printed)"
@@ -34,14 +34,13 @@ broken "signal 11" 'read hello; echo hello 1 x; read f; echo -; kill -SEGV $$'
 broken "got 'oops'" 'read hello; echo hello 1 x; read f; echo -; read sample
     while echo 0 0 1 0.3; do read verb || exit 0; [ "${verb%% *}" = sample ] || { echo oops; break; }; done'
 
-# A number too large for a double is infinite, however it is written.
+# A number too large for a double is infinite in every notation.
 for huge in 1e999 0x1p+5000 inf 123456789e400; do
     expect 1 check --exec "./slow 10000000 $huge"
     grep -q "pdf is infinite" printed || die "$huge is not infinite: $(cat printed)"
 done
 
-# Whatever a program calls itself and whatever a file is called, XML is well-formed, HTML is UTF-8 and nothing moves a
-# cursor.
+# For any name of a program or a file, XML is well-formed, HTML is UTF-8 and nothing moves a cursor.
 well_formed() {
     python3 -c "
 import sys, xml.parsers.expat as x
@@ -55,7 +54,8 @@ for name in 'a\033[31m\302\233<&"' "$(printf 'x%.0s' {1..59})\303\251\303\251" '
     ! LC_ALL=C grep -q "$(printf '\033\\|\302\233')" printed || die "a control character of the name: $(cat -v printed)"
 done
 
-# What a program started dies with it, a session of its own included; the program dies with crescent.
+# Processes that a program started end with it, including those in a session of their own; the program ends with
+# crescent.
 gone() {
     for _ in $(seq 50); do
         kill -0 "$(cat "$1")" 2>/dev/null || return 0
@@ -70,7 +70,7 @@ gone session
 while [ ! -s orphan ]; do sleep 0.1; done
 kill -9 $!
 gone orphan
-# Ctrl-C: all of it, and exit 130.
+# Ctrl-C: all processes end, and exit 130.
 rm orphan
 set -m
 "$CRESCENT" check --quiet --exec 'trap "" INT TERM; sleep 300 &
@@ -83,7 +83,7 @@ code=$?
 [ $code -eq 130 ] || die "SIGINT: exit $code"
 gone orphan
 
-# Files appear whole; no other file is touched, and no link is followed.
+# Files appear whole; no other file is changed, and no link is followed.
 echo mine >r.json.part && echo mine >victim && ln -s victim r.json
 expect 1 check --exec "./slow 10000000 -1" --json r.json
 [ "$(cat r.json.part victim)" = "mine
@@ -92,7 +92,7 @@ fields r.json "assert j['state'] == 'wrong'"
 check --exec "./slow 10000000 -1" --json /dev/stdout 2>said | grep -q '"state": "wrong"' ||
     die "nothing on /dev/stdout: $(cat said)"
 
-# A header of 60,000 blanks, where a matcher that recurses would run out of stack.
+# A header of 60,000 blanks, for which a recursive matcher would run out of stack.
 python3 - <<'PY'
 header = b"{'descr':" + b" " * 60000 + b"'<f8', 'fortran_order': False, 'shape': (2, 6), }\n"
 open("blanks.npy", "wb").write(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header + b"\0" * 96)

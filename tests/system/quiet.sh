@@ -1,5 +1,5 @@
 #!/bin/bash
-# What goes to stdout and what to stderr, and what happens when its reader has gone.
+# Output on stdout and stderr, and the behaviour after its reader has closed the pipe.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" run "$tiny" --quiet

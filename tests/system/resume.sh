@@ -1,5 +1,5 @@
 #!/bin/bash
-# A run that was killed goes on where it was: the same bytes as a run that was left alone, and less work.
+# A killed run is resumed: the same bytes as an uninterrupted run, with less work.
 . "$(dirname "$0")/common.sh"
 
 long=(run "$tiny" --quiet --keep-after 0 --set image.width=256 --set image.height=144 --set seeds=2
@@ -7,7 +7,7 @@ long=(run "$tiny" --quiet --keep-after 0 --set image.width=256 --set image.heigh
 expect 0 "$CRESCENT" "${long[@]}" --out alone
 long+=(--out stopped)
 
-# kill_when NAME: kills a run once it has kept something in a file of that name.
+# kill_when NAME: kills a run once it has stored something in a file of that name.
 kill_when() {
     "$CRESCENT" "${long[@]}" >/dev/null 2>&1 &
     local run=$!
@@ -28,7 +28,7 @@ same_outputs alone stopped
 drawn() { grep -o '"samples": [0-9]*' "$1/timing.json" | awk '{ sum += $2 } END { print sum }'; }
 [ "$(drawn stopped)" -lt "$(drawn alone)" ] || die "nothing of the killed run was used"
 
-# Another experiment takes nothing from it, and leaves it where it is: the first one goes on afterwards.
+# Another experiment takes nothing from it, and does not remove it: the first one is resumed afterwards.
 kill_when 'cosine-s32-seed7-*'
 expect 0 "$CRESCENT" run "$tiny" --out stopped
 grep -q 'resuming from' said && die "another experiment went on from what was kept: $(cat said)"
@@ -42,7 +42,7 @@ expect 0 "$CRESCENT" "${long[@]}"
 same_outputs alone stopped
 [ -e stopped/.crescent-kept ] && die "what was kept outlived the outputs"
 
-# Another part of the same experiment's seeds takes nothing from it either, and leaves it where it is.
+# Another part of the same experiment's seeds takes nothing from it either, and does not remove it.
 kill_when 'cosine-s32-seed7-*'
 kept=(stopped/.crescent-kept/*)
 expect 0 "$CRESCENT" "${long[@]}" --seed-range 2:2 --only metrics
@@ -51,7 +51,7 @@ grep -q 'resuming from' said && die "another part went on from what was kept: $(
 expect 0 "$CRESCENT" "${long[@]}"
 same_outputs alone stopped
 
-# The same scene with another lamp, stopped and run into one folder: none of the first one's tiles is taken.
+# The same scene with another light, stopped and run into one folder: none of the first one's tiles is used.
 sed 's/radiance = \[90, 80, 70\]/radiance = [900, 800, 700]/' "$tiny" >bright.toml
 kill_when 'cosine-s32-seed7-*'
 bright=("${long[@]}")

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Every output but timing.json is the same bytes for any number of threads and any instruction set.
+# Every output except timing.json has the same bytes for any number of threads and any instruction set.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" list isas
@@ -13,7 +13,7 @@ for threads in 1 2 3 16; do
     turn=$((turn + 1))
 done
 
-# And what a file may ask for beside: the evidence on the tail of an arm that is Phong alone, the Monte Carlo reference.
+# Also for optional parts: the measurements of a Phong arm's tail, the Monte Carlo reference.
 {
     cat "$tiny"
     printf '[arms.phong]\nn = [4, 16]\n'

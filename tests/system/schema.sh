@@ -1,6 +1,6 @@
 #!/bin/bash
 # `crescent schema --json` is a JSON Schema: python3-jsonschema accepts it, every experiment of the tree and tiny.toml
-# obey it, and mistakes that the program refuses are refused by it too. docs/experiment.schema.json is what it prints.
+# obey it, and mistakes that the program rejects are rejected by it too. docs/experiment.schema.json is its output.
 . "$(dirname "$0")/common.sh"
 /usr/bin/python3 -c 'import jsonschema, tomllib' 2>said || die "python3-jsonschema or tomllib is missing: $(cat said)"
 
@@ -9,7 +9,7 @@ cp printed schema.json
 cmp -s schema.json "$CRESCENT_SOURCE/docs/experiment.schema.json" ||
     die "docs/experiment.schema.json is old: build/crescent schema --json >docs/experiment.schema.json"
 
-# The tables of an experiment with one mistake; the program must refuse it as well.
+# The tables of an experiment with one mistake; the program must reject it too.
 mistake() { sed "$1" "$tiny" >"mistake-$2.toml" && ! cmp -s "$tiny" "mistake-$2.toml" || die "no such line: $1"; }
 mistake 's/^width = .*/width = 0/' range
 mistake 's/^width = .*/widht = 8/' key
@@ -47,8 +47,8 @@ for wrong in ({**metrics, "unknown": 1}, {**metrics, "runs": 3}, {k: v for k, v 
     assert not judge.is_valid(wrong), "a wrong metrics.json passes the schema"
 END
 
-# The samples of the tests of metrics.json: names, infinities, nothing measured, heavy tails; and three that ought not
-# to fit.
+# The samples of the tests of metrics.json: names, infinities, nothing measured, heavy tails; and three that must not
+# fit.
 mkdir samples
 expect 0 env -u GTEST_TOTAL_SHARDS CRESCENT_METRICS_SAMPLES=samples "${CRESCENT_TESTS:?the tests}" --gtest_brief=1 \
     --gtest_filter='MetricsJson.*'

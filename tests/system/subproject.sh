@@ -1,6 +1,6 @@
 #!/bin/bash
-# As a part of another project crescent builds no program, no tests and no film, installs nothing, and leaves what the
-# project chose as it was. By default it is crescent::check alone: no other library than its four is searched for or
+# As a part of another project crescent builds no program, no tests and no video, installs nothing, and leaves the
+# project's settings unchanged. By default it is only crescent::check: no other library than its four is searched for or
 # included, no compiler warns, and a test of GoogleTest runs. CRESCENT_RUN=ON adds the rest (not compiled here).
 . "$(dirname "$0")/common.sh"
 
@@ -44,7 +44,7 @@ if(CRESCENT_RUN)
 endif()
 END
 
-# Every field of what users fill in, by its name, in the order in which it is declared.
+# Every field of the structs that users fill in, by its name, in the order of declaration.
 fields() { # TYPE HEADER
     sed 's, *//.*,,' "$CRESCENT_SOURCE/src/$2" |
         awk -v start="struct $1 {" '$0 == start { inside = 1; next } inside && /^};/ { exit } inside' |
@@ -66,7 +66,7 @@ struct Glass {  // a smooth boundary, as it is filled in by users
         return {{-wo[0], -wo[1], wo[2]}, 1, 1, 1};
     }
     double pdf(std::array<double, 3>, std::array<double, 3>) const { return 0; }
-    crescent::Traits traits() const { return {.wo = crescent::Traits::Asked::both, .eta = 1.5}; }
+    crescent::Traits traits() const { return {.wo = crescent::Traits::WoDomain::both, .eta = 1.5}; }
 };
 struct Cosine {
     struct Drawn { std::array<float, 3> wi; float pdf; };
@@ -108,7 +108,7 @@ expect 0 cmake --build outer/build --target mine
 expect 0 outer/build/mine
 ! ninja -C outer/build -t deps | grep -iE "/($library)" || die "headers of other libraries are included"
 
-# The rest: what is missing is said by name, once; without plates nothing is needed that only they need.
+# The rest: missing libraries are named once; without plates the libraries for plates are not needed.
 configure whole -DCRESCENT_RUN=ON
 expect 1 cmake -S outer -B outer/lacking -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCRESCENT_RUN=ON "${disabled[@]}"
 for name in OpenEXR Boost tomlplusplus hwy PNG pangocairo; do

@@ -1,6 +1,6 @@
 #!/bin/bash
-# A suite that shares alpha keeps it whether its tests run in one process or each in its own. A failing matcher says
-# what is wrong in at most 12 lines that name C++ calls.
+# A suite that shares alpha keeps it whether its tests run in one process or each in its own. A failing matcher reports
+# the failure in at most 12 lines that name C++ calls.
 . "$(dirname "$0")/common.sh"
 : "${CRESCENT_SUITE:?the suite}"
 unset GTEST_TOTAL_SHARDS GTEST_SHARD_INDEX

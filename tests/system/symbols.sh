@@ -1,5 +1,6 @@
 #!/bin/bash
-# No part of crescent calls a transcendental function of the C library: its last bit is the machine's. math/ has them.
+# No part of crescent calls a transcendental function of the C library, whose last bit depends on the machine. math/ has
+# them.
 . "$(dirname "$0")/common.sh"
 command -v nm >/dev/null || skip "no nm here"
 
@@ -7,7 +8,7 @@ one='a?(sin|cos|tan)h?|sincos|atan2|exp|exp2|exp10|expm1|log|log2|log10|log1p|po
 one+='|c(abs|arg|exp|log|pow|sqrt)'
 calls() { nm -A -u "$@" 2>/dev/null | grep -E " U ($one)[fl]?(@.*)?$"; }
 
-# It finds one that is there.
+# It finds one that exists.
 printf '#include <math.h>\ndouble twice(double x) { return 2 * cos(x); }\n' >planted.c
 if "${CXX:-g++}" -x c -c planted.c -o planted.o 2>/dev/null; then
     calls planted.o >/dev/null || die "a call of cos is not found"

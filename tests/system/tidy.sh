@@ -4,10 +4,10 @@
 tidy=$(command -v clang-tidy-19) || skip "no clang-tidy-19 here"
 cp "$CRESCENT_SOURCE/.clang-tidy" .
 
-# tidy FILE: what is found in it and in the headers of the tree that it includes.
+# tidy FILE: the findings in it and in the headers of the tree that it includes.
 tidy() { "$tidy" --quiet "$1" -- -std=c++20 -I"$CRESCENT_SOURCE/src" -I"$CRESCENT_SOURCE/include" -I"$CRESCENT_SOURCE" -I"$work" 2>/dev/null; }
 
-# It finds what is planted: a string that is copied where a reference does, and a fault in a header of src/.
+# It finds planted errors: a string copied instead of referenced, and a fault in a header of src/.
 mkdir src
 printf '#include <string>\ninline bool planted(std::string text) { return text.size() == 0; }\n' >src/planted.h
 printf '#include "src/planted.h"\n' >planted.cpp

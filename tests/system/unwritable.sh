@@ -1,5 +1,5 @@
 #!/bin/bash
-# A folder that cannot be written, a full disk, a missing font: exit 3 and a sentence that says which.
+# A folder that cannot be written, a full disk, a missing font: exit 3 and a sentence that names it.
 . "$(dirname "$0")/common.sh"
 
 touch file
@@ -17,13 +17,13 @@ grep -q 'seed 1 of' said && die "the font is missed only after the work: $(cat s
 grep -q Inter said || die "the message does not name the font: $(cat said)"
 [ -z "$(find fontless -type f 2>/dev/null)" ] || die "outputs without a font: $(find fontless -type f)"
 
-# More memory than there is: told before any of it is spent.
+# More memory than available: reported before any of it is used.
 expect 3 "$CRESCENT" run "$tiny" --out large --set image.width=16384 --set image.height=16384 \
     --set 'arms.cosine.n=[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]'
 grep -q 'GB of memory' said || die "the message does not say how much memory is needed: $(cat said)"
 [ ! -e large ] || die "a run that does not fit made a folder"
 
-# Two runs into one folder: the second is told.
+# Two runs into one folder: the second is rejected.
 "$CRESCENT" run "$tiny" --quiet --out shared --set 'arms.cosine.n=[16777216]' >/dev/null 2>&1 &
 first=$!
 until [ -e .shared.crescent/lock ]; do sleep 0.05; done
@@ -32,7 +32,7 @@ grep -q 'another run' said || die "the second run is not told of the first: $(ca
 kill "$first"
 wait "$first" 2>/dev/null
 
-# One target that cannot be replaced: exit 3, and everything is of the run before.
+# One target that cannot be replaced: exit 3, and all files are those of the previous run.
 expect 0 "$CRESCENT" run "$tiny" --quiet --out held
 cp -a held held-before
 if mount --bind held/junit.xml held/junit.xml 2>/dev/null; then
@@ -42,7 +42,7 @@ if mount --bind held/junit.xml held/junit.xml 2>/dev/null; then
     diff -r held-before held >difference || die "some outputs are new: $(cat difference)"
 fi
 
-# A link where an output belongs leads nothing astray, and is told before the work.
+# A link in the place of an output is not followed, and is reported before the work.
 mkdir planted planted/films
 ln -s /tmp planted/plates
 echo mine >victim.json

@@ -24,14 +24,14 @@ for large in 4294967296 9223372036854775807 -1; do
     expect 2 "$CRESCENT" run "$tiny" --set "seed=$large"
     expect 2 "$CRESCENT" check cosine --seed "$large"
 done
-# Nothing that the terminal would obey.
+# Nothing that the terminal would interpret.
 for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(printf '\033\302\233')=3" \
     "list $(printf 'a\033\302\2332J')" "rnu$(printf '\033')" "run $tiny --isa $(printf '\033x')"; do
     expect 2 "$CRESCENT" $command
     LC_ALL=C grep -q "$(printf '[\001-\010\013-\037\177]')" said && die "a control character is shown: $(cat -v said)"
     LC_ALL=C grep -q "$(printf '\302[\200-\237]')" said && die "a C1 control character is shown: $(cat -v said)"
 done
-# A file without a name, a folder in place of one, a command that is not there: by the flag that named it.
+# A file without a name, a folder instead of a file, a missing command: reported by the flag that named it.
 for flag in --json --html --junit --timing; do
     expect 2 "$CRESCENT" check cosine "$flag" ""
     grep -q -- "$flag" said || die "no flag: $(cat said)"
@@ -61,7 +61,7 @@ awk 'length > 80 { exit 1 }' printed || die "the help is wider than 80 columns: 
 expect 0 "$CRESCENT" --version
 grep -q "^crescent $(cat "$CRESCENT_SOURCE/VERSION") " printed || die "version: $(cat printed)"
 expect 0 "$CRESCENT" list
-for kinds in shapes lights; do  # every kind that a file can name, with what it is
+for kinds in shapes lights; do  # every kind that a file can name, with its description
     expect 0 "$CRESCENT" list $kinds
     awk 'NF < 3 { exit 1 }' printed || die "a kind of $kinds without a word of what it is: $(cat printed)"
     "$CRESCENT" schema --json | python3 -c "

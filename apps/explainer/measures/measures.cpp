@@ -1,6 +1,6 @@
-// The pixel's N samples are the film's, its share of hits is that of 2^18 draws; f and the light of the fill are summed
-// over 256 x 512 equal solid angles. Disks' solid angles: Van Oosterom & Strackee 1983. The tail is that of 2^20
-// weights, the lost part counted over 100 000 cosine draws.
+// The pixel's N samples are those of the film, its share of hits is that of 2^18 draws; f and the light of the fill are
+// summed over 256 x 512 equal solid angles. Disks' solid angles: Van Oosterom & Strackee 1983. The tail is that of 2^20
+// weights, the lost part is counted over 100 000 cosine draws.
 #include "measures.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -30,7 +30,8 @@ template <class Visit> std::size_t over_hemisphere(Visit&& visit) {
     return std::size_t{rings} * sectors;
 }
 
-/// Of the triangle of unit vectors: Van Oosterom & Strackee 1983, "The Solid Angle of a Plane Triangle".
+/// Returns the solid angle of a triangle of unit vectors: Van Oosterom & Strackee 1983, "The Solid Angle of a Plane
+/// Triangle".
 double solid_angle(Vec3d a, Vec3d b, Vec3d c) {
     const double volume = dot(a, cross(b, c));
     return 2 * math::atan2(std::fabs(volume), 1 + dot(a, b) + dot(b, c) + dot(c, a));
@@ -63,7 +64,7 @@ ArmAtPixel arm_at(const Data& data, const OpenPixel& pixel, const std::string& a
     return out;
 }
 
-/// The same direction with another arm's density.
+/// Returns the same direction with another sampler's density.
 PixelSample weighed(const OpenPixel& pixel, PixelSample sample, const std::string& sampler) {
     const double p = pixel.pdf(sampler, {double(sample.wi.x), double(sample.wi.y), double(sample.wi.z)});
     sample.pdf = static_cast<float>(p);
@@ -95,7 +96,7 @@ PixelStory pixel_story(const Data& data) {
     return out;
 }
 
-/// As studies/evidence.cpp draws them.
+/// Drawn as in metrics/article_checks.cpp.
 std::vector<Vec3d> cosine_directions(std::uint32_t seed, std::uint64_t n) {
     std::vector<Vec3d> out;
     const Cosine<double> arm(ShadingPoint<double>{});
@@ -106,7 +107,7 @@ std::vector<Vec3d> cosine_directions(std::uint32_t seed, std::uint64_t n) {
     return out;
 }
 
-/// What the lobe's arm cannot reach where R leans as it does in the middle of a region.
+/// Returns what the lobe's sampler cannot reach if R is tilted as in the middle of a region.
 LostSupport lost_in(const Data& data, const Box& box) {
     const Scene scene(data.experiment);
     std::vector<double> cosines;
@@ -154,12 +155,12 @@ double WeightTail::expected(std::size_t bin) const {
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     WeightTail out;
     out.s = s, out.k = (s - 1) / (s + 1), out.least = 2 / (s + 1), out.n = n;
-    ShadingPoint<float> site{};
-    site.wo = {0, 0, 1}, site.s = static_cast<float>(s);
-    const Phong<float> arm(site);
+    ShadingPoint<float> shading_point{};
+    shading_point.wo = {0, 0, 1}, shading_point.s = static_cast<float>(s);
+    const Phong<float> arm(shading_point);
     std::vector<double> weights;
     for (std::uint64_t k = 0; k < n; ++k) {
-        const Drawn<float> drawn = arm.sample(site.wo, draw(seed, 0, k));
+        const Drawn<float> drawn = arm.sample(shading_point.wo, draw(seed, 0, k));
         const double p = static_cast<double>(drawn.pdf.v);
         weights.push_back(drawn.wi.z > 0 && p > 0 ? static_cast<double>(drawn.wi.z) / (pi * p) : 0);
     }
@@ -191,4 +192,4 @@ Measures take_measures(const Data& data, const std::string&, ProgressMonitor& mo
     return out;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,5 +1,5 @@
-// What shots of single pixels and densities need beyond films and meters, taken once for the whole film. Radiance in
-// W/(sr m^2) of luminance Y, f and densities in 1/sr, angles in degrees.
+// Measurements of single pixels and densities, taken once for the whole video. Radiance in W/(sr m^2) of luminance Y, f
+// and densities in 1/sr, angles in degrees.
 #pragma once
 
 #include <memory>
@@ -8,18 +8,18 @@
 
 #include "data.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
-/// One arm in the opened pixel.
+/// One arm at the selected pixel.
 struct ArmAtPixel {
     std::string arm, sampler;
-    std::vector<PixelSample> samples;  // the N that the film took
+    std::vector<PixelSample> samples;  // the N that the film used
     std::vector<double> mean;          // over the first 1, 2, ... N
-    double film = 0;                   // the film's own Y, which mean.back() is
+    double film = 0;                   // the film's own Y, equal to mean.back()
     std::size_t largest = 0;           // index of the largest X
-    std::uint64_t met = 0, under = 0;  // samples that met a light, and that fell under the horizon
+    std::uint64_t met = 0, under = 0;  // samples that met a light, and samples below the horizon
     double share_met = 0;              // of a long series of draws of the same pixel
-    std::uint64_t long_series = 0;     // how many those were
+    std::uint64_t long_series = 0;     // their number
 
     const PixelSample& giant() const { return samples[largest]; }
 };
@@ -29,24 +29,24 @@ struct PixelStory {
     std::shared_ptr<const OpenPixel> pixel;
     double reference = 0;  // Y
     ArmAtPixel cosine, phong;
-    PixelSample by_phong;    // the largest of the cosine arm, had the phong arm drawn it; pdf 0: it could not
-    int disk = -1;           // the light that counts: the largest sample's, else the first; -1: there is none
+    PixelSample by_phong;    // the largest of the cosine arm with phong's density; 0: none
+    int disk = -1;           // the light of the largest sample, else the first; -1: none
     double solid_angle = 0;  // of all lights that face the pixel, sr
-    double disk_share = 0;   // of the pixel's light, what does not come from the fill
+    double disk_share = 0;   // share of the pixel's light that does not come from the fill
     double top_f = 0;        // largest f over the hemisphere
 };
 
-/// Weights (n.w)/(pi p) of the lobe's arm on a matt surface seen from straight above, R = n, under even light: their
-/// mean is 1, their law X = least u^-k for u in (0, 1): Pareto's where k > 0.
+/// Weights (n.w)/(pi p) of the lobe's sampler on a Lambert surface seen from directly above, R = n, under constant
+/// light: their mean is 1, their distribution X = least u^-k for u in (0, 1): Pareto's if k > 0.
 struct WeightTail {
     double s = 0, k = 0, least = 0;  // k = (s-1)/(s+1), least = 2/(s+1)
     std::optional<Tail> fit;         // k-hat of the draws
     std::uint64_t n = 0;
     double median = 0, largest = 0;
-    double decade_parts = 4;  // bins a decade
+    double decade_parts = 4;  // bins per decade
     double first_log10 = 0;   // lower edge of bins[0]
     std::vector<std::uint64_t> bins;
-    /// How many of n draws Pareto's law puts into a bin.
+    /// Returns how many of n draws Pareto's distribution puts into a bin.
     double expected(std::size_t bin) const;
     double edge(std::size_t bin) const;  // lower
 };
@@ -60,9 +60,10 @@ struct Measures {
 
 Measures take_measures(const Data& data, const std::string& isa, ProgressMonitor& monitor);
 
-/// The pixel of a box with the largest |Y - Y_ref| where something is seen; the first of equals in storage order.
+/// Returns the pixel of a box with the largest |Y - Y_ref| that shows geometry; of equal ones, the first in storage
+/// order.
 std::pair<int, int> worst_pixel(
     const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, const Box& box);
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed);
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

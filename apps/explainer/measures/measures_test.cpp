@@ -1,4 +1,4 @@
-// What the shots of one pixel and of the tail tell, against the run's own films and against what is known.
+// The measurements for the shots of one pixel and of the tail, against the run's own films and against known values.
 #include "measures.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "tests/support/explainer_data.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 namespace {
 
 std::size_t at(const Film& film, const OpenPixel& pixel) {
@@ -41,14 +41,14 @@ TEST(Measures, TheOpenedPixelIsTheWorstOfItsRegion) {
             EXPECT_LE(error(std::size_t(j) * std::size_t(film.width) + std::size_t(i)), error(at(film, pixel)));
 }
 
-TEST(Measures, TheLargestSampleWeighedByTheOtherArmKeepsAllButItsDensity) {
+TEST(Measures, OtherArmChangesOnlyTheDensityOfASample) {
     const PixelStory& story = test::small_data().measures->story;
     const PixelSample &a = story.cosine.giant(), &b = story.by_phong;
     EXPECT_EQ(a.f, b.f);
     EXPECT_EQ(a.light, b.light);
     EXPECT_EQ(a.cos, b.cos);
     EXPECT_NEAR(double(a.x) * double(a.pdf), double(b.x) * double(b.pdf), 1e-5 * double(a.x) * double(a.pdf));
-    for (const PixelSample& s : story.phong.samples)  // where the arm draws, it is weighed as it was drawn
+    for (const PixelSample& s : story.phong.samples)  // where the arm draws, its weight is that of the draw
         EXPECT_NEAR(story.pixel->pdf("phong", {double(s.wi.x), double(s.wi.y), double(s.wi.z)}), double(s.pdf),
             1e-3 * double(s.pdf));
 }
@@ -56,7 +56,7 @@ TEST(Measures, TheLargestSampleWeighedByTheOtherArmKeepsAllButItsDensity) {
 TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {
     const PixelStory& story = test::small_data().measures->story;
     const double n = double(story.cosine.long_series), hits = n * story.cosine.share_met;
-    // The disk stands where its cosine is nearly that of its centre: the share of cosine draws is its projected size.
+    // The disk is at a cosine close to that of its centre: the share of cosine draws is its projected size.
     const double expected = story.solid_angle * story.pixel->lights()[0].towards.z / pi;
     EXPECT_NEAR(story.cosine.share_met / expected, 1, 0.01 + 4 / std::sqrt(hits));
     double fill = 0, all = 0;
@@ -79,7 +79,7 @@ TEST(WeightTail, FollowsTheParetoLawItStates) {
     }
 }
 
-TEST(Measures, WhatThePhongArmCannotReachIsNearItsTheory) {
+TEST(Measures, LostSupportOfPhongMatchesTheory) {
     const LostSupport& lost = test::small_data().measures->surround_lost;
     EXPECT_GT(lost.theta_R_deg, 10);
     EXPECT_NEAR(lost.measured, lost.theory, 4 * lost.se);
@@ -87,4 +87,4 @@ TEST(Measures, WhatThePhongArmCannotReachIsNearItsTheory) {
 }
 
 }  // namespace
-}  // namespace crescent::film
+}  // namespace crescent::explainer

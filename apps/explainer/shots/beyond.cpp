@@ -1,8 +1,8 @@
-// Shot 14: both densities at once, and the light too: what it brings in both regions, and what it costs in rays.
+// Shot 14: both densities combined, and also the light: the gain in both regions, and the cost in rays.
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -48,16 +48,16 @@ Shot beyond(const Data& data) {
         for (std::size_t k = 0; k < cols.size(); ++k) {
             const Column& col = cols[k];
             const double x = 60 + 458.0 * double(k), in = f.ease(starts[k], starts[k] + 0.7),
-                         told = f.ease(starts[k] + 1.2, starts[k] + 1.8);
+                         shown = f.ease(starts[k] + 1.2, starts[k] + 1.8);
             f.text({x, 112, 426, 50}, col.name, with(title_text, Align::centre), in);
             show(f, col.block, crop.times, {x, 170, 426, 470}, in);
-            f.text({x, 652, 426, 64}, col.highlight, with(with_px(number_text, 50), highlight_ink), told);
-            f.text({x, 714, 426, 36}, Words("RMSE, highlight"), with(small_text, Align::centre), told);
-            f.text({x, 752, 426, 64}, col.surround, with(with_px(number_text, 50), surround_ink), told);
-            f.text({x, 814, 426, 36}, Words("RMSE, surround"), with(small_text, Align::centre), told);
+            f.text({x, 652, 426, 64}, col.highlight, with(with_px(number_text, 50), highlight_ink), shown);
+            f.text({x, 714, 426, 36}, Words("RMSE, highlight"), with(small_text, Align::centre), shown);
+            f.text({x, 752, 426, 64}, col.surround, with(with_px(number_text, 50), surround_ink), shown);
+            f.text({x, 814, 426, 36}, Words("RMSE, surround"), with(small_text, Align::centre), shown);
         }
     };
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

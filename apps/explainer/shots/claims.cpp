@@ -1,10 +1,10 @@
-// Shot 15: what this run can claim and what it cannot.
+// Shot 15: the limits of this run.
 #include <algorithm>
 
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -62,4 +62,4 @@ Shot claims(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,8 +1,8 @@
-// Shot 16: the command that makes it again, the commit, the seed, the hashes.
+// Shot 16: the command that regenerates it, the commit, the seed, the hashes.
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Shot closing(const Data& data) {
     const Provenance& p = data.provenance;
@@ -38,4 +38,4 @@ Shot closing(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,9 +1,9 @@
-// Shot 2: the converged picture with both regions, the question, then three columns that differ in the density alone,
+// Shot 2: the converged picture with both regions, the question, then three columns that differ only in the density,
 // and the error of each in both regions.
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -31,7 +31,7 @@ std::vector<Column> columns_of(const Data& data, const Box& crop) {
     return out;
 }
 
-/// "the other way round" only where it is.
+/// "the other way round" only if it is.
 Words second_answer(const Data& data, const Order& h, const Order& s) {
     const Cast& c = data.cast;
     const bool turned = h.low.arm != s.low.arm;
@@ -75,9 +75,9 @@ Shot columns(const Data& data) {
         const double before = 1 - f.ease(17.2, 17.7), now = f.ease(17.8, 18.5);
         if (before > 0) {
             const Rect r = show(f, whole, all.times, whole_slot, before * f.ease(0.2, 0.9));
-            mark(f, film::on_picture(r, all.box, box_h), highlight_ink, before * f.ease(10.6, 11.1));
-            mark(f, film::on_picture(r, all.box, box_s), surround_ink, before * f.ease(12, 12.5));
-            const Rect h_at = film::on_picture(r, all.box, box_h), s_at = film::on_picture(r, all.box, box_s);
+            mark(f, explainer::on_picture(r, all.box, box_h), highlight_ink, before * f.ease(10.6, 11.1));
+            mark(f, explainer::on_picture(r, all.box, box_s), surround_ink, before * f.ease(12, 12.5));
+            const Rect h_at = explainer::on_picture(r, all.box, box_h), s_at = explainer::on_picture(r, all.box, box_s);
             tag(f, {h_at.right() + 14, h_at.bottom()}, Words("here"), highlight_ink, before * f.ease(10.6, 11.1));
             tag(f, {s_at.right() + 14, s_at.bottom()}, Words("there"), surround_ink, before * f.ease(12, 12.5));
         }
@@ -90,7 +90,7 @@ Shot columns(const Data& data) {
             f.text({at.x, 112, w, 50}, col.name, with(with(title_text, col.ink), Align::centre), in);
             const Rect r = show(f, col.block, crop.times, {at.x, 170, w, 500}, in);
             const double lit_h = f.ease(23.5, 24), lit_s = f.ease(29, 29.5);
-            mark(f, film::on_picture(r, crop.box, box_h), highlight_ink, lit_h);
+            mark(f, explainer::on_picture(r, crop.box, box_h), highlight_ink, lit_h);
             f.text({at.x, 684, w, 46}, col.density, with(with(with_px(body_text, 34), Align::centre), Vertical::middle),
                 in * (1 - lit_h));
             f.text({at.x, 684, w, 72}, Words(col.highlight), with(number_text, highlight_ink), lit_h);
@@ -102,4 +102,4 @@ Shot columns(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,17 +1,18 @@
-// Shot 12: the exponent changes in density and BRDF together: the lobe narrows, and so does what it can do well.
+// Shot 12: the exponent changes density and BRDF together: the lobe narrows, and with it the region in which it has low
+// error.
 #include <algorithm>
 #include <cmath>
 
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
 constexpr double leaning = 0.6;  // rad, of R from n in the drawings of the lobe
 
-/// The lobe's density as a curve around a foot, its peak `radius` long.
+/// Returns the lobe's density as a curve around a foot, its peak `radius` long.
 std::vector<Point> lobe_of(const plates::Density& density, Point foot, double radius) {
     double peak = 0;
     std::vector<std::pair<double, double>> values;
@@ -37,7 +38,7 @@ struct Column {
 
 constexpr double width = 576, between = 36;
 
-/// Left edge of column k of `count`.
+/// Returns the left edge of column k of `count`.
 double left_of(std::size_t k, std::size_t count) {
     return (sheet_width - width * double(count) - between * double(count - 1)) / 2 + (width + between) * double(k);
 }
@@ -92,8 +93,8 @@ Shot exponent(const Data& data) {
             f.polyline(col.lobe, ink, 4, in);
             f.text({col.foot.x + 124, col.foot.y - 130, 200, 50}, col.name, with_px(title_text, 44), in);
             show(f, col.block, crop.times, {x, 342, width, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
-            const double told = f.ease(11.5, 12.1);
-            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
+            const double shown = f.ease(11.5, 12.1);
+            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), shown);
             f.text({x, 796, width, 48}, col.surround, with(with(label_text, surround_ink), Align::centre),
                 f.ease(14, 14.6));
         }
@@ -101,4 +102,4 @@ Shot exponent(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

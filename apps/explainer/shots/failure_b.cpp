@@ -1,11 +1,10 @@
-// Shot 9: Failure B. The question why not to aim at the mirror direction everywhere; the surround enlarged; the mean of
-// the frame.
+// Shot 9: Failure B. Why not aim at the mirror direction everywhere; the surround enlarged; the mean of the frame.
 #include <algorithm>
 
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -30,7 +29,7 @@ std::vector<Bar> bars_of(const Data& data) {
     all.push_back({{Words("reference"), Words(figure(reference, 3, "mean Y of the reference")), 0, bright}, reference});
     for (const std::string& arm : {c.cosine, c.phong}) {
         const RunKey key = data.key(arm);
-        const double mean = data.meter(key)->y_mean;
+        const double mean = data.metric(key)->y_mean;
         all.push_back(
             {{Words(data.arm(arm)), Words(figure(mean, 3, "y_mean of " + to_string(key))), 0, data.ink(arm)}, mean});
     }
@@ -59,7 +58,7 @@ bool is_starved(const Data& data) {
 std::vector<Cue> cues_of(const Data& data) {
     const Cast& c = data.cast;
     const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
-    const double reference = mean_of(data.reference().y), phong = data.meter(data.key(c.phong))->y_mean;
+    const double reference = mean_of(data.reference().y), phong = data.metric(data.key(c.phong))->y_mean;
     const bool starved = is_starved(data);
     return {
         {0.5,
@@ -123,4 +122,4 @@ Shot failure_b(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

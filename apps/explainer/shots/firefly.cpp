@@ -1,4 +1,5 @@
-// A firefly is born: the running mean of the opened pixel, draw after draw, and its largest sample taken apart.
+// Shows how a firefly arises: the running mean of the selected pixel, draw after draw, and the factors of its largest
+// sample.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,13 +10,13 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
 // Seconds from the shot's beginning.
 constexpr double start = 0.6, giant = 3.9, apart = 7.2, sharp = 10.6, other = 15, rest = 19.4, end = 24.6;
-constexpr double before = 2.8, after = 3;  // how long the draws before and after the largest take
+constexpr double before = 2.8, after = 3;  // duration of the draws before and after the largest
 constexpr Rect chart{200, 240, 860, 470};
 constexpr Rect table{1240, 470, 600, 340};
 constexpr int crop_side = 13, crop_times = 20;
@@ -67,7 +68,7 @@ private:
         if (path.size() > 1) f.polyline(path, ink, 4);
         if (path.empty()) return;
         f.dot(path.back(), 9, ink);
-        const double clear = std::min(path.back().y - 22, level - 56);  // of the line that is right
+        const double clear = std::min(path.back().y - 22, level - 56);  // of the line at the correct value
         const Rect label{path.back().x + 18, clear, 150, 44};
         f.text(label, Words(figure(arm_.mean[std::size_t(drawn - 1)], 3, "running mean of " + arm_.arm)),
             with(label_text, ink));
@@ -85,7 +86,7 @@ private:
             Words("photograph at N = ", count(now->n, "samples of a rung")), with(small_text, Align::centre));
     }
 
-    /// X of a direction as a column of factors, as an arm would weigh it.
+    /// Draws X of a direction as a column of factors, with a sampler's density.
     void column(
         Frame& f, const std::string& arm, const PixelSample& s, double x, double alpha, const double (&lit)[5]) const {
         const std::string of = "largest sample of " + arm_.arm + ", weighed by " + arm;
@@ -162,7 +163,7 @@ Shot firefly(const Data& data) {
     const auto drawn = std::make_shared<const Firefly>(data);
     Shot shot;
     shot.name = "firefly";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("A firefly is born");
     shot.seen = Words("The running mean of the pixel by ", data.arm(data.cast.cosine),
         " against the number of draws leaps at one of them. "
@@ -176,4 +177,4 @@ Shot firefly(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,10 +1,10 @@
-// Shot 8: the error as a map around the highlight, cosine beside Phong, one shared scale.
+// Shot 8: the error as a map around the highlight, cosine next to Phong, one shared scale.
 #include <algorithm>
 
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -15,7 +15,7 @@ struct Map {
     double part = 0;  // of the pixels above the scale
 };
 
-/// The residual that 98 % of the pixels of both maps stay under.
+/// Returns the residual below which 98 % of the pixels of both maps lie.
 double top_of_scale(const Data& data, const Box& crop) {
     std::vector<double> pooled;
     for (const std::string& arm : {data.cast.cosine, data.cast.phong}) {
@@ -55,7 +55,7 @@ Shot heat(const Data& data) {
     for (int j = 0; j < 128; ++j) bar.set(0, j, turbo(1 - j / 127.0));
 
     Shot shot;
-    shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::instrument;
+    shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::backend;
     shot.seen = Words(
         "Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue "
         "for little, red for much, "
@@ -77,7 +77,7 @@ Shot heat(const Data& data) {
                 with(with(title_text, maps[k].ink), Align::centre), in);
             f.text({70 + 824.0 * double(k), r.bottom() + 12, 784, 48}, maps[k].above,
                 with(with(body_text, Vertical::middle), Align::centre), k == 0 ? f.ease(4, 4.6) : f.ease(9, 9.6));
-            mark(f, film::on_picture(r, crop, box_h), bright, f.ease(12.3, 12.8));
+            mark(f, explainer::on_picture(r, crop, box_h), bright, f.ease(12.3, 12.8));
         }
         const double scale = f.ease(2, 2.6);
         const double x = 1722, y = 250, h_bar = 512;
@@ -90,4 +90,4 @@ Shot heat(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,5 +1,5 @@
-// Why it does not go away: the histogram of the weights, its tail index in theory and as fitted, and the white furnace
-// that reads short in float and in double alike.
+// Shows why more samples do not remove it: the histogram of the weights, its tail index in theory and as fitted, and
+// the white furnace that is too low in float and in double.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -17,7 +17,7 @@ namespace {
 constexpr double drawn = 0.8, halves = 4.4, law = 8.8, furnace = 14.4, alike = 18.8, end = 24;
 constexpr Rect left{190, 240, 760, 470}, right{1160, 240, 660, 470};
 
-/// The readings of one arithmetic, ascending in N.
+/// Returns the results of one arithmetic, ascending in N.
 std::vector<FurnaceQuantiles> readings(const Evidence& evidence, const std::string& arithmetic, int bits) {
     std::vector<FurnaceQuantiles> out;
     for (const FurnaceQuantiles& q : evidence.furnace)
@@ -77,7 +77,7 @@ private:
                 with(label_text, ink), f.ease(law + 1.4, law + 2));
     }
 
-    /// An upright line at a weight, its words over it; `row` 0 or 1 counts from the top.
+    /// Draws a vertical line at a weight, its words above it; `row` 0 or 1 counts from the top.
     void mark(Frame& f, double weight, const Words& words, int row, double alpha) const {
         const double x = histogram_.x(weight), y = left.y + 12 + 50 * row;
         f.line({x, y}, {x, left.bottom()}, bright, 2, alpha, 8);
@@ -126,7 +126,7 @@ private:
 };
 
 std::vector<Cue> HeavyTail::cues() const {
-    const bool heavy = tail_.k >= 0.5;  // the variance is infinite from there on
+    const bool heavy = tail_.k >= 0.5;  // the variance is infinite from here on
     const double expected = data_.evidence.expected, one = single_.back().median, two = twofold_.back().median;
     const auto is_short = [&](double median) { return median < 0.98 * expected; };
     std::vector<Cue> out;
@@ -156,7 +156,7 @@ Shot heavy_tail(const Data& data) {
     const auto drawing = std::make_shared<const HeavyTail>(data);
     Shot shot;
     shot.name = "heavy-tail";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("Why it does not go away");
     shot.seen = Words("Left, on logarithmic axes, how many samples of ", data.arm(data.cast.phong),
         " weigh how much: a straight fall over many decades. "
@@ -168,4 +168,4 @@ Shot heavy_tail(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,8 +1,9 @@
-// Shot 6: Failure A. The cosine arm up its ladder: the highlight keeps sparkling, and the error falls along a line.
+// Shot 6: Failure A. The cosine arm at rising sample counts: fireflies remain in the highlight, and the error falls
+// along a line.
 #include "ladder_shot.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Shot ladder_cosine(const Data& data) {
     const Cast& c = data.cast;
@@ -27,4 +28,4 @@ Shot ladder_cosine(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,9 +1,9 @@
-// Shot 7: the same rungs, aimed along the mirror direction.
+// Shot 7: the same sample counts with the density about the mirror direction.
 #include "drawing.h"
 #include "ladder_shot.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 Shot ladder_phong(const Data& data) {
     const Cast& c = data.cast;
@@ -23,4 +23,4 @@ Shot ladder_phong(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

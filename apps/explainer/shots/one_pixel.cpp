@@ -1,5 +1,5 @@
-// One pixel of the crescent opens into its hemisphere: f, then L with its light, then the cosine; the estimator builds
-// term by term.
+// One pixel of the crescent and its hemisphere: f, then L with its light, then the cosine; the estimator builds term by
+// term.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr double formula_px = 70;
 constexpr Point bar_corner{1190, 640};
 constexpr int bar_width = 660, bar_height = 30;
 
-/// A field over the hemisphere in turbo, 0 to its own top.
+/// A field over the hemisphere in turbo colours, from 0 to its own maximum.
 struct Field {
     Block block;
     double top = 0;
@@ -75,7 +75,7 @@ public:
     std::vector<Cue> cues() const;
 
 private:
-    /// The pixel's square in the enlarged crop.
+    /// Returns the pixel's square in the enlarged crop.
     Rect square() const {
         const double x = crop_corner.x + (pixel_.i() - near_.x0) * crop_times;
         return {x, crop_corner.y + (near_.y1 - pixel_.j()) * crop_times, crop_times, crop_times};
@@ -103,7 +103,7 @@ private:
             small_text, near);
     }
 
-    /// The pixel's outline becomes the rim of its hemisphere.
+    /// Moves the pixel's outline to the edge of its hemisphere.
     void opened(Frame& f) const {
         const double t = f.ease(opening + 0.6, opening + 2), alpha = f.ease(opening, opening + 0.6);
         if (alpha <= 0) return;
@@ -149,7 +149,7 @@ private:
                 Words("radius ", number(disk.angular_radius, 3, "angle of the light"), "°"), small_text, shown);
     }
 
-    /// One whose angular radius says how large it is: no rectangle.
+    /// Returns whether a light is described by its angular radius, unlike a rectangle.
     bool round(const PixelLight& light) const {
         const std::vector<LightTable> all = all_lights(data_.experiment);
         const auto is_it = [&](const LightTable& table) { return table.light.name == light.name; };
@@ -157,7 +157,7 @@ private:
         return found != all.end() && found->light.kind() != "rectangle";
     }
 
-    /// The colour bar of the field that is shown, with what it is and its ends.
+    /// Draws the colour bar of the field that is shown, with its name and its ends.
     void scale(Frame& f, const double (&starts)[4]) const {
         const double shown = f.ease(reflects, reflects + 0.8);
         f.field(bar_, bar_corner, shown);
@@ -231,7 +231,7 @@ Shot one_pixel(const Data& data) {
     const auto drawn = std::make_shared<const OnePixel>(data);
     Shot shot;
     shot.name = "one-pixel";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("One pixel, opened");
     shot.seen = Words(
         "A pixel of the crescent grows into the hemisphere above its surface point. Colours show in turn the "
@@ -244,4 +244,4 @@ Shot one_pixel(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,4 +1,4 @@
-// The same random numbers travel from their square to the hemisphere, by cosine, then by Phong: only the map differs.
+// The same random numbers move from their square to the hemisphere, by cosine, then by Phong: only the map differs.
 #include <cmath>
 
 #include "drawing.h"
@@ -7,7 +7,7 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double appear = 0.5, appeared = 2.6, cosine_go = 4.1, cosine_met = 8, back = 10.4, phong_go = 11.6,
                  phong_met = 14.8, in_the_long_run = 16, end = 21.6;
 constexpr Rect square{190, 250, 500, 500};
-constexpr double one_way = 1.4, all_way = 2.8;  // of one point, of all
+constexpr double one_way = 1.4, all_way = 2.8;  // of one point, of all points
 
 struct Traveller {
     Point from, cosine, phong;
@@ -106,7 +106,7 @@ private:
         f.line({r.x + 40, r.y}, {1630, r.y}, bright, 2, mirror);
     }
 
-    /// The light's outline, over the dots.
+    /// Draws the light's outline over the dots.
     void light(Frame& f) const {
         if (story_.disk < 0) return;
         const double shown = f.ease(appeared, appeared + 0.8);
@@ -165,7 +165,7 @@ Shot same_randoms(const Data& data) {
     const auto drawn = std::make_shared<const SameRandoms>(data);
     Shot shot;
     shot.name = "same-randoms";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("The same random numbers, two maps");
     shot.seen = Words(
         "Dots in a square, one for each pair of random numbers, travel to the hemisphere seen from above: first by ",
@@ -178,4 +178,4 @@ Shot same_randoms(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

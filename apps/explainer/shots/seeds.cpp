@@ -1,11 +1,11 @@
-// Shot 13: the same run with other seeds: how far every figure spreads, and where the published one falls.
+// Shot 13: the same run with other seeds: the spread of every value, and the place of the published one.
 #include <algorithm>
 #include <cmath>
 
 #include "drawing.h"
 #include "shots.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
@@ -20,7 +20,7 @@ struct Row {
     Verdict verdict = Verdict::none;
 };
 
-constexpr double span = 4;  // the strip goes from a quarter of the median to four times it
+constexpr double span = 4;  // the strip covers a quarter of the median to four times it
 
 double across(double ratio) { return 0.5 + 0.5 * math::log(std::clamp(ratio, 1 / span, span)) / math::log(span); }
 
@@ -36,17 +36,17 @@ std::vector<Row> rows_of(const Data& data) {
         {"rmse." + c.surround, Words("RMSE, surround")}, {"fireflies", Words("fireflies")},
         {"y_mean", Words("mean of the frame")}};
     std::vector<Row> rows;
-    for (const auto& [meter, words] : meters) {
+    for (const auto& [metric, words] : meters) {
         for (const std::string& arm : {c.cosine, c.phong}) {
             const RunKey key = data.key(arm);
             const auto band = std::ranges::find_if(
-                data.metrics.bands, [&](const SeedSpread& b) { return b.meter == meter && b.key == key; });
+                data.metrics.bands, [&](const SeedSpread& b) { return b.metric == metric && b.key == key; });
             if (band == data.metrics.bands.end() || !(band->band.median > 0)) continue;
             Row row{words, Words(data.arm(arm)), data.ink(arm), {}, band->band.q05 / band->band.median,
                 band->band.q95 / band->band.median, {}, verdict_of(*band)};
             for (const RunMetrics& run : data.metrics.runs)
                 if (run.key.arm == arm && run.key.n == key.n && run.key.s == key.s)
-                    row.seeds.push_back(meter_value(run, meter) / band->band.median);
+                    row.seeds.push_back(metric_value(run, metric) / band->band.median);
             if (band->published) row.published = *band->published / band->band.median;
             rows.push_back(std::move(row));
         }
@@ -54,7 +54,7 @@ std::vector<Row> rows_of(const Data& data) {
     return rows;
 }
 
-Words told(Verdict v) {
+Words verdict_text(Verdict v) {
     switch (v) {
         case Verdict::reproduced: return Words("reproduced");
         case Verdict::outside: return Words("outside");
@@ -91,7 +91,7 @@ Shot seeds(const Data& data) {
     const std::vector<Row> rows = rows_of(data);
     const bool published = std::ranges::any_of(rows, [](const Row& r) { return r.published.has_value(); });
     Shot shot;
-    shot.name = "seeds", shot.kind = Kind::instrument;
+    shot.name = "seeds", shot.kind = Kind::backend;
     const Number n = count(std::uint64_t(data.experiment.seeds), "seeds of the experiment");
     shot.title = Words("Other random numbers: ", n, data.experiment.seeds == 1 ? " seed" : " seeds");
     shot.seen = Words(
@@ -120,7 +120,7 @@ Shot seeds(const Data& data) {
             const Colour ink = row.verdict == Verdict::reproduced ? plates::series[4]
                 : row.verdict == Verdict::outside                 ? plates::series[3]
                                                                   : muted;
-            const Words verdict = told(row.verdict);
+            const Words verdict = verdict_text(row.verdict);
             if (!verdict.empty())
                 f.text({1420, y, 440, 70}, verdict, with(with_px(label_text, 32), ink),
                     f.ease(8 + 0.35 * double(k), 8.4 + 0.35 * double(k)));
@@ -129,4 +129,4 @@ Shot seeds(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -8,12 +8,13 @@
 #include "shots.h"
 #include "words.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double leans = 0.8, leant = 2.8, never = 3.2, above = 7.8, sweep = 12.4, swept = 15.6, told = 16, end = 19.2;
+constexpr double leans = 0.8, leant = 2.8, never = 3.2, above = 7.8, sweep = 12.4, swept = 15.6, measured_at = 16,
+                 end = 19.2;
 constexpr double degree = pi / 180;
 constexpr Point side_centre{330, 640}, disc_centre{920, 520};
 constexpr double side_radius = 250, disc_radius = 250;
@@ -37,9 +38,9 @@ public:
     void draw(Frame& f) const {
         const double first = f.ease(leans, leant) * shown_, home = f.ease(sweep, sweep + 0.7),
                      up = f.ramp(sweep + 0.8, swept);
-        const double told_of = f.ease(told, told + 0.8),
-                     last = most_ + (measures_.surround_lost.theta_R_deg - most_) * told_of;
-        const double theta = told_of > 0 ? last : up > 0 ? up * most_ : first * (1 - home);
+        const double share = f.ease(measured_at, measured_at + 0.8),
+                     last = most_ + (measures_.surround_lost.theta_R_deg - most_) * share;
+        const double theta = share > 0 ? last : up > 0 ? up * most_ : first * (1 - home);
         from_the_side(f, theta);
         from_above(f, theta);
         curve(f, up * most_);
@@ -48,7 +49,7 @@ public:
 
 private:
     const std::vector<LostSupport>& lost() const { return data_.evidence.lost; }
-    /// R tilted from n in the plane of the drawing, and the edge of what is in front of it.
+    /// R tilted from n in the plane of the drawing, and the edge of the hemisphere around it.
     static Vec3d mirror(double theta) { return {-math::sin(theta * degree), 0, math::cos(theta * degree)}; }
     static Vec3d edge(double theta) { return {math::cos(theta * degree), 0, math::sin(theta * degree)}; }
 
@@ -116,7 +117,7 @@ private:
             if (l.theta_R_deg <= theta + 1e-9 && f.after(sweep + 0.8))
                 f.dot(axes_.at(l.theta_R_deg, 100 * l.measured), 9, alert);
         const LostSupport& here = measures_.surround_lost;
-        const double at = f.ease(told + 0.8, told + 1.2);
+        const double at = f.ease(measured_at + 0.8, measured_at + 1.2);
         f.line(axes_.at(here.theta_R_deg, 0), axes_.at(here.theta_R_deg, 100 * here.measured), bright, 2, at, 8);
         f.circle(axes_.at(here.theta_R_deg, 100 * here.measured), 13, bright, 3, at);
         f.dot({chart.x + 40, chart.y + 76}, 9, alert, shown);
@@ -154,7 +155,7 @@ Shot tilt(const Data& data) {
     const auto drawn = std::make_shared<const Tilt>(data);
     Shot shot;
     shot.name = "tilt";
-    shot.kind = Kind::instrument;
+    shot.kind = Kind::backend;
     shot.title = Words("What is never reached");
     shot.seen = Words(
         "A hemisphere from the side and from above. As the mirror direction tilts, a growing part behind it is out of "
@@ -166,4 +167,4 @@ Shot tilt(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

@@ -1,13 +1,13 @@
-// Shot 1: the gallery comes out of the noise, one doubling of N after another, then its converged reference; the title.
+// Shot 1: the gallery at one doubling of N after another, then its converged reference; the title.
 #include "drawing.h"
 #include "shots.h"
 #include "timeline.h"
 
-namespace crescent::film {
+namespace crescent::explainer {
 
 namespace {
 
-constexpr double first = 1.0, each = 0.7;  // s: when the first film shows, how long each stands
+constexpr double first = 1.0, each = 0.7;  // s: when the first film appears, and the duration of each
 constexpr Rect slot{480, 300, 960, 540};
 
 }  // namespace
@@ -55,4 +55,4 @@ Shot title(const Data& data) {
     return shot;
 }
 
-}  // namespace crescent::film
+}  // namespace crescent::explainer

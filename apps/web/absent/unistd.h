@@ -1,4 +1,4 @@
-// wasi-libc has no pipes; nothing that is linked asks for one.
+// wasi-libc has no pipes; the linked code does not use them.
 #pragma once
 #include_next <unistd.h>
 

@@ -1,4 +1,4 @@
-// A class of Nori's shape, judged: crescent::check_sampler("mine", crescent::adapters::Nori(bsdf)).
+// Checks a class with Nori's interface: crescent::check_sampler("mine", crescent::adapters::Nori(bsdf)).
 //
 //   Color3f sample(BSDFQueryRecord& r, const Point2f& u) const   writes r.wo, gives f cos / pdf; 0: nothing drawn
 //   Color3f eval(const BSDFQueryRecord& r) const                 f, 1/sr, without the cosine

@@ -1,4 +1,4 @@
-// Functions of the shape of Adobe's openpbr-bsdf, judged:
+// Checks functions with the interface of Adobe's openpbr-bsdf:
 //
 //   check_sampler("mine", crescent::adapters::OpenPbr<vec3>([&](vec3 wo) { return openpbr_prepare(inputs, ..., wo);
 //   }));
@@ -8,7 +8,7 @@
 //   openpbr_pdf(prepared, wi)                                   1/sr
 //   openpbr_get_sum_of_diffuse_specular(weight)                 a colour
 //
-// They are found beside the type of what `prepare` returns. Its frame is the default one: n = +z. Nothing of OpenPBR is
+// They are found by the type that `prepare` returns. Its frame is the default one: n = +z. Nothing of OpenPBR is
 // included.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A class of pbrt-v4's shape, judged: crescent::check_sampler("mine", crescent::adapters::Pbrt(bxdf)).
+// Checks a class with pbrt-v4's interface: crescent::check_sampler("mine", crescent::adapters::Pbrt(bxdf)).
 //
 //   f(wo, wi, mode)                -> a spectrum, 1/sr, without the cosine
 //   Sample_f(wo, uc, u, mode, ...) -> an optional of something with .f, .wi, .pdf, .flags or IsSpecular()
@@ -18,7 +18,7 @@
 
 namespace crescent::adapters {
 
-/// What every adapter gives for a draw.
+/// A draw, as every adapter returns it.
 struct Drawn {
     std::array<double, 3> wi{};
     double pdf = 0;
@@ -49,7 +49,7 @@ public:
         const double cosine = std::fabs(static_cast<double>(s->wi.z));
         double pdf = static_cast<double>(s->pdf);
         const double weight = pdf > 0 ? average_of(s->f) * cosine / pdf : 0;
-        if constexpr (requires { s->pdfIsProportional; })  // f / pdf is meant, pdf alone is no density
+        if constexpr (requires { s->pdfIsProportional; })  // only f / pdf is valid; pdf alone is not a density
             if (s->pdfIsProportional && pdf > 0) pdf = this->pdf(wo, {s->wi.x, s->wi.y, s->wi.z});
         return Drawn{{s->wi.x, s->wi.y, s->wi.z}, pdf, weight, s->IsSpecular()};
     }
@@ -63,7 +63,7 @@ public:
 private:
     BxDF bxdf_;
     Traits known_;
-    /// Some classes have no default for the last parameter, what is asked for: 1 reflection, 2 transmission.
+    /// Some classes have no default for the last parameter, the requested part: 1 reflection, 2 transmission.
     template <class Flags> static constexpr Flags everything = static_cast<Flags>(3);
     auto sampled(Vector wo, float uc, Point u) const {
         if constexpr (requires { bxdf_.Sample_f(wo, uc, u, Mode{}); }) return bxdf_.Sample_f(wo, uc, u, Mode{});

@@ -2,7 +2,7 @@
 
 mitsuba(bsdf)                             any mi.BSDF, or a dictionary or XML that mi.load_dict or load_string takes
 mitsuba_emitter(emitter)                  directions towards an emitter, as they are sampled from a point
-numpy, torch, jax, drjit (sample, eval, pdf)   callables in the form that renderers have: eval holds the cosine
+numpy, torch, jax, drjit (sample, eval, pdf)   callables in the form used by renderers: eval includes the cosine
 """
 
 from ._mitsuba import mitsuba, mitsuba_emitter

@@ -1,8 +1,7 @@
-"""Mitsuba 3: its BSDFs and emitters, whole. Any variant of three channels or one; llvm_ad_rgb where none is set.
+"""Mitsuba 3: its BSDFs and emitters. Any variant of three channels or one; llvm_ad_rgb if none is set.
 
-Mitsuba's `wi` is the given direction and its `wo` the drawn one; its eval holds the cosine, its weight is f cos / p,
-and the pdf of a delta part is the probability with which it was chosen. Directions are local, n = +z, in
-single precision.
+Mitsuba's `wi` is the given direction and its `wo` the drawn one; its eval includes the cosine, its weight is f cos / p,
+and the pdf of a delta part is the probability of its selection. Directions are local, n = +z, in single precision.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ def _vector(mi: Any, a: Array) -> Any:
 
 
 def _rows(v: Any, n: int) -> Array:
-    """A Dr.Jit vector or colour as [n, channels]; a literal stands for every row."""
+    """Returns a Dr.Jit vector or colour as [n, channels]; a literal is repeated for every row."""
     parts = [np.broadcast_to(np.asarray(part, np.float64).ravel(), n) for part in v]
     return np.stack(parts, -1)
 
@@ -51,7 +50,7 @@ def _is(mi: Any, it: Any, kinds: tuple[str, ...]) -> bool:
 
 
 def _loaded(mi: Any, what: Any) -> Any:
-    """The object, or what a dictionary or an XML text describes."""
+    """Returns the object, or the object described by a dictionary or an XML text."""
     return mi.load_dict(what) if isinstance(what, dict) else mi.load_string(what) if isinstance(what, str) else what
 
 
@@ -84,7 +83,7 @@ class _Bsdf:
         wi, p, weight = _rows(bs.wo, n), _column(bs.pdf, n).copy(), _rows(weighs, n)
         delta = (_column(bs.sampled_type, n).astype(np.int64) & int(self.mi.BSDFFlags.Delta)) != 0
         lost = np.flatnonzero((p != 0) & ~delta & (weight == 0).all(axis=1))
-        if len(lost):  # a weight of 0 that pdf(w) and f do not bear out: Mitsuba's way to say that nothing was drawn
+        if len(lost):  # a weight of 0 that pdf(w) and f contradict: Mitsuba uses it for draws that return no sample
             same = np.isclose(self.pdf(wo[lost], wi[lost]), p[lost], rtol=1e-2)
             p[lost] = np.where(same & (self.f(wo[lost], wi[lost]) == 0).all(axis=1), p[lost], 0)
         return wi, p, weight, delta
@@ -98,7 +97,7 @@ class _Bsdf:
         return np.where(cosine > 0, value / np.where(cosine > 0, cosine, 1), 0)
 
     def eta(self) -> float | None:
-        """The index below over above, off a direction that was refracted downwards."""
+        """Returns the index below over above, from a direction that was refracted downwards."""
         wo = np.tile([[0.3, 0.0, np.sqrt(1 - 0.09)]], (256, 1))
         k = np.arange(256)[:, None] + 0.5
         bs, _ = self.drawn(wo, (k * [0.7548776662466927, 0.5698402909980532, 0.6180339887498949]) % 1)
@@ -108,11 +107,11 @@ class _Bsdf:
 
 
 def mitsuba(bsdf: Any, *, uv: tuple[float, float] = (0.5, 0.5), context: Any = None, **known: Any) -> Sampler:
-    """Any mi.BSDF: both sides where it answers for both, colour, delta parts, its own weights; or any emitter, as
-    mitsuba_emitter takes it.
+    """Any mi.BSDF: both sides if it supports them, colour, delta parts, its own weights; or any emitter that
+    mitsuba_emitter takes.
 
     `bsdf`: a mi.BSDF, a dictionary or an XML text. `uv`: where its textures are read. `context`: a mi.BSDFContext, for
-    one component alone or for importance.
+    a single component or for importance.
     """
     mi = _library()
     plugin = _loaded(mi, bsdf)
@@ -150,7 +149,7 @@ class _Emitter:
         numbers = [self.mi.Float(np.ascontiguousarray(u[:, k], np.float32)) for k in range(2)]
         with self.one_by_one():
             ds, weight = self.scene.sample_emitter_direction(self.at(len(u)), self.mi.Point2f(*numbers), True, True)
-        lit = (_rows(weight, len(u)) != 0).any(axis=1)  # else hidden, or on a side that does not shine: nothing drawn
+        lit = (_rows(weight, len(u)) != 0).any(axis=1)  # else hidden, or on a side that does not emit: nothing drawn
         return _rows(ds.d, len(u)), np.where(lit, _column(ds.pdf, len(u)), 0)
 
     def pdf(self, wi: Array) -> Array:
@@ -165,7 +164,7 @@ class _Emitter:
 
     @staticmethod
     def one_by_one() -> Any:
-        """Emitters are called with arrays that are known: some, as timed_sunsky, look into theirs."""
+        """Emitters are called with evaluated arrays: some, like timed_sunsky, read their entries."""
         import drjit
 
         return drjit.scoped_set_flag(drjit.JitFlag.SymbolicCalls, False)
@@ -173,7 +172,7 @@ class _Emitter:
 
 def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0.0, 0.0), **known: Any) -> Sampler:
     """Directions towards an emitter as a renderer samples them from `point`: a mi.Scene, a mi.Emitter, a mi.Shape that
-    holds one, or a dictionary or an XML text of these. Points and single directions of light have no density."""
+    has one, or a dictionary or an XML text of these. Points and single directions of light have no density."""
     mi = _library()
     it = _loaded(mi, emitter)
     if not _is(mi, it, _EMITTERS):
@@ -185,7 +184,7 @@ def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0
         raise ValueError(f"{known.get('name', type(it).__name__)}: there is no emitter in it")
     for light in scene.emitters():
         if light.flags() & (int(mi.EmitterFlags.DeltaPosition) | int(mi.EmitterFlags.DeltaDirection)):
-            raise ValueError(f"{type(light).__name__} shines from one direction: there is no density to judge")
+            raise ValueError(f"{type(light).__name__} shines from one direction: there is no density to check")
     own = _Emitter(mi, scene, point)
     known.setdefault("name", "emitter")
     return Sampler(own.sample, own.pdf, wo="none", serial=True, **known)

@@ -1,7 +1,7 @@
-"""Triples sample, eval, pdf of array libraries. eval(wo, wi) is f |cos|, as renderers have it; it becomes f.
+"""Triples sample, eval, pdf of array libraries. eval(wo, wi) is f |cos|, as in renderers; it is converted to f.
 
-What the callables take are arrays of their library, on the device and of the dtype that is asked for; what they give
-stays there between calls (_libraries.py).
+The callables take arrays of their library, on the requested device and of the requested dtype; their results stay there
+between calls (_libraries.py).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Call = Callable[..., Any]
 
 
 def _f_of(eval: Call) -> Call:
-    """f of an eval that holds the cosine."""
+    """Returns f of an eval that includes the cosine."""
 
     def f(wo: Array, wi: Array) -> Array:
         cosine = np.abs(wi[:, 2])
@@ -54,7 +54,7 @@ def torch(
     dtype: Any = None,
     **known: Any,
 ) -> Sampler:
-    """PyTorch callables: tensors on `device`, of torch's default dtype where none is given. Called by one thread."""
+    """PyTorch callables: tensors on `device`, of torch's default dtype if none is given. Called by one thread."""
     known.setdefault("serial", True)
     return _sampler(Library("torch", device, dtype), sample, eval, pdf, known)
 
@@ -68,12 +68,12 @@ def jax(
     dtype: Any = None,
     **known: Any,
 ) -> Sampler:
-    """JAX callables, jitted or not: rows are filled up to a power of two, so that few shapes are compiled."""
+    """JAX callables, jitted or not: rows are padded to a power of two, so that few shapes are compiled."""
     return _sampler(Library("jax", device, dtype), sample, eval, pdf, known)
 
 
 def drjit(sample: Call, eval: Call | None = None, pdf: Call | None = None, *, u: int = 2, **known: Any) -> Sampler:
-    """Dr.Jit callables, of tensors [n, 3] or of vectors with x, y, z; arrays of Mitsuba's variant where one is set."""
+    """Dr.Jit callables, of tensors [n, 3] or of vectors with x, y, z; arrays of Mitsuba's variant if one is set."""
     known.setdefault("serial", True)
     rows = rows_to_look_with(8, u)
     library = library_named("drjit", None, sample, rows if known.get("wo") != "none" else rows[1:])

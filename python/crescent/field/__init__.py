@@ -1,4 +1,4 @@
-"""Faults of public projects, written anew, and what ships in Mitsuba, judged. ``python -m crescent.field``."""
+"""Faults of public projects, rewritten, and the plugins of Mitsuba, checked. ``python -m crescent.field``."""
 
 from ._faults import Fault, faults_in
 

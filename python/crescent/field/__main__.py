@@ -1,4 +1,5 @@
-"""``python -m crescent.field``: checks what ships in Mitsuba 3 and the faults of tests/field, and writes docs/field.md.
+"""``python -m crescent.field``: checks the plugins of Mitsuba 3 and the faults of tests/field, and writes
+docs/field.md.
 
     python -m crescent.field [--faults FOLDER] [--out FILE] [--only PLUGIN ...]
 
@@ -40,19 +41,19 @@ class Finding:
         return self.note.kind if self.note else "open"
 
 
-def judged(it: Shipped) -> crescent.CheckResult:
-    """One plugin over the field's w_o."""
+def checked(it: Shipped) -> crescent.CheckResult:
+    """Checks one plugin over the field's w_o."""
     if it.kind == "emitter":
         return crescent.check(mitsuba_emitter(it.built(), **it.known))
     sampler = mitsuba(it.built(), **it.known)
     return crescent.check(sampler, wo_deg=ABOVE + (BELOW if sampler.wo == "both" else []))
 
 
-def findings(it: Shipped, judgement: crescent.CheckResult) -> list[Finding]:
-    """What is not right, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
+def findings(it: Shipped, result: crescent.CheckResult) -> list[Finding]:
+    """Returns the failures, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
     groups: dict[tuple[str, str], list[crescent.Verdict]] = {}
     notes: dict[tuple[str, str], Note | None] = {}
-    for v in judgement:
+    for v in result:
         if v.state in OPEN and v.name != "efficiency":
             note = note_on(it.title(), v)
             key = (v.name, note.because if note else "")
@@ -96,12 +97,13 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
     for it in bsdfs() + emitters():
         if only and it.plugin["type"] not in only:
             continue
-        judgement = judged(it)
-        found = findings(it, judgement)
-        print(f"{it.title()}: {judgement.state} {judgement.broken()}", file=sys.stderr, flush=True)
+        result = checked(it)
+        found = findings(it, result)
+        print(f"{it.title()}: {result.state} {result.broken()}", file=sys.stderr, flush=True)
         told = "; ".join(f"{f.verdicts[0].name}: {f.kind()}" for f in found)
-        table.append(f"| `{it.title()}` | {judgement.state} | {told or '-'} |")
-        # One section an explanation, at the plugin where it is first met, by a verdict that a script shows; bugs each.
+        table.append(f"| `{it.title()}` | {result.state} | {told or '-'} |")
+        # One section per explanation, at the plugin where it is first found, by a verdict that a script shows; one per
+        # bug.
         for f in sorted(found, key=lambda f: f.verdicts[0].name == "identity"):
             sections.setdefault(f.note.because if f.note else f"{it.title()} {f.verdicts[0].name}", f)
     yield f"## What ships in Mitsuba {mi.__version__}"
@@ -121,14 +123,14 @@ def _faults_text(faults: list[Fault]) -> Iterator[str]:
     )
     rows = ["| fault | project | found by | corrected |", "|---|---|---|---|"]
     for fault in faults:
-        caught, mended = ", ".join(fault.judged().broken()), fault.judged(mended=True).state
-        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {mended} |")
+        caught, fixed = ", ".join(fault.checked().broken()), fault.checked(fixed=True).state
+        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {fixed} |")
         print(f"{fault.name}: {caught}", file=sys.stderr, flush=True)
     yield "\n".join(rows)
 
 
 def _before_the_work(out: Path, only: list[str]) -> None:
-    """ImportError or ValueError of what would else be told after minutes."""
+    """Raises early the ImportError or ValueError that would otherwise come after minutes."""
     try:
         import mitsuba as mi
     except ImportError:
@@ -136,10 +138,10 @@ def _before_the_work(out: Path, only: list[str]) -> None:
     mi.set_variant("llvm_ad_rgb")
     if not out.parent.is_dir():
         raise ValueError(f"--out {out}: there is no folder {out.parent}")
-    judged = {it.plugin["type"] for it in bsdfs() + emitters()}
+    checked = {it.plugin["type"] for it in bsdfs() + emitters()}
     for word in only:
-        if word not in judged:
-            near = difflib.get_close_matches(word, judged, 1)
+        if word not in checked:
+            near = difflib.get_close_matches(word, checked, 1)
             raise ValueError(f"--only {word}: no such plugin" + (f"; did you mean '{near[0]}'?" if near else ""))
 
 

@@ -1,4 +1,4 @@
-"""Faults of public projects: each is written anew from its public description, beside the same sampler mended."""
+"""Faults of public projects: each is rewritten from its public description, together with the same sampler fixed."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._check import check
-from .._judgement import CheckResult
+from .._result import CheckResult
 from .._sampler import Sampler
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A sampler as a project had it."""
+    """A faulty sampler of a project."""
 
     name: str  #: a few words
     project: str
-    source: str  #: where the project or its users tell of it
+    source: str  #: the report by the project or its users
     says: str  #: what was wrong, in a sentence
-    caught_by: tuple[str, ...]  #: verdicts that accuse it
+    caught_by: tuple[str, ...]  #: verdicts that detect it
     sampler: Sampler
-    mended: Sampler
+    fixed: Sampler
 
-    def judged(self, mended: bool = False) -> CheckResult:
-        """The judgement of the fault, or of what it became."""
-        return check(self.mended if mended else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
+    def checked(self, fixed: bool = False) -> CheckResult:
+        """Returns the result for the fault, or for its fixed version."""
+        return check(self.fixed if fixed else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
 
 
-W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: where each is looked at, in degrees
+W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: w_o of each check, in degrees
 
 
 def faults_in(folder: str | Path) -> list[Fault]:
-    """FAULTS of every file of a folder, tests/field of the repository, in the order of their names."""
+    """Returns FAULTS of every file of a folder, tests/field of the repository, in the order of their names."""
     path = Path(folder).resolve()
     if not path.is_dir():
         raise ValueError(f"{folder}: no such folder")

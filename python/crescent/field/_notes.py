@@ -1,27 +1,27 @@
-"""Why a verdict on a shipped plugin is not right, where that is understood. Sizes are the verdict's own, or printed
-by a script; nothing here is a measurement."""
+"""Why a verdict on a shipped plugin is not right, if it is understood. Sizes are the verdict's own, or printed by a
+script; nothing here is a measurement."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
 
-from .._judgement import Verdict
+from .._result import Verdict
 
 
 @dataclass(frozen=True)
 class Note:
-    """What explains verdicts of some plugins."""
+    """An explanation of verdicts on some plugins."""
 
     plugins: str  #: a regular expression over the plugin and its parameters
     verdicts: str  #: over the verdict's name
-    says: str  #: over its sentence
+    says: str  #: over its message
     kind: str  #: "bug", "no picture changes", "corner", "approximation", "single precision", "the model"
     because: str
-    script: str = ""  #: that shows it, in place of one made for the verdict
+    script: str = ""  #: that shows it, instead of one made for the verdict
 
     def covers(self, title: str, verdict: Verdict) -> bool:
-        """Whether it explains this verdict of this plugin."""
+        """Returns whether it explains this verdict of this plugin."""
         return all(
             re.search(pattern, text, re.S) is not None
             for pattern, text in ((self.plugins, title), (self.verdicts, verdict.name), (self.says, verdict.say))
@@ -147,5 +147,5 @@ NOTES = [
 
 
 def note_on(title: str, verdict: Verdict) -> Note | None:
-    """The first note that explains the verdict; None: a bug, or not understood."""
+    """Returns the first note that explains the verdict; None: a bug, or not understood."""
     return next((note for note in NOTES if note.covers(title, verdict)), None)

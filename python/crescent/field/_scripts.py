@@ -1,4 +1,4 @@
-"""Scripts of a few lines that show a finding with Mitsuba and NumPy alone, and what they print."""
+"""Scripts of a few lines that show a finding with only Mitsuba and NumPy, and their output."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ print("reflects", np.mean(np.array(weight), axis=1))"""
 
 
 def script_for(it: Shipped, verdict: str, wo: tuple[float, float, float], u: tuple[float, float, float] | None) -> str:
-    """The script for one verdict at one w_o; u: the corner that it is about."""
+    """Returns the script for one verdict at one w_o; u: the corner that it concerns."""
     body = _ALBEDO if verdict == "physics" else _CORNER.format(u0=u[0], u1=u[1], u2=u[2]) if u else _MASS
     return _HEAD.format(code=it.code(), wo=", ".join(f"{v:.6g}" for v in wo)) + body
 
 
 def output_of(script: str) -> str:
-    """What the script prints."""
+    """Returns the output of the script."""
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
         exec(script, {})

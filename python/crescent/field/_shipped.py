@@ -1,4 +1,4 @@
-"""What ships in Mitsuba 3: every BSDF that reflects or transmits and every emitter that has directions, at several
+"""The plugins of Mitsuba 3: every BSDF that reflects or transmits and every emitter that has directions, at several
 parameters."""
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ BELOW = [(150.0, 0.0), (120.0, 250.0), (95.0, 75.0)]
 
 @dataclass(frozen=True)
 class Made:
-    """A parameter that is made by a line of Python, over mi and np."""
+    """A parameter made by a line of Python, with mi and np."""
 
     code: str
 
     def made(self) -> Any:
-        """What the line makes."""
+        """Returns the value of the line."""
         import mitsuba as mi
 
         return eval(self.code, {"mi": mi, "np": np})
@@ -32,21 +32,21 @@ class Shipped:
     kind: str  #: "bsdf" or "emitter"
     plugin: dict[str, Any]
     known: dict[str, Any] = field(default_factory=dict)  #: of crescent.Sampler
-    label: str = ""  #: in place of the parameters
+    label: str = ""  #: instead of the parameters
 
     def title(self) -> str:
-        """The plugin and the parameters that are not nested."""
+        """The plugin and its parameters, except nested ones."""
         if self.label:
             return self.label
         told = [f"{k} = {_told(v)}" for k, v in self.plugin.items() if k != "type"]
         return str(self.plugin["type"]) + (": " + ", ".join(told) if told else "")
 
     def built(self) -> dict[str, Any]:
-        """The dictionary as mi.load_dict takes it."""
+        """Returns the dictionary for mi.load_dict."""
         return {k: _built(v) for k, v in self.plugin.items()}
 
     def code(self) -> str:
-        """The dictionary as Python."""
+        """Returns the dictionary as Python."""
         return "{" + ", ".join(f'"{k}": {_code(v)}' for k, v in self.plugin.items()) + "}"
 
 
@@ -177,7 +177,7 @@ def emitters() -> list[Shipped]:
     return shining + [Shipped("emitter", plugin) for plugin in skies]
 
 
-#: Plugins that are not judged here, and why.
+#: Plugins that are not checked here, and why.
 LEFT_OUT = {
     "measured, measured_polarized": "need a file of measurements, which the package does not include",
     "point, spot, directional, directionalarea, projector": "emit from one direction: there is no density to check",

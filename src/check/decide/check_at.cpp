@@ -25,7 +25,7 @@ struct Stage {
     /// draws, where it may be compared with what it ought to be.
     static double of_f(const Source& source, const Look& first, double draws) {
         if (!source.has_f()) return 0;
-        return first.points + draws * (source.subject.has_true_f() ? 2 : 1);
+        return first.points + draws * (source.adapter.has_true_f() ? 2 : 1);
     }
     void extend(Source& source, const Plan& plan, Look to, std::uint32_t of_f, StreamKey key, int look) {
         to.points = std::max(to.points, done.points + 2 * static_cast<std::uint32_t>(plan.tree.leaves().size()));
@@ -41,18 +41,18 @@ struct Stage {
     Evidence evidence(const Source& source, const Plan& plan) const { return {source, plan, integrals, observations}; }
 };
 
-void ask_all(const Evidence& e, const Visit& visit) {
-    ask_sums(e, visit);
-    ask_nodes(e, visit);
-    ask_light(e, visit);
-    ask_counts(e, visit);
-    ask_deltas(e, visit);
+void test_all(const Evidence& e, const Visit& visit) {
+    test_sums(e, visit);
+    test_nodes(e, visit);
+    test_light(e, visit);
+    test_counts(e, visit);
+    test_deltas(e, visit);
 }
 
 using Least = LeastOf<Answer>;
 
 auto least_of(const Evidence& e) {
-    return least_by_family<Answer>([&](const Visit& visit) { ask_all(e, visit); });
+    return least_by_family<Answer>([&](const Visit& visit) { test_all(e, visit); });
 }
 
 /// A count that has failed is not a matter of chance for numbers that cannot be used.
@@ -60,7 +60,7 @@ bool needs_no_second(Family f) { return f == Family::values || f == Family::corn
 
 /// The same member again, one-sided in the direction of the first.
 Answer put_again(const Evidence& e, const Answer& first) {
-    Answer out = same_member([&](const Visit& visit) { ask_all(e, visit); }, first);
+    Answer out = same_member([&](const Visit& visit) { test_all(e, visit); }, first);
     const bool two_sided = out.p > 0 && first.family != Family::depth;
     if (two_sided) out.p = one_sided(first, out);
     return out;
@@ -68,9 +68,9 @@ Answer put_again(const Evidence& e, const Answer& first) {
 
 class Check {
 public:
-    Check(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
+    Check(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
         std::uint32_t seed)
-        : source_(subject, technique, wo, data.light), budget_(budget), levels_(data.levels) {
+        : source_(adapter, technique, wo, data.light), budget_(budget), levels_(data.levels) {
         key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
         out_.wo = wo, out_.technique = technique;
         out_.numbers = source_.numbers(), out_.channels = source_.channels();
@@ -80,9 +80,9 @@ public:
         const Stopwatch watch;
         StreamKey looks = key_;
         looks.purpose = Purpose::pairs;
-        out_.scatter = look_for_scatter(source_, looks);
+        out_.scatter = look_for_noise(source_, looks);
         source_.estimates = out_.scatter.pdf(), source_.f_estimates = out_.scatter.f();
-        if (!source_.f_estimates) source_.unscaled = both_ways(source_.subject, key_) != BothWays::not_known;
+        if (!source_.f_estimates) source_.unscaled = both_ways(source_.adapter, key_) != BothWays::not_known;
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
         for (int look = 0; look < budget_.looks; ++look) {
@@ -144,7 +144,7 @@ private:
         for (const auto& [family, least] : least_)
             if (least.p() < level) most[family] = {-1, least};
         if (most.empty()) return {};
-        ask_all(e, [&](const Answer& a) {
+        test_all(e, [&](const Answer& a) {
             const auto at = most.find(a.family);
             if (at == most.end() || a.p * at->second.second.members >= level) return;
             const double d = std::fabs(a.difference);
@@ -239,9 +239,9 @@ private:
 
 double CheckAt::most_ratio() const { return scatter.pdf() ? inconclusive_of_estimates : inconclusive_at; }
 
-CheckAt check_sampler_at(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseData& data,
+CheckAt check_sampler_at(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data,
     const CheckBudget& budget, std::uint32_t seed) {
-    return Check(subject, technique, wo, data, budget, seed).run();
+    return Check(adapter, technique, wo, data, budget, seed).run();
 }
 
 }  // namespace crescent::check

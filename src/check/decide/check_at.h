@@ -48,7 +48,7 @@ struct CheckAt {
     bool wrong() const { return !findings.empty() || !small.empty(); }
 };
 
-CheckAt check_sampler_at(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseData& data,
+CheckAt check_sampler_at(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data,
     const CheckBudget& budget, std::uint32_t seed);
 
 }  // namespace crescent::check

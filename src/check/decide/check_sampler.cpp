@@ -23,55 +23,55 @@ bool CheckOutcome::wrong() const {
 
 namespace {
 
-std::vector<CheckOutcome> grouped(std::span<const CheckCase> trials) {
+std::vector<CheckOutcome> grouped(std::span<const CheckCase> check_cases) {
     std::vector<CheckOutcome> out;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-        if (trials[i].baseline) continue;
+    for (std::size_t i = 0; i < check_cases.size(); ++i) {
+        if (check_cases[i].baseline) continue;
         const auto same = [&](const CheckOutcome& o) {
-            const CheckCase& t = trials[o.trials[0]];
-            return t.arm == trials[i].arm && t.brdf == trials[i].brdf && t.parameters == trials[i].parameters &&
-                t.lighting == trials[i].lighting;
+            const CheckCase& t = check_cases[o.check_cases[0]];
+            return t.arm == check_cases[i].arm && t.brdf == check_cases[i].brdf &&
+                t.parameters == check_cases[i].parameters && t.lighting == check_cases[i].lighting;
         };
         auto at = std::ranges::find_if(out, same);
-        if (at == out.end()) at = out.insert(out.end(), {trials[i].arm, {}, {}, {}, {}, 0, {}, {}});
-        at->trials.push_back(i);
+        if (at == out.end()) at = out.insert(out.end(), {check_cases[i].arm, {}, {}, {}, {}, 0, {}, {}});
+        at->check_cases.push_back(i);
     }
     return out;
 }
 
-/// Built-in arms are made for one w_o each, under one light: special w_o are for subjects that take any.
-bool takes_any_wo(std::span<const CheckCase> trials, const CheckOutcome& o) {
+/// Built-in arms are made for one w_o each, under one light: special w_o are for samplers that take any.
+bool takes_any_wo(std::span<const CheckCase> check_cases, const CheckOutcome& o) {
     return std::ranges::all_of(
-        o.trials, [&](std::size_t i) { return trials[i].subject == trials[o.trials[0]].subject; });
+        o.check_cases, [&](std::size_t i) { return check_cases[i].adapter == check_cases[o.check_cases[0]].adapter; });
 }
 
 /// An estimate of f is not reciprocal. Of a sampler that is checked in turn, no w_o has been looked at yet.
-bool estimates_f(const CheckCase& trial, const CheckOutcome& o, const StreamKey& key) {
+bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const StreamKey& key) {
     if (std::ranges::all_of(o.at, [](const auto& at) { return at.empty(); })) {
-        Source source(*trial.subject, 0, trial.wo, trial.light);
-        return look_for_scatter(source, key).f();
+        Source source(*check_case.adapter, 0, check_case.wo, check_case.light);
+        return look_for_noise(source, key).f();
     }
     const auto is_estimate = [](const CheckAt& c) { return c.scatter.f(); };
     return std::ranges::any_of(o.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); });
 }
 
-void look_at_whole(std::span<const CheckCase> trials, const CheckSettings& settings, CheckOutcome& out) {
-    const SamplerAdapter& subject = *trials[out.trials[0]].subject;
-    StreamKey key{settings.seed, static_cast<std::uint16_t>(out.trials[0]), 0, 1, Purpose::light, 0};
+void look_at_whole(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
+    const SamplerAdapter& adapter = *check_cases[out.check_cases[0]].adapter;
+    StreamKey key{settings.seed, static_cast<std::uint16_t>(out.check_cases[0]), 0, 1, Purpose::light, 0};
     const auto add = [&](std::optional<SmallFault> fault) {
         if (fault) out.small.push_back(*fault);
     };
-    if (takes_any_wo(trials, out)) {
+    if (takes_any_wo(check_cases, out)) {
         std::vector<Vec3d> ordinary;
-        for (std::size_t i : out.trials)
-            if (ordinary.size() < 3) ordinary.push_back(trials[i].wo);
-        for (int t = 0; t < subject.techniques(); ++t) add(special_places(subject, t, ordinary));
-        if (const std::optional<SmallFault> fault = reciprocity(subject, key))
-            if (!estimates_f(trials[out.trials[0]], out, key)) add(fault);
+        for (std::size_t i : out.check_cases)
+            if (ordinary.size() < 3) ordinary.push_back(check_cases[i].wo);
+        for (int t = 0; t < adapter.techniques(); ++t) add(special_places(adapter, t, ordinary));
+        if (const std::optional<SmallFault> fault = reciprocity(adapter, key))
+            if (!estimates_f(check_cases[out.check_cases[0]], out, key)) add(fault);
     }
-    for (std::size_t i : out.trials) {
+    for (std::size_t i : out.check_cases) {
         const std::size_t before = out.small.size();
-        add(mis_weights(*trials[i].subject, trials[i].wo, key));
+        add(mis_weights(*check_cases[i].adapter, check_cases[i].wo, key));
         if (out.small.size() > before) break;
     }
 }
@@ -79,7 +79,7 @@ void look_at_whole(std::span<const CheckCase> trials, const CheckSettings& setti
 /// One w_o of one sampler.
 struct Job {
     CheckOutcome* outcome;
-    std::size_t index;  // into its trials
+    std::size_t index;  // into its cases
 };
 
 /// What `work` throws of a sampler from outside.
@@ -95,13 +95,13 @@ template <class Work> std::optional<Cut> cut_of(const Work& work) {
 }
 
 /// Numbers that cannot be used among a few draws.
-std::optional<SmallFault> look_first(const CheckCase& trial, const StreamKey& key) {
+std::optional<SmallFault> look_first(const CheckCase& check_case, const StreamKey& key) {
     constexpr std::uint32_t few = 256;  // a program of 10 answers/s gives them at 12 w_o within five minutes
     SmallFault out{Family::values};
-    const std::vector<PrimarySample> u = first_numbers(key, few, trial.subject->traits());
+    const std::vector<PrimarySample> u = first_numbers(key, few, check_case.adapter->traits());
     std::vector<Draw> draws(u.size());
-    for (int t = 0; t < trial.subject->techniques(); ++t) {
-        trial.subject->sample(t, trial.wo, u, draws);
+    for (int t = 0; t < check_case.adapter->techniques(); ++t) {
+        check_case.adapter->sample(t, check_case.wo, u, draws);
         out.of += few;
         for (std::size_t i = 0; i < u.size(); ++i)
             if (const auto fault = fault_of(draws[i]); fault && out.times++ == 0)
@@ -112,18 +112,18 @@ std::optional<SmallFault> look_first(const CheckCase& trial, const StreamKey& ke
 
 class Call {
 public:
-    Call(std::span<const CheckCase> trials, const CheckSettings& settings, ProgressMonitor& monitor)
-        : trials_(trials), settings_(settings), monitor_(monitor), outcomes_(grouped(trials)) {
+    Call(std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor)
+        : check_cases_(check_cases), settings_(settings), monitor_(monitor), outcomes_(grouped(check_cases)) {
         for (CheckOutcome& o : outcomes_) {
-            o.at.resize(o.trials.size()), o.cut.resize(o.trials.size()), o.tails.resize(o.trials.size());
-            for (std::size_t k = 0; k < o.trials.size(); ++k) jobs_.push_back({&o, k});
+            o.at.resize(o.check_cases.size()), o.cut.resize(o.check_cases.size()), o.tails.resize(o.check_cases.size());
+            for (std::size_t k = 0; k < o.check_cases.size(); ++k) jobs_.push_back({&o, k});
         }
         const double families = static_cast<double>(Family::families);
         levels_ = levels_of(settings.alpha, std::max(settings.cases, static_cast<double>(jobs_.size())) * families);
     }
 
     std::vector<CheckOutcome> run() {
-        if (std::ranges::any_of(trials_, [](const CheckCase& t) { return t.subject->serial(); })) {
+        if (std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); })) {
             in_turn();
         } else {
             parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
@@ -137,31 +137,31 @@ public:
     }
 
 private:
-    std::span<const CheckCase> trials_;
+    std::span<const CheckCase> check_cases_;
     const CheckSettings& settings_;
     ProgressMonitor& monitor_;
     std::vector<CheckOutcome> outcomes_;
     std::vector<Job> jobs_;
     Levels levels_;
 
-    std::size_t index_of(const Job& job) const { return job.outcome->trials[job.index]; }
-    const CheckCase& trial_of(const Job& job) const { return trials_[index_of(job)]; }
+    std::size_t index_of(const Job& job) const { return job.outcome->check_cases[job.index]; }
+    const CheckCase& case_of(const Job& job) const { return check_cases_[index_of(job)]; }
 
     void check(const Job& job) {
         monitor_.check();
-        const CheckCase& trial = trial_of(job);
-        CheckBudget budget = trial.subject->limited() && settings_.limited ? *settings_.limited : settings_.budget;
-        if (trial.theory.wrong) budget.stop_when_conclusive = false;  // a fault that is known is looked for
+        const CheckCase& check_case = case_of(job);
+        CheckBudget budget = check_case.adapter->limited() && settings_.limited ? *settings_.limited : settings_.budget;
+        if (check_case.theory.wrong) budget.stop_when_conclusive = false;  // a fault that is known is looked for
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {
-            for (int t = 0; t < trial.subject->techniques(); ++t)
-                at.push_back(check_sampler_at(*trial.subject, t, trial.wo,
-                    {trial.light, static_cast<std::uint16_t>(index_of(job)), levels_}, budget, settings_.seed));
+            for (int t = 0; t < check_case.adapter->techniques(); ++t)
+                at.push_back(check_sampler_at(*check_case.adapter, t, check_case.wo,
+                    {check_case.light, static_cast<std::uint16_t>(index_of(job)), levels_}, budget, settings_.seed));
         });
         if (cut) at.clear();
         job.outcome->tails[job.index] = tail_of(at);
-        for (CheckAt& c : at) forget(c, trial.subject->traits().has_pdf);
+        for (CheckAt& c : at) forget(c, check_case.adapter->traits().has_pdf);
         monitor_.advance(1);
     }
 
@@ -178,14 +178,14 @@ private:
     }
 
     void check_whole() {
-        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { look_at_whole(trials_, settings_, o); });
+        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { look_at_whole(check_cases_, settings_, o); });
     }
 
     /// The middle first, then the most grazing one: between them they meet most faults.
     void order() {
         std::ranges::sort(
-            jobs_, {}, [&](const Job& j) { return std::tuple(std::fabs(trial_of(j).theta_deg - 45), index_of(j)); });
-        const auto grazing = std::ranges::find_if(jobs_, [&](const Job& j) { return trial_of(j).theta_deg == 85; });
+            jobs_, {}, [&](const Job& j) { return std::tuple(std::fabs(case_of(j).theta_deg - 45), index_of(j)); });
+        const auto grazing = std::ranges::find_if(jobs_, [&](const Job& j) { return case_of(j).theta_deg == 85; });
         if (grazing != jobs_.end() && grazing > jobs_.begin()) std::rotate(jobs_.begin() + 1, grazing, grazing + 1);
     }
 
@@ -200,12 +200,12 @@ private:
             if (std::ranges::any_of(c.small, not_valid)) return;
             if (std::ranges::any_of(c.findings, [&](const Finding& f) { return not_valid(f.first); })) return;
         }
-        if (at.empty()) at.emplace_back().wo = trial_of(job).wo;
+        if (at.empty()) at.emplace_back().wo = case_of(job).wo;
         at.front().small.push_back(*fault);
     }
 
     bool affords(const Job& job, std::uint64_t dearest) const {
-        const QueryUsage now = trial_of(job).subject->spending();
+        const QueryUsage now = case_of(job).adapter->spending();
         if (now.allowed <= 0 || dearest == 0) return true;
         const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
         return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
@@ -218,11 +218,11 @@ private:
         std::vector<std::optional<SmallFault>> looks(jobs_.size());
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             monitor_.check();
-            const CheckCase& trial = trial_of(jobs_[j]);
+            const CheckCase& check_case = case_of(jobs_[j]);
             const StreamKey key{
                 settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
-            if (trial.subject->can_draw())
-                jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(trial, key); });
+            if (check_case.adapter->can_draw())
+                jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(check_case, key); });
         }
         check_whole();
         std::uint64_t dearest = 0;
@@ -232,11 +232,11 @@ private:
                 monitor_.advance(1);
                 continue;
             }
-            const std::uint64_t before = trial_of(jobs_[j]).subject->spending().answers;
+            const std::uint64_t before = case_of(jobs_[j]).adapter->spending().answers;
             if (affords(jobs_[j], dearest)) check(jobs_[j]);
             else cut = Cut{Cut::Why::too_slow, "no time is left", true}, monitor_.advance(1);
             keep(jobs_[j], looks[j]);
-            dearest = std::max(dearest, trial_of(jobs_[j]).subject->spending().answers - before);
+            dearest = std::max(dearest, case_of(jobs_[j]).adapter->spending().answers - before);
         }
     }
 };
@@ -244,8 +244,8 @@ private:
 }  // namespace
 
 std::vector<CheckOutcome> check_samplers(
-    std::span<const CheckCase> trials, const CheckSettings& settings, ProgressMonitor& monitor) {
-    return Call(trials, settings, monitor).run();
+    std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor) {
+    return Call(check_cases, settings, monitor).run();
 }
 
 }  // namespace crescent::check

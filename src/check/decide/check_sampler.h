@@ -36,19 +36,19 @@ struct Cut {
 /// Of one sampler.
 struct CheckOutcome {
     std::string arm;
-    std::vector<std::size_t> trials;       // indices into the call's trials
-    std::vector<std::vector<CheckAt>> at;  // by trial and technique; cut short: what the first draws showed
-    std::vector<WeightTail> tails;         // by trial
+    std::vector<std::size_t> check_cases;  // indices into the call's cases
+    std::vector<std::vector<CheckAt>> at;  // by case and technique; cut short: what the first draws showed
+    std::vector<WeightTail> tails;         // by case
     std::vector<SmallFault> small;         // of the sampler as a whole
     std::uint64_t evaluations = 0;
-    std::vector<std::optional<Cut>> cut;  // by trial
+    std::vector<std::optional<Cut>> cut;  // by case
     std::optional<Cut> whole_cut{};       // of what belongs to no w_o
     bool wrong() const;
 };
 
-/// CheckCases of one or of several samplers; those of one name and subject belong together. Baselines are left out.
-/// Faults of a sampler from outside (subjects/faults.h) are kept with the w_o at which they occurred.
+/// CheckCases of one or of several samplers; those of one name and sampler belong together. Baselines are left out.
+/// Faults of a sampler from outside (samplers/faults.h) are kept with the w_o at which they occurred.
 std::vector<CheckOutcome> check_samplers(
-    std::span<const CheckCase> trials, const CheckSettings& settings, ProgressMonitor& monitor);
+    std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor);
 
 }  // namespace crescent::check

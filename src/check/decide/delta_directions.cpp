@@ -36,14 +36,14 @@ bool is_refracted(Vec3d wo, Vec3d wi, Vec3d eta, bool inverted) {
 std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, const StreamKey& key) {
     const std::vector<PrimarySample> u = first_numbers(key, n, source.traits);
     std::vector<Draw> out(n);
-    source.subject.sample(source.technique, wo, u, out);
+    source.adapter.sample(source.technique, wo, u, out);
     return out;
 }
 
 /// A flat boundary sends a turned w_o to where it sends w_o, turned.
 bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
     constexpr double angle = 2.4;  // radians: no symmetry of a pattern
-    if (!source.subject.can_draw()) return false;
+    if (!source.adapter.can_draw()) return false;
     const math::SinCos by = math::sincos(angle);
     const auto turned = [&](Vec3d w) { return Vec3d{by.cos * w.x - by.sin * w.y, by.sin * w.x + by.cos * w.y, w.z}; };
     const std::vector<Draw> there = drawn_at(source, turned(source.wo), 256, key);
@@ -135,9 +135,9 @@ std::optional<SmallFault> power_back(
 
 std::optional<SmallFault> way_back(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
     const Traits& traits = source.traits;
-    if (!traits.reciprocal || traits.wo == Traits::Asked::none || !source.subject.can_draw()) return {};
+    if (!traits.reciprocal || traits.wo == Traits::WoDomain::none || !source.adapter.can_draw()) return {};
     for (const DeltaPart& p : parts) {
-        if (p.wi.z < grazing_cosine && (traits.wo != Traits::Asked::both || p.wi.z > -grazing_cosine)) continue;
+        if (p.wi.z < grazing_cosine && (traits.wo != Traits::WoDomain::both || p.wi.z > -grazing_cosine)) continue;
         // Of the same kind: mirrored as w_o is to w_i, or passed on.
         const Vec3d wi = normalize(p.wi);
         std::vector<Draw> back = drawn_at(source, wi, 512, key);

@@ -101,7 +101,7 @@ struct Boundary : SamplerAdapter {
     std::string name() const override { return "boundary"; }
     Traits traits() const override {
         Traits t;
-        t.numbers = 3, t.delta = true, t.eta = 1.5, t.wo = Traits::Asked::both;
+        t.numbers = 3, t.delta = true, t.eta = 1.5, t.wo = Traits::WoDomain::both;
         return t;
     }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {

@@ -24,11 +24,11 @@ namespace {
 /// Draws of a baseline. Of a program each costs an evaluation of f, and a variance to 3 % ranks well enough.
 constexpr std::uint32_t baseline_draws = 1u << 15, baseline_draws_of_program = 1u << 12;
 
-std::vector<double> baseline_weights(const CheckCase& trial, const StreamKey& key) {
+std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKey& key) {
     std::vector<double> out;
-    const std::uint32_t n = trial.subject->limited() ? baseline_draws_of_program : baseline_draws;
-    for (int t = 0; t < trial.subject->techniques(); ++t) {
-        Source source(*trial.subject, t, trial.wo, trial.light);
+    const std::uint32_t n = check_case.adapter->limited() ? baseline_draws_of_program : baseline_draws;
+    for (int t = 0; t < check_case.adapter->techniques(); ++t) {
+        Source source(*check_case.adapter, t, check_case.wo, check_case.light);
         StreamKey draws = key;
         draws.technique = static_cast<std::uint8_t>(t);
         std::vector<double> x;
@@ -61,11 +61,11 @@ void note_variance(const WeightTail& t, Efficiency& e) {
     e.heavy = t.heavy() || t.open() || t.has_unseen();
 }
 
-Efficiency variance_of_baseline(const CheckCase& trial, std::size_t index, const StreamKey& key) {
+Efficiency variance_of_baseline(const CheckCase& check_case, std::size_t index, const StreamKey& key) {
     Efficiency e;
-    e.trial = index;
+    e.check_case = index;
     try {
-        note_variance(tail_of_weights(baseline_weights(trial, key)), e);
+        note_variance(tail_of_weights(baseline_weights(check_case, key)), e);
     } catch (const SamplerTimeout&) {
     } catch (const SamplerError& fault) { e.fault = fault.what(); }
     return e;
@@ -73,25 +73,25 @@ Efficiency variance_of_baseline(const CheckCase& trial, std::size_t index, const
 
 }  // namespace
 
-std::vector<Efficiency> variances_of(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
+std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const CheckSettings& settings, const ProgressMonitor& monitor) {
-    std::vector<Efficiency> out(trials.size());
+    std::vector<Efficiency> out(check_cases.size());
     std::vector<std::size_t> baselines;
     for (const CheckOutcome& o : outcomes)
-        for (std::size_t k = 0; k < o.trials.size(); ++k) {
-            Efficiency& e = out[o.trials[k]];
-            e.trial = o.trials[k];
+        for (std::size_t k = 0; k < o.check_cases.size(); ++k) {
+            Efficiency& e = out[o.check_cases[k]];
+            e.check_case = o.check_cases[k];
             note_variance(o.tails[k], e);
         }
-    for (std::size_t i = 0; i < trials.size(); ++i)
-        if (trials[i].baseline) baselines.push_back(i);
+    for (std::size_t i = 0; i < check_cases.size(); ++i)
+        if (check_cases[i].baseline) baselines.push_back(i);
     const auto run = [&](std::size_t b) {
         monitor.check();
         const std::size_t i = baselines[b];
         const StreamKey key{settings.seed, static_cast<std::uint16_t>(i), 0, 1, Purpose::light, 3};
-        out[i] = variance_of_baseline(trials[i], i, key);
+        out[i] = variance_of_baseline(check_cases[i], i, key);
     };
-    const bool serial = std::ranges::any_of(trials, [](const CheckCase& t) { return t.subject->serial(); });
+    const bool serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
     for_each_index(serial, baselines.size(), run);
     return out;
 }
@@ -100,11 +100,11 @@ namespace {
 
 /// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
 std::optional<double> time_once(
-    const CheckCase& trial, std::span<const PrimarySample> u, std::vector<Draw>& draws, Efficiency& e) {
+    const CheckCase& check_case, std::span<const PrimarySample> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
         const auto start = std::chrono::steady_clock::now();
-        for (int t = 0; t < trial.subject->techniques(); ++t)
-            trial.subject->sample(t, trial.wo, u, std::span(draws).first(u.size()));
+        for (int t = 0; t < check_case.adapter->techniques(); ++t)
+            check_case.adapter->sample(t, check_case.wo, u, std::span(draws).first(u.size()));
         return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() /
             static_cast<double>(u.size());
     } catch (const SamplerTimeout&) {
@@ -114,8 +114,8 @@ std::optional<double> time_once(
 
 }  // namespace
 
-void measure_costs(
-    std::span<const CheckCase> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor) {
+void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> all,
+    const ProgressMonitor& monitor) {
     constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
     std::vector<PrimarySample> u(most);
     const StreamKey key{seed, 0, 0, 1, Purpose::light, 4};
@@ -125,10 +125,10 @@ void measure_costs(
     for (std::size_t turn = 0; turn < turns; ++turn)
         for (std::size_t i = 0; i < all.size(); ++i) {
             monitor.check();
-            const CheckCase& trial = trials[all[i].trial];
-            if (!all[i].weighed || times[i].size() < turn || !trial.subject->can_draw()) continue;
-            const std::size_t n = trial.subject->limited() ? of_a_program : most;
-            if (const std::optional<double> ns = time_once(trial, std::span(u).first(n), draws, all[i]))
+            const CheckCase& check_case = check_cases[all[i].check_case];
+            if (!all[i].weighed || times[i].size() < turn || !check_case.adapter->can_draw()) continue;
+            const std::size_t n = check_case.adapter->limited() ? of_a_program : most;
+            if (const std::optional<double> ns = time_once(check_case, std::span(u).first(n), draws, all[i]))
                 times[i].push_back(*ns);
         }
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -153,33 +153,34 @@ struct Ranks {
     std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
 };
 
-Ranks ranks_of(const Efficiency& e, std::span<const CheckCase> trials, std::span<const Efficiency* const> company) {
+Ranks ranks_of(
+    const Efficiency& e, std::span<const CheckCase> check_cases, std::span<const Efficiency* const> company) {
     Ranks out;
     for (const Efficiency* o : company) {
-        if (o->trial == e.trial || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
+        if (o->check_case == e.check_case || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
         const bool level = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
-        (level ? out.level : e.high() < o->low() ? out.better : out.worse).push_back(trials[o->trial].arm);
+        (level ? out.level : e.high() < o->low() ? out.better : out.worse).push_back(check_cases[o->check_case].arm);
     }
     return out;
 }
 
-std::string say_ranks(const Efficiency& e, const Ranks& ranks) {
-    std::string say = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
+std::string ranks_text(const Efficiency& e, const Ranks& ranks) {
+    std::string message = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
     if (!ranks.better.empty())
-        say += fmt::format("; variance x time is lower than that of {}", fmt::join(ranks.better, ", "));
-    if (!ranks.worse.empty()) say += fmt::format("; higher than that of {}", fmt::join(ranks.worse, ", "));
+        message += fmt::format("; variance x time is lower than that of {}", fmt::join(ranks.better, ", "));
+    if (!ranks.worse.empty()) message += fmt::format("; higher than that of {}", fmt::join(ranks.worse, ", "));
     if (!ranks.level.empty())
-        say +=
+        message +=
             fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(ranks.level, ", "));
-    return say + ".";
+    return message + ".";
 }
 
-void judge_one_efficiency(
-    const Efficiency& e, std::span<const CheckCase> trials, std::span<const Efficiency* const> company, Verdict& v) {
+void test_one_efficiency(const Efficiency& e, std::span<const CheckCase> check_cases,
+    std::span<const Efficiency* const> company, Verdict& v) {
     if (!e.fault.empty()) {
         v.state = State::error;
         v.evidence["first_fault"] = e.fault;
-        v.say = "The sampler broke off: " + e.fault + ".";
+        v.message = "The sampler broke off: " + e.fault + ".";
         return;
     }
     v.evidence["variance"] = e.variance;
@@ -187,32 +188,34 @@ void judge_one_efficiency(
     v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
     if (e.heavy) {
         v.state = State::inconclusive;
-        v.say = "Heavy tail: the variance is not known, so it is not ranked.";
+        v.message = "Heavy tail: the variance is not known, so it is not ranked.";
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
     }
     v.state = State::right;
-    v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
-    if (e.nanoseconds > 0) v.say_timed = say_ranks(e, ranks_of(e, trials, company));
+    v.message = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
+    if (e.nanoseconds > 0) v.timed_message = ranks_text(e, ranks_of(e, check_cases, company));
 }
 
 }  // namespace
 
-std::vector<Verdict> judge_efficiency(std::span<const CheckCase> trials, std::span<const Efficiency> all) {
-    std::vector<Verdict> out(trials.size());
+std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> all) {
+    std::vector<Verdict> out(check_cases.size());
     std::map<std::string, std::vector<const Efficiency*>> companies;
     for (const Efficiency& e : all)
-        if (e.weighed) companies[company_of(trials[e.trial])].push_back(&e);
-    std::size_t judged = 0;
+        if (e.weighed) companies[company_of(check_cases[e.check_case])].push_back(&e);
+    std::size_t checked = 0;
     for (const Efficiency& e : all) {
-        if (!trials[e.trial].baseline) judged = e.trial;
-        Verdict& v = out[e.trial];
-        v.arm = trials[e.trial].arm, v.trial = trials[e.trial].text(), v.name = "efficiency";
+        if (!check_cases[e.check_case].baseline) checked = e.check_case;
+        Verdict& v = out[e.check_case];
+        v.arm = check_cases[e.check_case].arm, v.check_case = check_cases[e.check_case].text(), v.name = "efficiency";
         v.state = State::skipped;
-        v.say = "There are no weights to take a variance of.";
-        if (e.weighed || !e.fault.empty()) judge_one_efficiency(e, trials, companies[company_of(trials[e.trial])], v);
+        v.message = "There are no weights to take a variance of.";
+        if (e.weighed || !e.fault.empty())
+            test_one_efficiency(e, check_cases, companies[company_of(check_cases[e.check_case])], v);
         // A program that broke off while its f was evaluated for a baseline: said where it would be ranked.
-        if (trials[e.trial].baseline && !e.fault.empty()) out[judged].state = State::error, out[judged].say = v.say;
+        if (check_cases[e.check_case].baseline && !e.fault.empty())
+            out[checked].state = State::error, out[checked].message = v.message;
     }
     return out;
 }

@@ -12,9 +12,9 @@
 
 namespace crescent::check {
 
-/// Of one trial, with what it is known to.
+/// Of one case, with what it is known to.
 struct Efficiency {
-    std::size_t trial = 0;
+    std::size_t check_case = 0;
     double variance = 0, relative_se = 0;  // of X; relative standard error of the variance
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error; 0: not measured
     bool weighed = false;                  // there are weights
@@ -26,13 +26,13 @@ struct Efficiency {
     double high() const;
 };
 
-/// Variances of all trials: of what the check has drawn, or, of a baseline, of a few draws of its own.
-std::vector<Efficiency> variances_of(std::span<const CheckCase> trials, std::span<const CheckOutcome> outcomes,
+/// Variances of all cases: of what the check has drawn, or, of a baseline, of a few draws of its own.
+std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const CheckSettings& settings, const ProgressMonitor& monitor);
 /// The time of one sample of each, by one thread, all in turn: a slow moment of the machine falls on all alike.
-void measure_costs(
-    std::span<const CheckCase> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor);
-/// A verdict by trial. Two samplers whose intervals overlap are not ranked.
-std::vector<Verdict> judge_efficiency(std::span<const CheckCase> trials, std::span<const Efficiency> all);
+void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> all,
+    const ProgressMonitor& monitor);
+/// A verdict by case. Two samplers whose intervals overlap are not ranked.
+std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> all);
 
 }  // namespace crescent::check

@@ -16,9 +16,9 @@ namespace crescent::check {
 
 namespace {
 
-/// Standard errors beyond what a test asks for: P(Z < 2.05) = 0.98. The least size of several tests is stated, each known
-/// to the 13 % that 32 replicates know their standard deviation to. Measured by planting faults of these sizes: the
-/// least of them is found with `stated_power` only if each by itself is found with 0.98.
+/// Standard errors beyond what a test asks for: P(Z < 2.05) = 0.98. The least size of several tests is stated, each
+/// known to the 13 % that 32 replicates know their standard deviation to. Measured by planting faults of these sizes:
+/// the least of them is found with `stated_power` only if each by itself is found with 0.98.
 constexpr double power_of_each = 2.05;
 
 /// The difference d for which Bennett's exponent is z2: Bernstein's bound, which is above it, and Newton's steps.
@@ -47,7 +47,7 @@ public:
     }
     /// The quantile of Student's t, for many tests of one number of degrees of freedom.
     static double quantile(double freedom, double level) {
-        return stats::student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
+        return statistics::student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
     }
     static Needed by_student(double floor, Variances v, double quantile, double freedom) {
         return {floor, v.all(), 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
@@ -120,17 +120,17 @@ struct NodeTest {
 
 /// The nodes that are tested, by both kinds of draws.
 std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, double level) {
-    std::vector<Answer> asked;
-    ask_nodes(e, [&](const Answer& a) {
-        if (a.family == Family::node || a.family == Family::node_sets) asked.push_back(a);
+    std::vector<Answer> tested;
+    test_nodes(e, [&](const Answer& a) {
+        if (a.family == Family::node || a.family == Family::node_sets) tested.push_back(a);
     });
     const auto by_sets = static_cast<double>(
-        std::ranges::count_if(asked, [](const Answer& a) { return a.family == Family::node_sets; }));
-    const double level_of_one = level / std::max(static_cast<double>(asked.size()) - by_sets, 1.0);
+        std::ranges::count_if(tested, [](const Answer& a) { return a.family == Family::node_sets; }));
+    const double level_of_one = level / std::max(static_cast<double>(tested.size()) - by_sets, 1.0);
     const double t = Needed::quantile(replicate_sets - 1, level / std::max(by_sets, 1.0));
     std::vector<NodeTest> out;
-    out.reserve(asked.size());
-    for (const Answer& a : asked) {
+    out.reserve(tested.size());
+    for (const Answer& a : tested) {
         const auto i = static_cast<std::size_t>(a.member);
         const NodeSplit s = split_of(e, sums, i);
         if (a.family == Family::node)
@@ -204,7 +204,7 @@ double noncentrality(double degrees, double level) {
     double low = 0, high = degrees + 1000;
     for (int k = 0; k < 50; ++k) {
         const double middle = (low + high) / 2;
-        (stats::chi_squared_tail(degrees, middle) > level ? low : high) = middle;
+        (statistics::chi_squared_tail(degrees, middle) > level ? low : high) = middle;
     }
     return high - degrees;
 }
@@ -213,8 +213,7 @@ double noncentrality(double degrees, double level) {
 /// nodes of one depth together do.
 class Caps {
 public:
-    Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests,
-        double level)
+    Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests, double level)
         : e_(e),
           sums_(sums),
           parent_(sums.size(), -1),
@@ -451,8 +450,8 @@ std::vector<double> ratios_about(const std::vector<Turned::Effect>& one, const s
     std::vector<double> out;
     for (std::size_t t = 0; t < one.size(); ++t) {
         const double errors = t < whole ? of_one : of_largest;
-        const double most = std::max(low_end(one[t].moved, other[t].moved, errors),
-            low_end(one[t].weighted, other[t].weighted, errors));
+        const double most = std::max(
+            low_end(one[t].moved, other[t].moved, errors), low_end(one[t].weighted, other[t].weighted, errors));
         out.push_back(std::max(most, 0.0) / needed[t]);
     }
     return out;

@@ -81,7 +81,7 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
 }
 
 std::optional<SmallFault> corners_of_u(Source& source) {
-    if (!source.subject.can_draw()) return {};
+    if (!source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = corner_numbers(source.traits.numbers);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
@@ -109,7 +109,7 @@ template <class Call> void in_blocks(const Call& call) {
 }  // namespace
 
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
-    if (source.traits.own_random || !source.subject.can_draw()) return {};
+    if (source.traits.own_random || !source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
     std::vector<Draw> together(u.size()), again(u.size()), backwards(u.size());
     source.draw(u, together);
@@ -128,7 +128,7 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
 }
 
 std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key) {
-    if (!source.subject.can_draw()) return {};
+    if (!source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
@@ -176,7 +176,7 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
 
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
     std::vector<int> out;
-    if (source.traits.own_random || !source.subject.can_draw()) return out;
+    if (source.traits.own_random || !source.adapter.can_draw()) return out;
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
     std::vector<Draw> draws(u.size()), others(u.size());
     source.draw(u, draws);
@@ -193,7 +193,7 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
 
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more numbers than two, one may choose a texel and others the place in it.
-    if (source.traits.numbers > 2 || source.traits.own_random || !source.subject.can_draw()) return {};
+    if (source.traits.numbers > 2 || source.traits.own_random || !source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
     const auto draws_beside = [&](int k, double by) {
         std::vector<PrimarySample> v = u;

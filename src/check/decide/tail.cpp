@@ -26,18 +26,18 @@ bool is_of_few_values(std::span<const double> falling) {
     return values <= few_values;
 }
 
-std::optional<stats::Tail> fit_of(std::span<const double> x) {
-    const std::size_t length = std::min(stats::tail_length(x.size()) + 1, x.size());
+std::optional<statistics::Tail> fit_of(std::span<const double> x) {
+    const std::size_t length = std::min(statistics::tail_length(x.size()) + 1, x.size());
     std::vector<double> largest(x.begin(), x.end());
     std::partial_sort(
         largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
     const std::span<const double> falling = std::span<const double>(largest).first(length);
-    const std::optional<stats::Tail> tail = stats::fit_tail(falling);
-    const auto may_be_heavy = [](const stats::Tail& t) { return t.k + 2 * t.se >= heavy_index; };
+    const std::optional<statistics::Tail> tail = statistics::fit_tail(falling);
+    const auto may_be_heavy = [](const statistics::Tail& t) { return t.k + 2 * t.se >= heavy_index; };
     if (!tail || !may_be_heavy(*tail)) return tail;
     if (times_of_largest(falling) >= bound_drawn || is_of_few_values(falling)) return {};
     if (length <= deeper_part * deeper_least) return tail;
-    const std::optional<stats::Tail> upper = stats::fit_tail(falling.first(1 + (length - 1) / deeper_part));
+    const std::optional<statistics::Tail> upper = statistics::fit_tail(falling.first(1 + (length - 1) / deeper_part));
     return upper && !may_be_heavy(*upper) ? upper : tail;
 }
 
@@ -65,30 +65,30 @@ void note_unseen(std::vector<WeighedPoint> unseen, WeightTail& to) {
         light += unseen[i].light, to.half_chance += unseen[i].chance;
 }
 
-double standard_error(const stats::Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
+double standard_error(const statistics::Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
 
 /// Draws whose mean has a standard error of 1 %.
-double draws_for_1_percent(const stats::Spread& s) {
+double draws_for_1_percent(const statistics::Spread& s) {
     return s.mean > 0 ? std::max(s.sd * s.sd / (s.mean * s.mean) / 1e-4, 1.0) : 1;
 }
 
 /// The fit to the largest weights, or that there is nothing to fit.
-void tell_fit(const WeightTail& t, const CheckCase& trial, Verdict& v) {
+void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) {
     if (!t.fit) {
         v.evidence["times_largest"] = t.times_largest;
-        v.say = t.times_largest < bound_drawn || static_cast<double>(t.times_largest) == t.spread.n
+        v.message = t.times_largest < bound_drawn || static_cast<double>(t.times_largest) == t.spread.n
             ? "The largest weights are alike: there is no tail. "
             : fmt::format("The largest weight was drawn {} times: there is no tail. ", t.times_largest);
         return;
     }
     v.evidence["k"] = t.fit->k, v.evidence["se"] = t.fit->se, v.evidence["exceedances"] = t.fit->exceedances;
-    v.say =
+    v.message =
         fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", t.fit->k, t.fit->se, t.fit->exceedances);
-    if (trial.theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *trial.theory.tail_k);
-    v.say += ". ";
+    if (check_case.theory.tail_k) v.message += fmt::format(" (theory: {:.3f})", *check_case.theory.tail_k);
+    v.message += ". ";
 }
 
-void tell_unseen(const WeightTail& t, Verdict& v) {
+void describe_unseen(const WeightTail& t, Verdict& v) {
     const double share = t.unseen / t.due;
     v.state = State::inconclusive;
     v.evidence["unmet_share"] = share;
@@ -96,7 +96,7 @@ void tell_unseen(const WeightTail& t, Verdict& v) {
     v.evidence["unmet_chance_of_a_draw"] = t.unseen_chance;
     v.evidence["largest_drawn_weight"] = t.spread.largest;
     v.evidence["unmet_half_chance"] = t.half_chance;
-    v.say += fmt::format(
+    v.message += fmt::format(
         "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
         "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
         100 * share, 196 * t.unseen_error / t.due, t.spread.n, t.spread.largest, t.half_chance);
@@ -141,7 +141,7 @@ std::vector<double> weights_of(std::span<const CheckAt> techniques) {
 WeightTail tail_of_weights(std::span<const double> x) {
     WeightTail out;
     out.weighed = !x.empty();
-    out.spread = stats::spread(x);
+    out.spread = statistics::spread(x);
     double fourth = 0;
     for (double v : x) fourth += sqr(sqr(v - out.spread.mean)) / out.spread.n;
     const double variance = sqr(out.spread.sd);
@@ -162,43 +162,43 @@ WeightTail tail_of(std::span<const CheckAt> techniques) {
     return out;
 }
 
-void judge_tail(const CheckCase& trial, const WeightTail& t, Verdict& v) {
+void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
     if (!t.weighed) {
         v.state = State::skipped;
-        v.say = "There are no weights f L cos / p.";
+        v.message = "There are no weights f L cos / p.";
         return;
     }
     const double mean = t.spread.mean;
     v.evidence["draws"] = t.spread.n;
     v.evidence["relative_sd"] = mean > 0 ? t.spread.sd / mean : 0;
     v.evidence["largest_over_mean"] = mean > 0 ? t.spread.largest / mean : 0;
-    if (trial.theory.bounded) v.evidence["theory"] = "bounded";
-    if (trial.theory.tail_k) v.evidence["theory_k"] = *trial.theory.tail_k;
-    tell_fit(t, trial, v);
+    if (check_case.theory.bounded) v.evidence["theory"] = "bounded";
+    if (check_case.theory.tail_k) v.evidence["theory_k"] = *check_case.theory.tail_k;
+    describe_fit(t, check_case, v);
     if (t.has_unseen()) {
         v.evidence["samples_for_1_percent"] = "not known";
-        tell_unseen(t, v);
+        describe_unseen(t, v);
     } else if (t.heavy()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
-        v.say += "Heavy tail: the variance is infinite or looks so, and no interval of the mean means anything.";
+        v.message += "Heavy tail: the variance is infinite or looks so, and no interval of the mean means anything.";
         v.next.kind = NextStep::Kind::heavier_pdf;
     } else if (t.open()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
-        v.say += "Heavy tail or not: the interval of k contains 1/2, from where on the variance is infinite.";
+        v.message += "Heavy tail or not: the interval of k contains 1/2, from where on the variance is infinite.";
         // The tail of n draws has 3 sqrt(n): the error of k falls with the fourth root of n.
         const double tails = 4 * t.fit->se * t.fit->se / std::max(sqr(t.fit->k - heavy_index), 1e-4);
         v.next = {NextStep::Kind::more_draws, std::max(sqr(tails), 2.0)};
     } else {
         const double draws = draws_for_1_percent(t.spread);
         v.evidence["samples_for_1_percent"] = draws;
-        if (t.bounded) v.say += fmt::format("The largest weight is {:.3g} means. ", t.spread.largest / mean);
-        v.say += fmt::format("The variance is finite: about {:.3g} samples give 1 %.", draws);
+        if (t.bounded) v.message += fmt::format("The largest weight is {:.3g} means. ", t.spread.largest / mean);
+        v.message += fmt::format("The variance is finite: about {:.3g} samples give 1 %.", draws);
     }
 }
 
-void judge_plain_mean(const WeightTail& t, Verdict& v) {
+void test_plain_mean(const WeightTail& t, Verdict& v) {
     if (!t.weighed) return;
     v.evidence["draws"] = t.spread.n;
     v.evidence["mean"] = t.spread.mean;
@@ -206,12 +206,12 @@ void judge_plain_mean(const WeightTail& t, Verdict& v) {
     if (t.due > 0) v.evidence["quadrature"] = t.due;
     if (v.state != State::right) return;
     if (t.has_unseen()) {
-        v.say = fmt::format(
+        v.message = fmt::format(
             "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}. ", t.spread.n, t.spread.mean, t.due);
-        tell_unseen(t, v);
+        describe_unseen(t, v);
     } else if (t.heavy()) {
         v.state = State::inconclusive;
-        v.say = fmt::format(
+        v.message = fmt::format(
             "Heavy tail: k-hat = {:.3f} +- {:.3f}. Weights below the usual one agree with the integral; the plain mean "
             "of all, {:.6g}, has no interval.",
             t.fit->k, t.fit->se, t.spread.mean);

@@ -17,9 +17,9 @@ namespace crescent::check {
 struct WeightTail {
     bool weighed = false;  // every draw has a weight
     bool whole = false;    // some draws go below the surface
-    stats::Spread spread;
+    statistics::Spread spread;
     double variance_error = 0;       // relative standard error of the variance
-    std::optional<stats::Tail> fit;  // none where the largest weights do not spread
+    std::optional<statistics::Tail> fit;  // none where the largest weights do not spread
     std::size_t times_largest = 0;   // draws of the largest weight
     bool bounded = false;            // the largest weight is no more than a few means
     double due = 0;                  // integral of f L cos where p > 0, by the points; with that of delta parts
@@ -41,9 +41,9 @@ WeightTail tail_of_weights(std::span<const double> x);
 WeightTail tail_of(std::span<const CheckAt> techniques);
 
 /// The verdict `tail`: right, or inconclusive with what would settle it, or skipped.
-void judge_tail(const CheckCase& trial, const WeightTail& t, Verdict& v);
+void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v);
 /// The plain mean of the weights, into the evidence of `mean`, which stays open where they have no variance: what was
 /// tested is right, but no interval of the plain mean means anything.
-void judge_plain_mean(const WeightTail& t, Verdict& v);
+void test_plain_mean(const WeightTail& t, Verdict& v);
 
 }  // namespace crescent::check

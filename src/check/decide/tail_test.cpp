@@ -37,20 +37,20 @@ struct PowerLobe : SamplerAdapter {
     }
 };
 
-struct JudgedTail {
+struct CheckedTail {
     Verdict tail, mean;
     WeightTail of;
 };
-JudgedTail tail_at(const PowerLobe& sampler) {
+CheckedTail tail_at(const PowerLobe& sampler) {
     CheckCase t;
-    t.wo = {0, 0, 1}, t.subject = std::make_shared<PowerLobe>(sampler);
-    const CheckAt c = check_sampler_at(*t.subject, 0, t.wo, {}, CheckBudget::limited(), 1);
+    t.wo = {0, 0, 1}, t.adapter = std::make_shared<PowerLobe>(sampler);
+    const CheckAt c = check_sampler_at(*t.adapter, 0, t.wo, {}, CheckBudget::limited(), 1);
     for (const Finding& f : c.findings) ADD_FAILURE() << info(f.first.family).name << f.first.difference;
     for (const SmallFault& f : c.small) ADD_FAILURE() << f.what << f.size;
-    JudgedTail out;
+    CheckedTail out;
     out.of = tail_of({&c, 1});
-    judge_tail(t, out.of, out.tail);
-    judge_plain_mean(out.of, out.mean);
+    test_tail(t, out.of, out.tail);
+    test_plain_mean(out.of, out.mean);
     return out;
 }
 
@@ -58,18 +58,18 @@ TEST(TailOfWeights, HasTheIndexOfTheory) {
     for (double s : {2.0, 8.0, 32.0}) {
         PowerLobe lobe;
         lobe.s = s;
-        const JudgedTail t = tail_at(lobe);
+        const CheckedTail t = tail_at(lobe);
         ASSERT_TRUE(t.of.fit) << s;
         const double k = (s - 1) / (s + 1);
         EXPECT_NEAR(t.of.fit->k, k, 3 * t.of.fit->se) << s;
-        EXPECT_EQ(t.tail.state, k < 0.5 ? State::right : State::inconclusive) << s << t.tail.say;
-        EXPECT_EQ(t.mean.state, k < 0.5 ? State::right : State::inconclusive) << s << t.mean.say;
+        EXPECT_EQ(t.tail.state, k < 0.5 ? State::right : State::inconclusive) << s << t.tail.message;
+        EXPECT_EQ(t.mean.state, k < 0.5 ? State::right : State::inconclusive) << s << t.mean.message;
         EXPECT_EQ(t.tail.next.kind == NextStep::Kind::none, k < 0.5);
     }
 }
 
 TEST(TailOfWeights, IsRightWhereWeightsAreAlike) {
-    const JudgedTail t = tail_at({});
+    const CheckedTail t = tail_at({});
     EXPECT_EQ(t.tail.state, State::right);
     EXPECT_FALSE(t.of.has_unseen());
     EXPECT_NEAR(t.tail.evidence["samples_for_1_percent"].get<double>(), 1, 1e-9);
@@ -90,13 +90,13 @@ TEST(TailOfWeights, TellsThePlainMeanAndItsError) {
 TEST(TailOfWeights, ThatNoDrawMetIsSeenByThePoints) {
     PowerLobe lobe;
     lobe.s = 1e4, lobe.share = 1e-6;
-    const JudgedTail t = tail_at(lobe);
+    const CheckedTail t = tail_at(lobe);
     EXPECT_TRUE(t.of.has_unseen());
     EXPECT_EQ(t.tail.state, State::inconclusive);
     EXPECT_EQ(t.mean.state, State::inconclusive);
     EXPECT_GT(t.tail.evidence["unmet_share"].get<double>(), 0.9);
     EXPECT_NEAR(t.tail.evidence["unmet_half_chance"].get<double>(), 5e-7, 2e-7);
-    EXPECT_NE(t.tail.say.find("Heavy tail that no draw met"), std::string::npos);
+    EXPECT_NE(t.tail.message.find("Heavy tail that no draw met"), std::string::npos);
     EXPECT_EQ(t.tail.next.kind, NextStep::Kind::heavier_pdf);  // 120 times as many draws would do
 }
 

@@ -12,7 +12,7 @@ namespace crescent::check {
 
 namespace {
 
-bool answers_for(const Traits& traits, Vec3d wo) { return traits.wo != Traits::Asked::upper || wo.z > 0; }
+bool answers_for(const Traits& traits, Vec3d wo) { return traits.wo != Traits::WoDomain::upper || wo.z > 0; }
 
 /// Some u at each special w_o: the middle, and spread over the cube.
 std::vector<PrimarySample> few_numbers(int count) {
@@ -54,18 +54,18 @@ std::vector<Vec3d> special_directions() {
 }
 
 std::optional<SmallFault> special_places(
-    const SamplerAdapter& subject, int technique, std::span<const Vec3d> ordinary) {
-    if (!subject.can_draw()) return {};
-    const Traits traits = subject.traits();
+    const SamplerAdapter& adapter, int technique, std::span<const Vec3d> ordinary) {
+    if (!adapter.can_draw()) return {};
+    const Traits traits = adapter.traits();
     const std::vector<Vec3d> special = special_directions();
     const std::vector<PrimarySample> u = few_numbers(traits.numbers);
     SmallFault out{Family::corners};
     std::vector<Draw> draws(u.size());
     std::vector<Pair> pairs;
     for (Vec3d wo : special) {
-        if (!answers_for(traits, wo) || traits.wo == Traits::Asked::none) continue;
+        if (!answers_for(traits, wo) || traits.wo == Traits::WoDomain::none) continue;
         std::fill(draws.begin(), draws.end(), Draw{});
-        subject.sample(technique, wo, u, draws);
+        adapter.sample(technique, wo, u, draws);
         out.of += static_cast<double>(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             if (const auto fault = fault_of(draws[i])) note(out, u[i], draws[i], 0, *fault, wo);
@@ -75,8 +75,8 @@ std::optional<SmallFault> special_places(
     for (Vec3d wo : ordinary)
         for (Vec3d wi : special) pairs.push_back({wo, wi});
     std::vector<double> p(pairs.size()), f(pairs.size());
-    if (traits.has_pdf) subject.pdf(technique, pairs, p);
-    if (subject.has_f()) subject.f(pairs, f);
+    if (traits.has_pdf) adapter.pdf(technique, pairs, p);
+    if (adapter.has_f()) adapter.f(pairs, f);
     out.of += static_cast<double>(pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {  // a density may have a pole in a single direction
         Draw at;
@@ -90,13 +90,13 @@ std::optional<SmallFault> special_places(
 namespace {
 
 /// f |cos|^k by channel for pairs, k = 1 for phase functions.
-std::vector<Vec3d> f_of(const SamplerAdapter& subject, std::span<const Pair> pairs) {
+std::vector<Vec3d> f_of(const SamplerAdapter& adapter, std::span<const Pair> pairs) {
     std::vector<Vec3d> out(pairs.size());
-    if (subject.traits().channels == 3) {
-        subject.f_channels(pairs, out);
+    if (adapter.traits().channels == 3) {
+        adapter.f_channels(pairs, out);
     } else {
         std::vector<double> y(pairs.size());
-        subject.f(pairs, y);
+        adapter.f(pairs, y);
         for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
     return out;
@@ -116,10 +116,10 @@ bool differ(double a, double b, double tolerance) { return std::fabs(a - b) > to
 
 }  // namespace
 
-std::optional<SmallFault> reciprocity(const SamplerAdapter& subject, const StreamKey& key) {
-    const Traits traits = subject.traits();
-    if (!subject.has_f() || !traits.reciprocal || traits.wo == Traits::Asked::none) return {};
-    const bool both = traits.wo == Traits::Asked::both;
+std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key) {
+    const Traits traits = adapter.traits();
+    if (!adapter.has_f() || !traits.reciprocal || traits.wo == Traits::WoDomain::none) return {};
+    const bool both = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
     const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
     std::vector<Pair> there, back;
@@ -127,7 +127,7 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& subject, const Strea
         const Pair p{direction(both && (i & 1)), direction(both && (i & 2))};
         there.push_back(p), back.push_back({p.wi, p.wo});
     }
-    const std::vector<Vec3d> f = f_of(subject, there), g = f_of(subject, back), again = f_of(subject, there);
+    const std::vector<Vec3d> f = f_of(adapter, there), g = f_of(adapter, back), again = f_of(adapter, there);
     const int channels = traits.channels == 3 ? 3 : 1;
     SmallFault out{Family::reciprocity, 0, 256.0 * channels, 0, {}, "f(a, b) differs from f(b, a)"};
     for (std::size_t i = 0; i < there.size(); ++i)
@@ -142,25 +142,25 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& subject, const Strea
                 note(out, {}, at, a, out.what), out.first.due = b;
         }
     // A pair or two in 256 may be where f ends: a rounding of the half vector.
-    if (out.times <= tolerated_breaks || both_ways(subject, key) == BothWays::phase_function) return {};
+    if (out.times <= tolerated_breaks || both_ways(adapter, key) == BothWays::phase_function) return {};
     return out;
 }
 
-std::optional<SmallFault> mis_weights(const SamplerAdapter& subject, Vec3d wo, const StreamKey& key) {
-    if (subject.techniques() < 2) return {};
-    const Traits traits = subject.traits();
+std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key) {
+    if (adapter.techniques() < 2) return {};
+    const Traits traits = adapter.traits();
     SmallFault out{Family::mis, 0, 0, 0, {}, "weights of the techniques do not sum to 1"};
-    for (int t = 0; t < subject.techniques(); ++t) {
+    for (int t = 0; t < adapter.techniques(); ++t) {
         const std::vector<PrimarySample> u = first_numbers(key, 512, traits);
         std::vector<Draw> draws(u.size());
-        subject.sample(t, wo, u, draws);
+        adapter.sample(t, wo, u, draws);
         std::vector<Pair> at;
         std::vector<std::size_t> of;
         for (std::size_t i = 0; i < u.size(); ++i)
             if (draws[i].pdf > 0 && draws[i].wi.z > 0) at.push_back({wo, draws[i].wi}), of.push_back(i);
         std::vector<double> sum(at.size()), w(at.size());
-        for (int k = 0; k < subject.techniques(); ++k) {
-            subject.mis_weight(k, at, w);
+        for (int k = 0; k < adapter.techniques(); ++k) {
+            adapter.mis_weight(k, at, w);
             for (std::size_t i = 0; i < at.size(); ++i) sum[i] += w[i];
         }
         out.of += static_cast<double>(at.size());

@@ -11,11 +11,11 @@ namespace crescent::check {
 /// Directions on axes and planes, and one rounding of single precision beside them.
 std::vector<Vec3d> special_directions();
 /// Draws at special w_o, pdf and f at special w_i; of one technique.
-std::optional<SmallFault> special_places(const SamplerAdapter& subject, int technique, std::span<const Vec3d> ordinary);
+std::optional<SmallFault> special_places(const SamplerAdapter& adapter, int technique, std::span<const Vec3d> ordinary);
 /// f(a, b) against f(b, a), with eta^2 across the surface.
-std::optional<SmallFault> reciprocity(const SamplerAdapter& subject, const StreamKey& key);
+std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key);
 /// Weights of two techniques that are combined sum to 1 wherever one of them draws.
-std::optional<SmallFault> mis_weights(const SamplerAdapter& subject, Vec3d wo, const StreamKey& key);
+std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key);
 
 /// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and
 /// one over that for importance (Veach 1997, (5.14)).

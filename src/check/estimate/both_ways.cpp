@@ -18,10 +18,10 @@ bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_t
 
 }  // namespace
 
-BothWays both_ways(const SamplerAdapter& subject, StreamKey key) {
-    const Traits traits = subject.traits();
-    if (!subject.has_f() || traits.eta || traits.wo == Traits::Asked::none) return BothWays::not_known;
-    const bool both = traits.wo == Traits::Asked::both;
+BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
+    const Traits traits = adapter.traits();
+    if (!adapter.has_f() || traits.eta || traits.wo == Traits::WoDomain::none) return BothWays::not_known;
+    const bool both = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
     const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
     std::vector<Pair> there, back, through;
@@ -31,7 +31,7 @@ BothWays both_ways(const SamplerAdapter& subject, StreamKey key) {
         through.push_back({direction(false), direction(true)});
     }
     std::vector<double> f(pair_count), g(pair_count), h(pair_count);
-    subject.f(there, f), subject.f(back, g), subject.f(through, h);
+    adapter.f(there, f), adapter.f(back, g), adapter.f(through, h);
     const auto everywhere = [](const std::vector<double>& v) {
         return std::ranges::all_of(v, [](double x) { return x > 0; });
     };

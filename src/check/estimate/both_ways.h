@@ -10,6 +10,6 @@ enum class BothWays { not_known, same_f, phase_function };
 
 /// By f at pairs of directions. A phase function, given as f |cos|, is positive in every direction; of a sampler that
 /// takes w_o above the surface alone, only pairs above are turned round.
-BothWays both_ways(const SamplerAdapter& subject, StreamKey key);
+BothWays both_ways(const SamplerAdapter& adapter, StreamKey key);
 
 }  // namespace crescent::check

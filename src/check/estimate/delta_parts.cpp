@@ -58,7 +58,7 @@ constexpr double beside_normal = 0.01;       // radians; refraction bends less t
 /// Of the first delta part that goes straight on at a w_o at which an index would bend it.
 Vec3d through_holes(Source& source) {
     constexpr std::uint32_t tried = 512;
-    Source slanted(source.subject, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
+    Source slanted(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
     std::vector<PrimarySample> u;
     const StreamKey key{1, 0, 0, 1, Purpose::light, 1};
     for (std::uint32_t i = 0; i < tried; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
@@ -85,7 +85,7 @@ std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& p
             else out[c] += carried * flux_factor(source, p.wi, channel);
         }
     if (std::ranges::all_of(onward, [](double v) { return v == 0; })) return out;
-    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < beside_normal && source.subject.can_draw();
+    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < beside_normal && source.adapter.can_draw();
     const Vec3d slanted = at_normal ? through_holes(source) : Vec3d{};
     for (std::size_t c = 0; c < channels; ++c) {
         const int channel = static_cast<int>(c);

@@ -92,9 +92,9 @@ public:
             for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place(grids[last]);
             p_.resize(w_.size()), f_.assign(w_.size(), {});
             source_.density(w_, p_);
-            if (of_f_) source_.f_cos(w_, f_, source_.subject.has_true_f());
+            if (of_f_) source_.f_cos(w_, f_, source_.adapter.has_true_f());
             mis_.assign(w_.size(), 1);
-            if (of_f_ && source_.subject.techniques() > 1) source_.mis_weights(w_, mis_);
+            if (of_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
             std::size_t at = 0;
             for (std::size_t g = first; g < last; ++g) take(grids[g], at);
             first = last;
@@ -106,7 +106,7 @@ public:
 private:
     Source& source_;
     const Plan& plan_;
-    bool of_f_, tabulated_ = !source_.subject.can_draw();
+    bool of_f_, tabulated_ = !source_.adapter.can_draw();
     Stream stream_;
     Integrals out_;
     std::vector<Vec3d> w_, f_;
@@ -144,7 +144,7 @@ private:
         if (w_.empty()) return;
         p_.resize(w_.size()), f_.assign(w_.size(), {});
         source_.density(w_, p_);
-        source_.f_cos(w_, f_, source_.subject.has_true_f());
+        source_.f_cos(w_, f_, source_.adapter.has_true_f());
         LightIntegrals& l = out_.light;
         for (std::size_t j = 0; j < per_point.size(); ++j) {
             const double a = lost_at(2 * j), b = lost_at(2 * j + 1), k = per_point[j];
@@ -198,7 +198,7 @@ private:
     }
 
     void allow_tabulation(const Values& h, Vec3d w, double k, LeafIntegral& to) {
-        const double unknown = k * source_.subject.tabulation_error(w);
+        const double unknown = k * source_.adapter.tabulation_error(w);
         to.known_to += unknown * h[bridge];
         for (std::size_t q = 0; q < integrands; ++q) out_.known_to[q] += unknown * std::fabs(h[q]);
     }

@@ -101,7 +101,7 @@ std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>
 }  // namespace
 
 std::vector<LocalStep> local_steps(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
-    if (source.traits.own_random || !source.subject.can_draw()) return {};
+    if (source.traits.own_random || !source.adapter.can_draw()) return {};
     const auto first = std::min<std::ptrdiff_t>(draws_to_begin, std::ssize(w));
     const std::vector<LocalStep> some =
         steps_of(source, {u.begin(), u.begin() + first}, {w.begin(), w.begin() + first});

@@ -80,7 +80,7 @@ private:
             for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
         } else {
             source_.density(w_, p_);
-            if (source_.estimates) settle_zeros();
+            if (source_.estimates) skip_zeros();
             compare_pdf(u);
         }
         if (with_f) compare_weights(u, set);
@@ -91,7 +91,7 @@ private:
     }
 
     /// A draw below the surface is not nothing because an estimate of p came out as 0 once, where others there do not.
-    void settle_zeros() {
+    void skip_zeros() {
         bool below = false;
         for (std::size_t k = 0; k < w_.size(); ++k) below = below || (w_[k].z <= 0 && p_[k] > 0);
         for (std::size_t k = 0; below && k < w_.size(); ++k)
@@ -139,7 +139,7 @@ private:
         std::vector<std::size_t> odd;
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
-                    same_number * p_[k] + 2 * source_.subject.tabulation_error(w_[k])))
+                    same_number * p_[k] + 2 * source_.adapter.tabulation_error(w_[k])))
                 odd.push_back(k);
         to_.checks.followed += w_.size(), to_.checks.odd += odd.size();
         if (to_.checks.odd_compared >= most_compared) return;
@@ -175,7 +175,7 @@ private:
 
     /// Weights of the draws: what comes with them, else f cos / pdf; compared with that, and summed for the mean.
     void compare_weights(std::span<const PrimarySample> u, int set) {
-        const bool evaluated = source_.has_f(), truth = evaluated && source_.subject.has_true_f();
+        const bool evaluated = source_.has_f(), truth = evaluated && source_.adapter.has_true_f();
         f_.assign(w_.size(), {});
         if (evaluated) source_.f_cos(w_, f_);
         if (truth) {
@@ -214,7 +214,7 @@ private:
         }
         ++to_.checks.weights;
         if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
-        if (untrue && !source_.f_estimates) to_.checks.true_f.add({u, d, f.x, due.x});
+        if (untrue && !source_.f_estimates) to_.checks.reference_f.add({u, d, f.x, due.x});
     }
 
     /// Where rounding leaves few directions, one of them may lie on a cut: draws are spread over half a step about it.
@@ -282,7 +282,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
     Observer observer(source, plan, integrals, to);
-    const bool weighs = source.has_f() || source.subject.has_drawn_f();
+    const bool weighs = source.has_f() || source.adapter.has_drawn_f();
     std::vector<PrimarySample> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
@@ -294,7 +294,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         observer.batch(draws, from, u, weighs && from < of_f);
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
-    if (source.traits.own_random || !source.subject.can_draw()) return;
+    if (source.traits.own_random || !source.adapter.can_draw()) return;
     const std::uint32_t evaluations_each = observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
                         last = std::max(first, look.scrambled / replicate_sets / evaluations_each);

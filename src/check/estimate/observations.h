@@ -31,11 +31,11 @@ struct Count {
 /// Per-draw checks, of independent draws; `invalid` of all.
 struct DrawChecks {
     std::uint64_t looked_at = 0, directions = 0, deltas = 0, nothing = 0;
-    Count invalid;    // not finite, negative, not unit
-    Count pointwise;  // pdf with the draw against pdf(w)
-    Count zero;       // p is 0 at and around a draw
-    Count weight;     // weight against f cos / pdf
-    Count true_f;     // f against what it ought to be
+    Count invalid;      // not finite, negative, not unit
+    Count pointwise;    // pdf with the draw against pdf(w)
+    Count zero;         // p is 0 at and around a draw
+    Count weight;       // weight against f cos / pdf
+    Count reference_f;  // f against what it ought to be
     std::uint64_t weights = 0;
     // Draws that pdf(w) followed; those whose pdf is another; how many of these were compared with the neighbours of w.
     std::uint64_t followed = 0, odd = 0, odd_compared = 0;

@@ -65,11 +65,11 @@ std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
 
 }  // namespace
 
-EvaluationNoise look_for_scatter(Source& source, const StreamKey& key) {
+EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     EvaluationNoise out;
-    if (!source.subject.can_draw()) return out;  // a file has one answer for each direction
+    if (!source.adapter.can_draw()) return out;  // a file has one answer for each direction
     const std::vector<Vec3d> at = places_of(source, key), near = beside(at, fine_step), far = beside(at, coarse_step);
-    const SamplerAdapter& anew = uncached(source.subject);
+    const SamplerAdapter& anew = uncached(source.adapter);
     const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
         std::vector<Pair> pairs;
         for (Vec3d w : wi) pairs.push_back({source.wo, w});

@@ -17,7 +17,7 @@ struct EvaluationNoise {
 };
 
 /// A few hundred answers, at directions that are drawn and all over the sphere.
-EvaluationNoise look_for_scatter(Source& source, const StreamKey& key);
+EvaluationNoise look_for_noise(Source& source, const StreamKey& key);
 /// A sentence; "" where nothing is an estimate.
 std::string text_of(const EvaluationNoise& scatter);
 

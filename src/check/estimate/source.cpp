@@ -21,7 +21,7 @@ double Source::checked(double value, Vec3d at) {
 
 void Source::draw(std::span<const PrimarySample> u, std::span<Draw> out) {
     evaluations_ += u.size();
-    subject.sample(technique, wo, u, out);
+    adapter.sample(technique, wo, u, out);
 }
 
 namespace {
@@ -60,7 +60,7 @@ void Source::density(std::span<const Vec3d> wi, std::span<double> out) {
         std::fill(out.begin(), out.end(), 1.0);
         return;
     }
-    subject.exact_pdf(technique, pairs_of(wi), out);
+    adapter.exact_pdf(technique, pairs_of(wi), out);
     for (std::size_t i = 0; i < wi.size(); ++i) out[i] = checked(out[i], wi[i]);
 }
 
@@ -71,27 +71,27 @@ double Source::density(Vec3d wi) {
 }
 
 bool Source::reached_otherwise(Vec3d wi) {
-    for (int t = 0; t < subject.techniques(); ++t) {
+    for (int t = 0; t < adapter.techniques(); ++t) {
         double p = 0;
-        if (t != technique) subject.exact_pdf(t, pairs_of({&wi, 1}), {&p, 1});
+        if (t != technique) adapter.exact_pdf(t, pairs_of({&wi, 1}), {&p, 1});
         if (p > 0) return true;
     }
     return false;
 }
 
 void Source::mis_weights(std::span<const Vec3d> wi, std::span<double> out) {
-    subject.mis_weight(technique, pairs_of(wi), out);
+    adapter.mis_weight(technique, pairs_of(wi), out);
 }
 
-void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) { subject.pdf(technique, pairs_of(wi), out); }
+void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) { adapter.pdf(technique, pairs_of(wi), out); }
 
 void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) {
     const std::span<const Pair> at = pairs_of(wi);
     if (channels() == 3 && !truth) {
-        subject.f_channels(at, out);
+        adapter.f_channels(at, out);
     } else {
         std::vector<double> y(wi.size());
-        truth ? subject.true_f(at, y) : subject.f(at, y);
+        truth ? adapter.reference_f(at, y) : adapter.f(at, y);
         for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
     for (std::size_t i = 0; i < wi.size(); ++i) {

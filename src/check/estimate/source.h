@@ -10,13 +10,13 @@
 
 namespace crescent::check {
 
-/// Calls are for one thread. `subject` and `light` outlive it.
+/// Calls are for one thread. `sampler` and `light` outlive it.
 class Source {
 public:
-    Source(const SamplerAdapter& subject, int technique, Vec3d wo, const CaseLighting& light)
-        : subject(subject), technique(technique), wo(wo), light(light), traits(subject.traits()) {}
+    Source(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseLighting& light)
+        : adapter(adapter), technique(technique), wo(wo), light(light), traits(adapter.traits()) {}
 
-    const SamplerAdapter& subject;
+    const SamplerAdapter& adapter;
     const int technique;
     const Vec3d wo;
     const CaseLighting& light;
@@ -33,7 +33,7 @@ public:
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
     bool has_density() const { return traits.has_pdf && !by_draws; }
-    bool has_f() const { return subject.has_f(); }
+    bool has_f() const { return adapter.has_f(); }
     int channels() const { return traits.channels == 3 ? 3 : 1; }
 
     void draw(std::span<const PrimarySample> u, std::span<Draw> out);
@@ -58,7 +58,7 @@ public:
     double radiance(Vec3d w) const { return light.even() || w.z <= 0 ? light.fill : light(w); }
 
     std::uint64_t evaluations() const { return evaluations_; }
-    /// Of calls that go to the subject itself.
+    /// Of calls that go to the sampler itself.
     void count(std::size_t evaluations) { evaluations_ += evaluations; }
     /// Answers of density() and f_cos() that were not finite or negative, and where the first was.
     std::uint64_t invalid() const { return invalid_; }
@@ -70,7 +70,7 @@ private:
     Vec3d first_invalid_{};
     double first_invalid_value_ = 0;
     std::vector<Pair> pairs_;
-    const RecordedSampler* recorded_ = dynamic_cast<const RecordedSampler*>(&subject);
+    const RecordedSampler* recorded_ = dynamic_cast<const RecordedSampler*>(&adapter);
     std::span<const Pair> pairs_of(std::span<const Vec3d> wi);
     double checked(double value, Vec3d at);
 };

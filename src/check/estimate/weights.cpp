@@ -21,7 +21,7 @@ void append_weights(
     const std::size_t first = to.size();
     to.resize(first + batch.size(), 0);
     std::vector<double> mis(directions.wi.size(), 1);
-    if (source.subject.techniques() > 1) source.mis_weights(directions.wi, mis);
+    if (source.adapter.techniques() > 1) source.mis_weights(directions.wi, mis);
     for (std::size_t k = 0; k < directions.at.size(); ++k) {
         const Draw& d = batch[directions.at[k]];
         if (!is_direction(d, directions.p[k])) continue;

@@ -33,7 +33,7 @@ constexpr double clear_errors = 5;
 /// A candidate, with what is said of it once it has passed.
 struct Candidate {
     Hypothesis hypothesis;
-    std::function<Cause(const Hypothesis&)> tell;
+    std::function<Cause(const Hypothesis&)> make_cause;
     double in_part = 2;  // named too if it explains this share of the divergence; above 1: only if it passes
     int plainness = 0;   // of two that say the same the plainer is named
 };
@@ -57,7 +57,7 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
         out.hypothesis.masses.push_back(out.hypothesis.constants.back());
     }
     score(out.hypothesis, places);
-    out.tell = [all, places](const Hypothesis&) {
+    out.make_cause = [all, places](const Hypothesis&) {
         const auto [low, high] = std::ranges::minmax_element(all, {}, &MassRatio::ratio);
         double mean = 0, error = 0;
         for (const MassRatio& m : all)
@@ -111,14 +111,15 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
     const bool no_constant =
         std::ranges::all_of(f.hypothesis.constants, [](double c) { return std::fabs(c - 1) < 0.01; });
     out.plainness = (std::fabs(f.exponent) == 1) + no_constant;
-    out.tell = [f, places](
-                   const Hypothesis& h) { return Cause{f.name, f.exponent, f.error, factor_sentence(f, h, places)}; };
+    out.make_cause = [f, places](const Hypothesis& h) {
+        return Cause{f.name, f.exponent, f.error, factor_sentence(f, h, places)};
+    };
     return out;
 }
 
 Candidate candidate_of_power(FactorHypothesis f) {
     Candidate out{f.hypothesis};  // much that is no power is nearly one
-    out.tell = [f](const Hypothesis&) {
+    out.make_cause = [f](const Hypothesis&) {
         return Cause{"p", f.exponent, f.error,
             fmt::format("Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
                         "differs between sample and pdf.",
@@ -129,7 +130,7 @@ Candidate candidate_of_power(FactorHypothesis f) {
 
 Candidate candidate_of(const Hypothesis& frame) {
     Candidate out{frame, {}, most_of_it, -frame.place};
-    out.tell = [name = frame.name](const Hypothesis& h) {
+    out.make_cause = [name = frame.name](const Hypothesis& h) {
         return Cause{name, 0, 0,
             h.explained < 0.9 ? fmt::format("{:.0f} % of the difference is explained by {} between draws and p.",
                                     100 * h.explained, name)
@@ -140,7 +141,7 @@ Candidate candidate_of(const Hypothesis& frame) {
 
 Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, bool about_z) {
     Candidate out{turn.hypothesis, {}, about_z ? most_of_it : nearly_all};
-    out.tell = [turn, places, about_z](const Hypothesis& h) {
+    out.make_cause = [turn, places, about_z](const Hypothesis& h) {
         std::size_t most = 0;
         for (std::size_t k = 1; k < turn.turns.size(); ++k)
             if (dot(turn.turns[k].by, turn.turns[k].by) > dot(turn.turns[most].by, turn.turns[most].by)) most = k;
@@ -187,7 +188,7 @@ Candidates plain_candidates(std::span<const Place> places) {
 /// Causes with an angle, an exponent or a share that is fitted.
 Candidates fitted_candidates(std::span<const Place> places) {
     Candidates out;
-    if (places[0].traits.wo == Traits::Asked::none)
+    if (places[0].traits.wo == Traits::WoDomain::none)
         if (const auto turn = azimuth_hypothesis(places); turn && turn->is_clear())
             out.push_back(candidate_of(*turn, places, true));
     if (const auto turn = turn_hypothesis(places); turn && turn->is_clear())
@@ -196,7 +197,7 @@ Candidates fitted_candidates(std::span<const Place> places) {
         out.push_back(candidate_of_power(std::move(*power)));
     for (const Leak& leak : leak_hypotheses(places)) {
         Candidate c{leak.hypothesis, {}, nearly_all};
-        c.tell = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
+        c.make_cause = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
         out.push_back(std::move(c));
     }
     sort_by_gain(out);
@@ -212,7 +213,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
             const double less = found->hypothesis.gain - c.hypothesis.gain;
             const double by_chance = least_lead / std::min(found->hypothesis.draws, c.hypothesis.draws);
             if (less > std::max({3 * found->hypothesis.error, 3 * c.hypothesis.error, by_chance})) break;
-            if (say_the_same(found->hypothesis, c.hypothesis, places)) {
+            if (are_equivalent(found->hypothesis, c.hypothesis, places)) {
                 const bool plainer = c.plainness > found->plainness;
                 const std::string other = plainer ? found->hypothesis.name : c.hypothesis.name;
                 if (plainer) c.hypothesis.same = found->hypothesis.same, found = &c;
@@ -227,7 +228,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
     }
     if (!found) return {};
     found->hypothesis.explained = 1;
-    return found->tell(found->hypothesis);
+    return found->make_cause(found->hypothesis);
 }
 
 /// What explains most of a difference that nothing explains wholly, by twice as much as anything else.
@@ -236,14 +237,16 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     for (Candidate& c : all) {
         if (c.in_part > 1) continue;
         score(c.hypothesis, places);
-        if (c.hypothesis.gain > clear_errors * c.hypothesis.error && c.hypothesis.explained > c.in_part && (!best || c.hypothesis.gain > best->hypothesis.gain)) best = &c;
+        if (c.hypothesis.gain > clear_errors * c.hypothesis.error && c.hypothesis.explained > c.in_part &&
+            (!best || c.hypothesis.gain > best->hypothesis.gain))
+            best = &c;
     }
     if (!best) return {};
     for (const Candidate& c : all) {
         if (&c == best || c.in_part > 1 || c.hypothesis.explained < best->hypothesis.explained / 2) continue;
-        if (!say_the_same(best->hypothesis, c.hypothesis, places)) return {};
+        if (!are_equivalent(best->hypothesis, c.hypothesis, places)) return {};
     }
-    return best->tell(best->hypothesis);
+    return best->make_cause(best->hypothesis);
 }
 
 /// What the sampling map draws over p, by its derivatives at a few points of each place.
@@ -253,14 +256,14 @@ std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
         Source source = place.source();
         const StreamKey key = place.key(23, Purpose::jacobian, 1);
         for (const MapDensity& m : map_densities(source, key))
-            out.push_back({place.trial->wo, m.draw.wi, m.drawn / m.p, m.error});
+            out.push_back({place.check_case->wo, m.draw.wi, m.drawn / m.p, m.error});
     }
     return out;
 }
 
 /// A constant or factor that nine of ten points of the map show: without noise, so that nothing is as likely.
 std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<const Place> places) {
-    const std::vector<Factor> factors = factors_for(places[0].traits, places[0].trial->light);
+    const std::vector<Factor> factors = factors_for(places[0].traits, places[0].check_case->light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c) return {};
     std::optional<Candidate> candidate = c->exponent == 0 ? constant_candidate(places) : std::nullopt;
@@ -268,14 +271,14 @@ std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<
         candidate.emplace();
         candidate->hypothesis = times(*std::ranges::find(factors, c->name, &Factor::name), c->exponent);
         candidate->hypothesis.constants.assign(places.size(), c->constant);
-        candidate->tell = [c, places](const Hypothesis&) {
+        candidate->make_cause = [c, places](const Hypothesis&) {
             return Cause{c->name, c->exponent, 0,
                 ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits) +
                     fmt::format(" In p {} is {}.", c->name, c->exponent > 0 ? "missing" : "once too often")};
         };
     }
     if (!candidate || !passes(candidate->hypothesis, places, 1)) return {};
-    return candidate->tell(candidate->hypothesis);
+    return candidate->make_cause(candidate->hypothesis);
 }
 
 /// What is drawn is at least what the map draws at one u: p over that is nowhere below a constant that p has too much.
@@ -324,10 +327,11 @@ bool odd_draws_explain(std::span<const Place> places) {
 
 }  // namespace
 
-std::optional<Cause> cause_of(std::span<const CheckCase> trials, const CheckOutcome& outcome) {
-    const bool few = std::ranges::any_of(outcome.trials, [&](std::size_t i) { return trials[i].subject->serial(); });
-    const std::vector<Place> places = places_of(trials, outcome, most_places, few ? draws_of_few : draws_of_many);
-    if (places.empty()) return weight_cause(trials, outcome);
+std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
+    const bool few =
+        std::ranges::any_of(outcome.check_cases, [&](std::size_t i) { return check_cases[i].adapter->serial(); });
+    const std::vector<Place> places = places_of(check_cases, outcome, most_places, few ? draws_of_few : draws_of_many);
+    if (places.empty()) return weight_cause(check_cases, outcome);
     if (odd_draws_explain(places)) return {};
     if (std::optional<Cause> c = curve_cause(places)) return c;
     if (std::optional<Cause> c = explained_by(places)) return c;

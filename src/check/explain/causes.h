@@ -20,6 +20,6 @@ struct Cause {
 };
 
 /// None where nothing is named.
-std::optional<Cause> cause_of(std::span<const CheckCase> trials, const CheckOutcome& outcome);
+std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
 
 }  // namespace crescent::check

@@ -64,24 +64,24 @@ struct Result {
     std::vector<Verdict> verdicts;
     std::string text() const { return cause ? cause->factor + ": " + cause->text : "none"; }
 };
-Result judged(Made made, std::vector<std::pair<double, double>> directions = {{40, 30}}) {
-    const auto subject = std::make_shared<Made>(std::move(made));
-    std::vector<CheckCase> trials;
+Result checked(Made made, std::vector<std::pair<double, double>> directions = {{40, 30}}) {
+    const auto adapter = std::make_shared<Made>(std::move(made));
+    std::vector<CheckCase> check_cases;
     for (const auto& [theta, azimuth] : directions) {
         CheckCase t;
-        t.arm = "made", t.wo = tilt(theta, azimuth), t.theta_deg = theta, t.azimuth_deg = azimuth, t.subject = subject;
-        trials.push_back(t);
+        t.arm = "made", t.wo = tilt(theta, azimuth), t.theta_deg = theta, t.azimuth_deg = azimuth, t.adapter = adapter;
+        check_cases.push_back(t);
     }
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
     ProgressMonitor monitor;
-    const auto all = check_samplers(trials, settings, monitor);
+    const auto all = check_samplers(check_cases, settings, monitor);
     Result out{all.at(0).wrong(), {}, {}};
-    if (out.wrong) out.cause = cause_of(trials, all[0]);
-    out.verdicts = verdicts_of(trials, all[0], out.cause);
+    if (out.wrong) out.cause = cause_of(check_cases, all[0]);
+    out.verdicts = verdicts_of(check_cases, all[0], out.cause);
     return out;
 }
-Made made(Sample draw, Density p, int numbers = 2, Traits::Asked wo = Traits::Asked::upper) {
+Made made(Sample draw, Density p, int numbers = 2, Traits::WoDomain wo = Traits::WoDomain::upper) {
     Made out;
     out.draw = std::move(draw), out.p = std::move(p), out.of.numbers = numbers, out.of.wo = wo;
     return out;
@@ -93,17 +93,17 @@ void expect_cause(const Result& r, const char* factor) {
 }
 
 TEST(CheckCauses, NamesAConstantWithItsMeaning) {
-    const Result r = judged(made(cosine_draw, [](Vec3d o, Vec3d w) { return pi * cosine_pdf(o, w); }));
+    const Result r = checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return pi * cosine_pdf(o, w); }));
     expect_cause(r, "constant");
     EXPECT_NE(r.text().find("= pi"), std::string::npos) << r.text();
     EXPECT_NEAR(r.cause->exponent, pi, 0.01);
 }
 
 TEST(CheckCauses, NamesAFactorThatIsMissingOrThereTwice) {
-    expect_cause(judged(made(cosine_draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / pi : 0; })), "cos theta_i");
-    expect_cause(judged(made(cosine_draw, [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * w.z; })), "cos theta_i");
+    expect_cause(checked(made(cosine_draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / pi : 0; })), "cos theta_i");
+    expect_cause(checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * w.z; })), "cos theta_i");
     const auto lobe = [](Vec3d o, const PrimarySample& u) { return power_draw(mirror(o), 20, u); };
-    expect_cause(judged(made(lobe, [](Vec3d o, Vec3d w) { return 21 * power_pdf(mirror(o), 19, w) / 20; })), "w_i.R");
+    expect_cause(checked(made(lobe, [](Vec3d o, Vec3d w) { return 21 * power_pdf(mirror(o), 19, w) / 20; })), "w_i.R");
 }
 
 TEST(CheckCauses, NamesAMirroredFrame) {
@@ -111,18 +111,18 @@ TEST(CheckCauses, NamesAMirroredFrame) {
         return power_draw(mirror(Vec3d{o.x, -o.y, o.z}), 30, u);
     };
     const Result r =
-        judged(made(mirrored, [](Vec3d o, Vec3d w) { return power_pdf(mirror(o), 30, w); }), {{40, 50}, {60, 200}});
+        checked(made(mirrored, [](Vec3d o, Vec3d w) { return power_pdf(mirror(o), 30, w); }), {{40, 50}, {60, 200}});
     ASSERT_TRUE(r.cause);
     EXPECT_NE(r.text().find("mirrored in y"), std::string::npos) << r.text();
 }
 
 TEST(CheckCauses, MeasuresATurn) {
     const Vec3d axis = tilt(50, 20), off = tilt(53, 20);
-    const auto subject =
+    const auto adapter =
         std::make_shared<Made>(made([off](Vec3d, const PrimarySample& u) { return power_draw(off, 50, u); },
-            [axis](Vec3d, Vec3d w) { return power_pdf(axis, 50, w); }, 2, Traits::Asked::none));
+            [axis](Vec3d, Vec3d w) { return power_pdf(axis, 50, w); }, 2, Traits::WoDomain::none));
     CheckCase t;
-    t.arm = "made", t.wo = {0, 0, 1}, t.subject = subject;
+    t.arm = "made", t.wo = {0, 0, 1}, t.adapter = adapter;
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
     ProgressMonitor monitor;
@@ -140,9 +140,9 @@ TEST(CheckCauses, MeasuresATurn) {
 TEST(CheckCauses, NamesTheChooserOfLobes) {
     const Vec3d a = tilt(20, 0), b = tilt(60, 120);
     const auto draw = [a, b](Vec3d, const PrimarySample& u) { return power_draw(u[2] < 0.3 ? a : b, 40, u); };
-    const Result r = judged(made(
+    const Result r = checked(made(
         draw, [a, b](Vec3d, Vec3d w) { return (power_pdf(a, 40, w) + power_pdf(b, 40, w)) / 2; }, 3,
-        Traits::Asked::none));
+        Traits::WoDomain::none));
     expect_cause(r, "chooser");
     EXPECT_NE(r.text().find("0.3, 0.7"), std::string::npos) << r.text();
 }
@@ -151,14 +151,14 @@ TEST(CheckCauses, MeasuresALeak) {
     const auto draw = [](Vec3d, const PrimarySample& u) {
         return u[2] < 0.02 ? from_chart({u[0], two_pi * u[1]}) : power_draw({0, 0, 1}, 50, u);
     };
-    const Result r = judged(made(draw, [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 50, w); }, 3));
+    const Result r = checked(made(draw, [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 50, w); }, 3));
     expect_cause(r, "leak");
     EXPECT_NEAR(r.cause ? r.cause->exponent : 0, 0.02, 0.004) << r.text();
 }
 
 TEST(CheckCauses, SaysThatANumberHasNoEffect) {
     const auto draw = [](Vec3d o, const PrimarySample& u) { return cosine_draw(o, PrimarySample{u[0], 0.3}); };
-    const Result r = judged(made(draw, cosine_pdf));
+    const Result r = checked(made(draw, cosine_pdf));
     expect_cause(r, "curve");
     EXPECT_NE(r.text().find("u2 has no effect"), std::string::npos);
 }
@@ -166,7 +166,7 @@ TEST(CheckCauses, SaysThatANumberHasNoEffect) {
 TEST(CheckCauses, SaysWherePIsPositiveAndNothingIsDrawn) {
     const double density = 1 / (two_pi * 0.05);
     const auto draw = [](Vec3d, const PrimarySample& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };
-    const Result r = judged(made(draw, [density](Vec3d, Vec3d) { return density; }, 2, Traits::Asked::none));
+    const Result r = checked(made(draw, [density](Vec3d, Vec3d) { return density; }, 2, Traits::WoDomain::none));
     expect_cause(r, "unreached");
 }
 
@@ -174,11 +174,11 @@ TEST(CheckCauses, NamesWhatIsWrongWithWeights) {
     Made m = made(cosine_draw, cosine_pdf);
     m.f_value = [](Vec3d, Vec3d w) { return w.z > 0 ? 0.5 / pi : 0; };
     m.weights = [](Vec3d, Vec3d w) { return Vec3d{0.5 / w.z, 0, 0}; };
-    Result r = judged(m);
+    Result r = checked(m);
     expect_cause(r, "cos theta_i");
     EXPECT_NE(r.text().find("over cos theta_i"), std::string::npos) << r.text();
     m.weights = [](Vec3d, Vec3d) { return Vec3d{0.25, 0, 0}; };
-    r = judged(m);
+    r = checked(m);
     expect_cause(r, "constant");
     EXPECT_NE(r.text().find("0.5 = 1/2"), std::string::npos) << r.text();
 }
@@ -188,7 +188,7 @@ TEST(CheckCauses, NamesNoneWhereNothingOnTheListIsWrong) {
     const auto bump = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (1 + 0.3 * math::sincos(9 * w.x).sin); };
     const auto patch = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (w.x > 0 && w.y > 0 ? 1.05 : 1.0); };
     for (const Density& p : {Density(bump), Density(patch)}) {
-        const Result r = judged(made(cosine_draw, p));
+        const Result r = checked(made(cosine_draw, p));
         EXPECT_TRUE(r.wrong);
         EXPECT_FALSE(r.cause) << r.text();
     }
@@ -196,14 +196,14 @@ TEST(CheckCauses, NamesNoneWhereNothingOnTheListIsWrong) {
 
 TEST(CheckCauses, AreSaidOnceWithTheirVerdict) {
     const Result r =
-        judged(made(cosine_draw, [](Vec3d o, Vec3d w) { return 2 * cosine_pdf(o, w); }), {{10, 0}, {60, 90}});
-    int said = 0;
+        checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return 2 * cosine_pdf(o, w); }), {{10, 0}, {60, 90}});
+    int message = 0;
     for (const Verdict& v : r.verdicts)
         if (!v.cause.empty()) {
-            ++said;
+            ++message;
             EXPECT_EQ(v.name, "normalised");
         }
-    EXPECT_EQ(said, 1);
+    EXPECT_EQ(message, 1);
 }
 
 TEST(CheckText, GivesAsManyDigitsAsAreKnown) {

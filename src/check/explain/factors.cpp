@@ -71,7 +71,7 @@ void add_of_boundary(std::vector<Factor>& out, double below_over_above) {
 }
 
 void add_of_light(std::vector<Factor>& out, const CaseLighting& light) {
-    if (light.disks.size() != 1 || !light.lamps.empty()) return;
+    if (light.disks.size() != 1 || !light.area_lights.empty()) return;
     const CaseDiskLight disk = light.disks[0];
     out.push_back({"cosine at the light", [disk](Vec3d, Vec3d i) { return std::max(-dot(i, disk.normal), 0.0); }});
     out.push_back({"distance^2 / cosine at the light", [disk](Vec3d, Vec3d i) {
@@ -96,7 +96,7 @@ std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light)
     const auto nm = [half](Vec3d o, Vec3d i) { return std::fabs(half(o, i).z); };
     std::vector<Factor> out = {{"cos theta_i", [](Vec3d, Vec3d i) { return std::fabs(i.z); }},
         {"sin theta_i", [](Vec3d, Vec3d i) { return std::sqrt(i.x * i.x + i.y * i.y); }}};
-    if (traits.wo != Traits::Asked::none) {
+    if (traits.wo != Traits::WoDomain::none) {
         out.push_back({"a constant across the surface",
             [](Vec3d o, Vec3d i) { return o.z * i.z < 0 ? math::exp(1.0) : 1.0; }, 1, true});
         out.push_back({"w_o.m", om, 4});

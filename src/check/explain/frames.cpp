@@ -82,10 +82,10 @@ Hypothesis in_frame(const NamedFrame& frame, int which, bool at_zero) {
 }
 
 /// w_o under the surface, and directions in place of w_o where there is none, are not asked for.
-bool can_be_asked(const NamedFrame& frame, int which, const Traits& traits) {
-    if (traits.wo == Traits::Asked::none) return which == of_wi;
+bool can_be_tested(const NamedFrame& frame, int which, const Traits& traits) {
+    if (traits.wo == Traits::WoDomain::none) return which == of_wi;
     if (frame.of_lights) return false;
-    return !(which & of_wo) || traits.wo == Traits::Asked::both || frame.of({0, 0, 1}).z > 0;
+    return !(which & of_wo) || traits.wo == Traits::WoDomain::both || frame.of({0, 0, 1}).z > 0;
 }
 
 /// By the leaves' densities and all draws of the check.
@@ -128,9 +128,9 @@ public:
     }
     double by_p(Vec3d by) const {
         std::vector<Pair> at;
-        for (std::size_t i = 0; i < count_; ++i) at.push_back({place_.trial->wo, rotated(place_.w[i], -by)});
+        for (std::size_t i = 0; i < count_; ++i) at.push_back({place_.check_case->wo, rotated(place_.w[i], -by)});
         std::vector<double> p(count_);
-        place_.subject().exact_pdf(place_.technique(), at, p);
+        place_.adapter().exact_pdf(place_.technique(), at, p);
         for (double& v : p)
             if (!std::isfinite(v)) v = 0;
         return place_.mean_log(p);
@@ -198,7 +198,7 @@ Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& tur
     Hypothesis h;
     h.name = "turned";
     std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its turn
-    for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].trial->wo, turns[k].by});
+    for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].check_case->wo, turns[k].by});
     h.density = [by, at_zero = places[0].draws_at_zero()](
                     const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
         std::vector<Pair> there(at.begin(), at.end());
@@ -218,7 +218,7 @@ std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places) {
     std::vector<Hypothesis> out;
     for (const NamedFrame& frame : named_frames)
         for (int which : {of_wi, of_wo, of_both}) {
-            if (!can_be_asked(frame, which, places[0].traits)) continue;
+            if (!can_be_tested(frame, which, places[0].traits)) continue;
             Hypothesis h = in_frame(frame, which, places[0].draws_at_zero());
             h.place = static_cast<int>(&frame - named_frames);
             if (which == of_wi) score_by_tree(frame, places, h);

@@ -112,13 +112,13 @@ double Place::mean_log(std::span<const double> density) const {
 }
 
 std::vector<Place> places_of(
-    std::span<const CheckCase> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count) {
+    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, std::size_t most, std::uint32_t count) {
     std::vector<Place> wrong;
     for (std::size_t k = 0; k < outcome.at.size(); ++k)
         for (const CheckAt& c : outcome.at[k])
             if (density_is_wrong(c) && c.plan && c.plan->drawn > 0) {
-                const CheckCase& t = trials[outcome.trials[k]];
-                wrong.push_back({&t, &c, outcome.trials[k], t.subject->traits(), {}, {}, {}, 0});
+                const CheckCase& t = check_cases[outcome.check_cases[k]];
+                wrong.push_back({&t, &c, outcome.check_cases[k], t.adapter->traits(), {}, {}, {}, 0});
             }
     // Spread over the list, which goes from n to grazing and below.
     std::vector<Place> out;
@@ -137,9 +137,9 @@ void score(Hypothesis& h, std::span<const Place> places) {
         const MassRatio masses = mass_ratio(*place.at);
         const double more = ((h.masses.empty() ? 1 : h.masses[k]) - 1) * masses.claimed / masses.drawn;
         std::vector<Pair> at;
-        for (Vec3d w : place.w) at.push_back({place.trial->wo, w});
+        for (Vec3d w : place.w) at.push_back({place.check_case->wo, w});
         std::vector<double> p(at.size());
-        h.density(place.subject(), place.technique(), at, p);
+        h.density(place.adapter(), place.technique(), at, p);
         for (std::size_t i = 0; i < p.size(); ++i) {
             const double of_p = place.log_of(place.p[i]), of_h = place.log_of(p[i] * h.constant(k));
             const double of_draws = place.log_of(place.implied[i]);
@@ -153,15 +153,15 @@ void score(Hypothesis& h, std::span<const Place> places) {
     h.explained = before > 0 ? std::min(1 - left / before, 1.0) : 0;
 }
 
-bool say_the_same(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places) {
+bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places) {
     constexpr double same_density = 1e-3, most_of_draws = 0.9;
     double same = 0, draws = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
         std::vector<Pair> at;
-        for (Vec3d w : places[k].w) at.push_back({places[k].trial->wo, w});
+        for (Vec3d w : places[k].w) at.push_back({places[k].check_case->wo, w});
         std::vector<double> p(at.size()), q(at.size());
-        a.density(places[k].subject(), places[k].technique(), at, p);
-        b.density(places[k].subject(), places[k].technique(), at, q);
+        a.density(places[k].adapter(), places[k].technique(), at, p);
+        b.density(places[k].adapter(), places[k].technique(), at, q);
         for (std::size_t i = 0; i < at.size(); ++i, ++draws)
             same += std::fabs(p[i] * a.constant(k) - q[i] * b.constant(k)) <= same_density * p[i] * a.constant(k);
     }
@@ -173,9 +173,9 @@ bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed) {
     for (std::size_t k = 0; k < places.size(); ++k) {
         const Place& place = places[k];
         const auto check = [&] {
-            const Supposed supposed(place.trial->subject, h, h.constants[k]);
-            return check_sampler_at(supposed, place.technique(), place.trial->wo,
-                CaseData{place.trial->light, static_cast<std::uint16_t>(place.number), {}},
+            const Supposed supposed(place.check_case->adapter, h, h.constants[k]);
+            return check_sampler_at(supposed, place.technique(), place.check_case->wo,
+                CaseData{place.check_case->light, static_cast<std::uint16_t>(place.number), {}},
                 budget_for(*place.at, supposed.serial()), seed ^ 0x9e3779b9u);
         };
         CheckAt c = check();

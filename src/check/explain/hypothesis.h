@@ -1,4 +1,4 @@
-// A hypothesis of what is wrong: the density that the draws would have if it were true. It is judged by the same
+// A hypothesis of what is wrong: the density that the draws would have if it were true. It is checked by the same
 // questions as the sampler's own density, so a cause is named only where the sampler that is corrected for it passes.
 #pragma once
 
@@ -21,9 +21,9 @@ MassRatio mass_ratio(const CheckAt& c);
 
 /// One technique at one w_o that was found wrong, with fresh draws and p there.
 struct Place {
-    const CheckCase* trial = nullptr;
+    const CheckCase* check_case = nullptr;
     const CheckAt* at = nullptr;
-    std::size_t number = 0;  // of the trial in the call
+    std::size_t number = 0;  // of the case in the call
     Traits traits{};
     std::vector<Vec3d> w;
     std::vector<double> p;
@@ -31,15 +31,15 @@ struct Place {
     double of = 0;                // draws in all
     /// Whether draws where p is 0 count as draws, or as nothing because the pdf with them is 0 too.
     bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
-    const SamplerAdapter& subject() const { return *trial->subject; }
+    const SamplerAdapter& adapter() const { return *check_case->adapter; }
     int technique() const { return at->technique; }
-    Source source() const { return {subject(), technique(), trial->wo, trial->light}; }
+    Source source() const { return {adapter(), technique(), check_case->wo, check_case->light}; }
     /// Streams of the explanation: each has a seed of its own.
     StreamKey key(std::uint32_t seed, Purpose purpose, std::uint16_t part) const {
         return {seed, static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(technique()), 8, purpose, part};
     }
     /// " at w_o 60 deg"; "" for a sampler without w_o.
-    std::string where() const { return traits.wo == Traits::Asked::none ? "" : " at " + trial->text(); }
+    std::string where() const { return traits.wo == Traits::WoDomain::none ? "" : " at " + check_case->text(); }
     /// ln of a density at a draw; where it is 0, of e^-14 times the median of p.
     double log_of(double density) const;
     double mean_log(std::span<const double> density) const;
@@ -47,13 +47,13 @@ struct Place {
 
 /// Up to `most` of those where a question on the density failed, the plainest first; w_o that differ most.
 std::vector<Place> places_of(
-    std::span<const CheckCase> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
+    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
 
 struct Hypothesis {
     std::string name;    // of the cause
     std::string same{};  // what else would say the same, in brackets
     int place = 0;       // in its list, the plainest first
-    /// The supposed density of a subject's technique, 1/sr.
+    /// The supposed density of a sampler's technique, 1/sr.
     std::function<void(const SamplerAdapter&, int technique, std::span<const Pair>, std::span<double>)> density;
     /// By place: what that is multiplied by; empty: 1. free: it is set so that the masses agree.
     std::vector<double> constants{};
@@ -73,7 +73,7 @@ struct Hypothesis {
 /// Sets gain, error and explained.
 void score(Hypothesis& h, std::span<const Place> places);
 /// Both have the same density at nine of ten draws.
-bool say_the_same(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places);
+bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places);
 /// Every question on the density is passed at all places with the supposed density in place of p. Sets free constants.
 bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed);
 

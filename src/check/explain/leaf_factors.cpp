@@ -39,7 +39,7 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
             Row r{g, c.observations.leaves[l], leaf.bridge.value * n, leaf.bridge.variance * n * n, h2 / h, {}};
             const Leaf& of_tree = c.plan->tree.leaves()[l];
             for (const Factor& f : factors)
-                r.x.push_back(math::log(average(f, places[g].trial->wo, c.plan->tree.rect(of_tree)) + 1e-12));
+                r.x.push_back(math::log(average(f, places[g].check_case->wo, c.plan->tree.rect(of_tree)) + 1e-12));
             r.x.push_back(math::log(of_tree.q));
             rows.push_back(std::move(r));
         }
@@ -91,7 +91,7 @@ Hypothesis times(const Factor& f, double b) {
 }
 
 std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
-    const std::vector<Factor> factors = factors_for(places[0].traits, places[0].trial->light);
+    const std::vector<Factor> factors = factors_for(places[0].traits, places[0].check_case->light);
     const std::vector<Row> rows = rows_of(places, factors);
     std::vector<FactorHypothesis> out;
     if (rows.size() < 32) return out;

@@ -193,7 +193,7 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
             // The square of a mean has its variance in it.
             for (std::size_t k = 0; k < lobes; ++k) normal[k][k] -= c.mean_variance[k] / v;
         }
-        const auto x = stats::solved(normal, right, 1e-6);
+        const auto x = statistics::solved(normal, right, 1e-6);
         if (!x) return {};
         for (double v : *x)
             if (!std::isfinite(v)) return {};
@@ -202,7 +202,7 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
     for (std::size_t k = 0; k < lobes; ++k) {
         std::vector<double> unit(lobes);
         unit[k] = 1;
-        const auto column = stats::solved(normal, unit, 1e-6);
+        const auto column = statistics::solved(normal, unit, 1e-6);
         out.errors[k] = column ? std::sqrt(std::max((*column)[k], 0.0)) : 1;
     }
     out.misfit = chi_squared(cells, out.x);
@@ -213,7 +213,8 @@ bool explains(const Shares& s) {
     const double degrees = s.cells - static_cast<double>(s.x.size());
     if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
     // What is left is within chance, or a fiftieth of what there was.
-    return stats::chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
+    return statistics::chi_squared_tail(degrees, s.misfit) > fits_at ||
+        s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
 std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
@@ -249,7 +250,7 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
 }  // namespace
 
 std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
-    if (source.traits.own_random || !source.subject.can_draw() || source.traits.numbers < 2) return {};
+    if (source.traits.own_random || !source.adapter.can_draw() || source.traits.numbers < 2) return {};
     std::vector<PrimarySample> others;
     for (std::uint32_t i = 0; others.size() < settings_of_others && i < 1000; ++i) {
         const PrimarySample u = numbers_at(key, i, source.numbers(), source.single());
@@ -271,7 +272,7 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         const StreamKey key = place.key(13, Purpose::pairs, 2);
         const std::optional<LobeChooser> by = chooser_of(source, key);
         if (!by) continue;
-        const std::uint32_t count = source.subject.serial() ? few_draws_for_lobes : draws_for_lobes;
+        const std::uint32_t count = source.adapter.serial() ? few_draws_for_lobes : draws_for_lobes;
         std::vector<LobeDraws> draws;
         for (std::size_t k = 0; k < by->lobes.size(); ++k)
             draws.push_back(draws_of(source, place, *by, k, count / static_cast<std::uint32_t>(by->lobes.size())));

@@ -25,13 +25,13 @@ struct Compared {
     Vec3d wo{}, wi{};
     double pdf = 0, p = 0;
     bool weighs = false;
-    ByChannel weight{}, due{}, f{}, true_f{};
+    ByChannel weight{}, due{}, f{}, reference_f{};
 };
 
 ByChannel channels_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
-std::vector<Compared> compared_at(const CheckCase& trial, int technique, std::uint16_t place) {
-    Source source(*trial.subject, technique, trial.wo, trial.light);
+std::vector<Compared> compared_at(const CheckCase& check_case, int technique, std::uint16_t place) {
+    Source source(*check_case.adapter, technique, check_case.wo, check_case.light);
     const StreamKey key{17, place, static_cast<std::uint8_t>(technique), 8, Purpose::light, 1};
     const std::vector<PrimarySample> u = first_numbers(key, draws_to_compare, source.traits);
     std::vector<Draw> draws(u.size());
@@ -45,11 +45,11 @@ std::vector<Compared> compared_at(const CheckCase& trial, int technique, std::ui
     std::vector<Vec3d> f(w.size()), truth(w.size());
     if (source.has_density()) source.stated_pdf(w, p);
     if (source.has_f()) source.f_cos(w, f);
-    if (trial.subject->has_true_f()) source.f_cos(w, truth, true);
+    if (check_case.adapter->has_true_f()) source.f_cos(w, truth, true);
     std::vector<Compared> out;
     for (std::size_t i = 0; i < w.size(); ++i) {
         const Draw& d = *of[i];
-        Compared c{trial.wo, w[i], d.pdf, p[i], d.weight.has_value() && source.has_f(), {}, {}, channels_of(f[i]),
+        Compared c{check_case.wo, w[i], d.pdf, p[i], d.weight.has_value() && source.has_f(), {}, {}, channels_of(f[i]),
             channels_of(truth[i])};
         if (c.weighs) {
             c.weight = source.channels() == 3 ? channels_of(d.weights) : ByChannel{*d.weight, *d.weight, *d.weight};
@@ -97,13 +97,13 @@ std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
     return {};
 }
 
-std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const CheckCase& trial, const char* given,
+std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const CheckCase& check_case, const char* given,
     const char* due, const char* verdict) {
-    const std::vector<Factor> factors = factors_for(trial.subject->traits(), trial.light);
+    const std::vector<Factor> factors = factors_for(check_case.adapter->traits(), check_case.light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c) return {};
     return Cause{c->name, c->exponent == 0 ? c->constant : c->exponent, 0,
-        ratio_sentence(given, due, *c, trial.subject->traits()), verdict};
+        ratio_sentence(given, due, *c, check_case.adapter->traits()), verdict};
 }
 
 void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, double due) {
@@ -111,14 +111,14 @@ void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, do
 }
 
 /// f(a, b) with its eta^2 over f(b, a), for pairs across the surface and on one side.
-std::vector<KnownRatio> reciprocity_ratios(const CheckCase& trial) {
-    const SamplerAdapter& s = *trial.subject;
+std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
+    const SamplerAdapter& s = *check_case.adapter;
     const Traits traits = s.traits();
     Stream stream({19, 0, 0, 8, Purpose::pairs, 1});
     std::vector<Pair> there, back;
     for (int i = 0; i < 256; ++i) {
         const auto direction = [&](bool below) { return random_direction(stream, below, 0.05); };
-        const bool both = traits.wo == Traits::Asked::both;
+        const bool both = traits.wo == Traits::WoDomain::both;
         there.push_back({direction(both && i % 2), direction(both && i % 2 == 0)});
         back.push_back({there.back().wi, there.back().wo});
     }
@@ -133,9 +133,9 @@ std::vector<KnownRatio> reciprocity_ratios(const CheckCase& trial) {
 }
 
 /// eta^2 seen from w_o's side, and the cosines, as reciprocity shows them: once for each direction.
-std::optional<Cause> reciprocity_cause(const CheckCase& trial) {
-    const Traits traits = trial.subject->traits();
-    const std::vector<KnownRatio> ratios = reciprocity_ratios(trial);
+std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
+    const Traits traits = check_case.adapter->traits();
+    const std::vector<KnownRatio> ratios = reciprocity_ratios(check_case);
     std::vector<Factor> factors = {{"cos theta_i", [](Vec3d o, Vec3d i) { return std::fabs(i.z / o.z); }}};
     if (traits.eta && traits.eta->x == traits.eta->z)
         factors.push_back({"eta^2", [eta2 = sqr(traits.eta->x)](Vec3d o, Vec3d i) {
@@ -166,35 +166,35 @@ std::string ratio_sentence(const char* given, const char* due, const RatioCause&
         std::fabs(c.constant - 1) < agrees_to ? "" : " and " + constant);
 }
 
-std::optional<Cause> weight_cause(std::span<const CheckCase> trials, const CheckOutcome& outcome) {
+std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
     std::vector<Compared> all;
-    const CheckCase* trial = nullptr;
+    const CheckCase* check_case = nullptr;
     std::size_t directions = 0;
     for (std::size_t k = 0; k < outcome.at.size() && directions < most_directions; ++k)
         for (const CheckAt& c : outcome.at[k]) {
-            const bool wrong = found(c, Family::pointwise) || found(c, Family::weight) || found(c, Family::true_f) ||
-                found(c, Family::mean);
+            const bool wrong = found(c, Family::pointwise) || found(c, Family::weight) ||
+                found(c, Family::reference_f) || found(c, Family::mean);
             if (!wrong) continue;
-            trial = &trials[outcome.trials[k]];
+            check_case = &check_cases[outcome.check_cases[k]];
             const std::vector<Compared> here =
-                compared_at(*trial, c.technique, static_cast<std::uint16_t>(outcome.trials[k]));
+                compared_at(*check_case, c.technique, static_cast<std::uint16_t>(outcome.check_cases[k]));
             all.insert(all.end(), here.begin(), here.end());
             ++directions;
         }
-    if (trial) {
-        if (auto c = exchanged_channels(all); c && trial->subject->traits().channels == 3) return c;
+    if (check_case) {
+        if (auto c = exchanged_channels(all); c && check_case->adapter->traits().channels == 3) return c;
         std::vector<KnownRatio> pdf, weight, f;
         for (const Compared& c : all) {
             add_ratio(pdf, c.wo, c.wi, c.pdf, c.p);
             if (c.weighs) add_ratio(weight, c.wo, c.wi, c.weight[0], c.due[0]);
-            if (trial->subject->has_true_f()) add_ratio(f, c.wo, c.wi, c.f[0], c.true_f[0]);
+            if (check_case->adapter->has_true_f()) add_ratio(f, c.wo, c.wi, c.f[0], c.reference_f[0]);
         }
-        if (auto c = ratio_cause(pdf, *trial, "The pdf with a draw is", "pdf(w)", "identity")) return c;
-        if (auto c = ratio_cause(weight, *trial, "Weights are", "f cos / p", "identity")) return c;
-        if (auto c = ratio_cause(f, *trial, "f is", "the BRDF", "mean")) return c;
+        if (auto c = ratio_cause(pdf, *check_case, "The pdf with a draw is", "pdf(w)", "identity")) return c;
+        if (auto c = ratio_cause(weight, *check_case, "Weights are", "f cos / p", "identity")) return c;
+        if (auto c = ratio_cause(f, *check_case, "f is", "the BRDF", "mean")) return c;
     }
     for (const SmallFault& f : outcome.small)
-        if (f.family == Family::reciprocity) return reciprocity_cause(trials[outcome.trials[0]]);
+        if (f.family == Family::reciprocity) return reciprocity_cause(check_cases[outcome.check_cases[0]]);
     return {};
 }
 

@@ -25,7 +25,7 @@ constexpr std::array<double, 3> shares_within = {0.5, 0.9, 0.99};
 
 Interval share_interval(double hits, double of) {
     if (!(of > 0)) return {};
-    const stats::ShareInterval i = stats::binomial_interval(of, hits, one_tail);
+    const statistics::ShareInterval i = statistics::binomial_interval(of, hits, one_tail);
     return {hits / of, i.low, i.high};
 }
 
@@ -179,14 +179,15 @@ void describe_map(const std::vector<Vec3d>& w, Description& d) {
     for (double h : hits) d.map.push_back(share_interval(h, static_cast<double>(d.draws)));
 }
 
-Description describe_one(const CheckCase& trial, int technique, const DescribeSettings& settings, std::uint16_t place) {
+Description describe_one(
+    const CheckCase& check_case, int technique, const DescribeSettings& settings, std::uint16_t place) {
     Description d;
-    d.arm = trial.arm, d.trial = trial.text();
-    d.technique = technique, d.techniques = trial.subject->techniques();
-    Source source(*trial.subject, technique, trial.wo, trial.light);
+    d.arm = check_case.arm, d.check_case = check_case.text();
+    d.technique = technique, d.techniques = check_case.adapter->techniques();
+    Source source(*check_case.adapter, technique, check_case.wo, check_case.light);
     const StreamKey key{settings.seed, place, static_cast<std::uint8_t>(technique), 1, Purpose::draws, 0xffff};
     const std::uint32_t n =
-        source.available(key, trial.subject->limited() ? settings.draws_of_limited : settings.draws);
+        source.available(key, check_case.adapter->limited() ? settings.draws_of_limited : settings.draws);
     std::vector<Vec3d> w;
     std::vector<PrimarySample> u;
     std::vector<Draw> draws;
@@ -217,19 +218,20 @@ Description describe_one(const CheckCase& trial, int technique, const DescribeSe
 }  // namespace
 
 std::vector<Description> describe(
-    std::span<const CheckCase> trials, const DescribeSettings& settings, ProgressMonitor& monitor) {
+    std::span<const CheckCase> check_cases, const DescribeSettings& settings, ProgressMonitor& monitor) {
     std::vector<std::pair<std::size_t, int>> jobs;
-    for (std::size_t i = 0; i < trials.size(); ++i)
-        for (int t = 0; !trials[i].baseline && t < trials[i].subject->techniques(); ++t) jobs.emplace_back(i, t);
+    for (std::size_t i = 0; i < check_cases.size(); ++i)
+        for (int t = 0; !check_cases[i].baseline && t < check_cases[i].adapter->techniques(); ++t)
+            jobs.emplace_back(i, t);
     monitor.begin("describe", static_cast<double>(jobs.size()));
     std::vector<Description> out(jobs.size());
     const auto run = [&](std::size_t j) {
         monitor.check();
-        const auto& [trial, technique] = jobs[j];
-        out[j] = describe_one(trials[trial], technique, settings, static_cast<std::uint16_t>(trial));
+        const auto& [check_case, technique] = jobs[j];
+        out[j] = describe_one(check_cases[check_case], technique, settings, static_cast<std::uint16_t>(check_case));
         monitor.advance(1);
     };
-    const bool serial = std::ranges::any_of(trials, [](const CheckCase& t) { return t.subject->serial(); });
+    const bool serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
     for_each_index(serial, jobs.size(), run);
     return out;
 }
@@ -271,7 +273,7 @@ std::string map_text(const Description& d) {
 
 std::string description_text(const Description& d) {
     constexpr double degrees = 360 / two_pi;
-    std::string out = d.arm + ", " + d.trial;
+    std::string out = d.arm + ", " + d.check_case;
     if (d.techniques > 1) out += fmt::format(", technique {} of {}", d.technique + 1, d.techniques);
     out += fmt::format(": {} draws, 95 % intervals in parentheses\n", d.draws);
     out += "  above the horizon    " + interval_text(d.above, 100, " %") + "\n";
@@ -309,7 +311,7 @@ nlohmann::ordered_json description_json(std::span<const Description> all) {
     };
     Json out = Json::array();
     for (const Description& d : all) {
-        Json j = {{"arm", d.arm}, {"case", d.trial}, {"technique", d.technique + 1}, {"draws", d.draws},
+        Json j = {{"arm", d.arm}, {"case", d.check_case}, {"technique", d.technique + 1}, {"draws", d.draws},
             {"invalid", d.invalid}, {"share_above", of(d.above)}, {"share_below", of(d.below)},
             {"share_of_delta_parts", of(d.delta)}, {"share_of_nothing", of(d.nothing)}};
         if (!d.map.empty()) {

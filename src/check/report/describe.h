@@ -22,7 +22,7 @@ struct Interval {
 
 /// Of one technique at one w_o. Angles in radians, solid angles in sr.
 struct Description {
-    std::string arm, trial;
+    std::string arm, check_case;
     int technique = 0, techniques = 1;
     std::uint64_t draws = 0, invalid = 0;   // invalid: numbers that are no direction; left out of all that follows
     Interval above, below, delta, nothing;  // shares of the draws: directions on either side, delta parts, none
@@ -46,9 +46,9 @@ struct DescribeSettings {
     std::uint32_t draws = 1u << 16, draws_of_limited = 1u << 14;
 };
 
-/// One for each technique of each trial; baselines are left out.
+/// One for each technique of each case; baselines are left out.
 std::vector<Description> describe(
-    std::span<const CheckCase> trials, const DescribeSettings& settings, ProgressMonitor& monitor);
+    std::span<const CheckCase> check_cases, const DescribeSettings& settings, ProgressMonitor& monitor);
 
 /// For a terminal of 80 columns.
 std::string description_text(const Description& d);

@@ -36,7 +36,7 @@ struct ConeOfDraws : SamplerAdapter {
 
 Description described(const ConeOfDraws& s) {
     CheckCase t;
-    t.arm = "cone", t.wo = {0, 0, 1}, t.subject = std::make_shared<ConeOfDraws>(s);
+    t.arm = "cone", t.wo = {0, 0, 1}, t.adapter = std::make_shared<ConeOfDraws>(s);
     ProgressMonitor monitor;
     return describe({&t, 1}, {}, monitor).at(0);
 }

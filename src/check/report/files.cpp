@@ -14,7 +14,7 @@
 #include "base/text.h"
 #include "check/report/print.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 namespace {
 
@@ -114,4 +114,4 @@ void write_whole(const std::string& path, const std::string& text) {
     close(file);
 }
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

@@ -1,4 +1,4 @@
-// The page of a judgement: what was found, in sentences, tables and pictures.
+// The page of a result: what was found, in sentences, tables and pictures.
 #include "check/report/html.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "output/charts.h"
 #include "output/html.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 namespace {
 
@@ -99,10 +99,10 @@ std::string expected_html(const Verdict& v) {
 std::string overview(const CheckResult& j) {
     std::string out;
     for (const Finding& f : findings_of(j))
-        out += fmt::format("<li><b class={}>{}</b> {}{}", word(f.state), escape(f.arm), escape(told(f)),
+        out += fmt::format("<li><b class={}>{}</b> {}{}", word(f.state), escape(f.arm), escape(describe(f)),
             f.expected ? expected_html(*f.worst) : "");
     for (const std::string& line : j.unmet) out += "<li class=wrong>" + escape(line);
-    if (const std::string left = left_out_told(j); !left.empty()) out += "<li class=inconclusive>" + escape(left);
+    if (const std::string left = skipped_text(j); !left.empty()) out += "<li class=inconclusive>" + escape(left);
     out = out.empty() ? "<p>Nothing is wrong, nothing was left open.</p>" : "<ul>" + out + "</ul>";
     std::vector<std::string_view> names;
     for (const Verdict& v : j.verdicts)
@@ -112,8 +112,8 @@ std::string overview(const CheckResult& j) {
     for (std::string_view name : names) out += fmt::format("<th>{}", name);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         const Verdict& v = j.verdicts[i];
-        if (i == 0 || v.trial != j.verdicts[i - 1].trial || v.arm != j.verdicts[i - 1].arm)
-            out += fmt::format("<tr><th>{}{}", one_arm ? "" : escape(v.arm) + " ", escape(v.trial));
+        if (i == 0 || v.check_case != j.verdicts[i - 1].check_case || v.arm != j.verdicts[i - 1].arm)
+            out += fmt::format("<tr><th>{}{}", one_arm ? "" : escape(v.arm) + " ", escape(v.check_case));
         out += fmt::format("<td class={}>{}", word(v.state), word(v.state));
     }
     return out + "</table></div>";
@@ -124,23 +124,24 @@ std::string cases_html(const CheckResult& j) {
     std::string out;
     std::size_t map = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
-        const std::string arm = j.verdicts[i].arm, trial = j.verdicts[i].trial;
+        const std::string arm = j.verdicts[i].arm, check_case = j.verdicts[i].check_case;
         std::string rows, implied;
         bool open = false;
-        for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
+        for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].check_case == check_case; ++i) {
             const Verdict& v = j.verdicts[i];
             open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
             rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state),
-                escape(told(v)), v.why_expected.empty() ? "" : expected_html(v));
+                escape(describe(v)), v.why_expected.empty() ? "" : expected_html(v));
             implied += implied_html(v);
         }
         open = open || (out.empty() && !implied.empty());  // what it is asked for, once
         out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
-            escape(arm), escape(trial), rows);
-        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial)
+            escape(arm), escape(check_case), rows);
+        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].check_case == check_case)
             out += map_figures(j.maps[map++]);
         out += implied + "<div class=row>";
-        while (weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].trial == trial) {
+        while (
+            weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].check_case == check_case) {
             out += histogram(j.weights[weight]) + rose_figure(j.weights[weight]);
             ++weight;
         }
@@ -151,7 +152,7 @@ std::string cases_html(const CheckResult& j) {
 
 }  // namespace
 
-std::string verdict_html(const CheckResult& j, const JudgementSource& source) {
+std::string verdict_html(const CheckResult& j, const ResultSource& source) {
     PageFrame frame;
     frame.title_text = fmt::format("{}: {}", names_of(j), word(j.state));
     frame.kicker_text = "samplers judged by themselves";
@@ -163,7 +164,7 @@ std::string verdict_html(const CheckResult& j, const JudgementSource& source) {
             "seed{}.</p>\n",
             j.tests, j.alpha, j.screened, j.confirmed,
             j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "") +
-        "<p>" + escape(unseen_told(j)) + " " + escape(nothing_drawn_told(j)) + " " + escape(not_looked_at_told(j)) +
+        "<p>" + escape(unseen_text(j)) + " " + escape(nothing_drawn_text(j)) + " " + escape(not_tested_text(j)) +
         "</p>\n";
     if (!source.version.empty())
         frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
@@ -303,4 +304,4 @@ std::string implied_html(const Verdict& v) {
         "<code>implied_bins</code>.</p>";
 }
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

@@ -6,7 +6,7 @@
 
 #include "check/verdict.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 /// Observed, expected and standardised difference, painted by the page's script; the worst bin has a frame. Of an
 /// implied density one map.
@@ -16,4 +16,4 @@ std::string rose_figure(const WeightHistogram& weights);
 /// The table of the density that the draws imply, by rings about n; "" of any other verdict.
 std::string implied_html(const Verdict& verdict);
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

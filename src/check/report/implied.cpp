@@ -98,7 +98,7 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
     v.evidence["implied_bins"] = {
         {"columns", {"cos_theta_from", "cos_theta_to", "phi_from", "phi_to", "pdf", "standard_error"}},
         {"rows", std::move(rows)}};
-    v.say = draws[0] > 0
+    v.message = draws[0] > 0
         ? fmt::format(
               "There is no pdf(w) to compare the draws with. The density that they imply is highest about "
               "{}: {:.4g} +- {:.2g} 1/sr, over {:.2g} sr.",

@@ -136,16 +136,16 @@ double degrees_from(double seam, double turned) {
 
 }  // namespace
 
-std::optional<BinHistogram> bin_map(const CheckCase& trial, const CheckAt& c) {
+std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& c) {
     if (!c.plan || c.observations.counts.empty()) return {};
-    const bool has_density = trial.subject->traits().has_pdf;
+    const bool has_density = check_case.adapter->traits().has_pdf;
     const std::vector<LeafDraws> leaves = leaf_draws(c, has_density);
     if (leaves.empty()) return {};
     const MapEdges edges = map_edges(leaves, c.plan->middle);
     BinHistogram out;
-    out.arm = trial.arm, out.trial = trial.text();
+    out.arm = check_case.arm, out.check_case = check_case.text();
     out.coordinates = "theta from n and phi about it";
-    if (trial.subject->techniques() > 1) out.coordinates += fmt::format(", technique {}", c.technique + 1);
+    if (check_case.adapter->techniques() > 1) out.coordinates += fmt::format(", technique {}", c.technique + 1);
     out.rings = static_cast<int>(edges.theta.size()) - 1, out.sectors = static_cast<int>(edges.phi.size()) - 1;
     const auto sectors = static_cast<std::size_t>(out.sectors), bins = static_cast<std::size_t>(out.rings) * sectors;
     out.observed.assign(bins, 0), out.expected.assign(bins, 0), out.sd.assign(bins, 0);
@@ -173,10 +173,10 @@ std::optional<BinHistogram> bin_map(const CheckCase& trial, const CheckAt& c) {
     return out;
 }
 
-WeightHistogram weight_picture(const CheckCase& trial, std::span<const double> x, const WeightTail& tail) {
+WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail) {
     constexpr int bins = 48;
     WeightHistogram out;
-    out.arm = trial.arm, out.trial = trial.text();
+    out.arm = check_case.arm, out.check_case = check_case.text();
     double low = 1e300, high = 0;
     for (double v : x) {
         if (v > 0) low = std::min(low, v), high = std::max(high, v);
@@ -201,16 +201,16 @@ WeightHistogram weight_picture(const CheckCase& trial, std::span<const double> x
     return out;
 }
 
-void add_rose(const CheckCase& trial, WeightHistogram& to) {
-    Source source(*trial.subject, 0, trial.wo, trial.light);
+void add_rose(const CheckCase& check_case, WeightHistogram& to) {
+    Source source(*check_case.adapter, 0, check_case.wo, check_case.light);
     if (!source.has_density() || !source.has_f()) return;
     std::vector<Vec3d> wi;
-    const double azimuth = math::atan2(trial.wo.y, trial.wo.x) * 360 / two_pi;
+    const double azimuth = math::atan2(check_case.wo.y, check_case.wo.x) * 360 / two_pi;
     for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));
     to.rose_p.assign(wi.size(), 0);
     std::vector<double> p(wi.size());
-    for (int t = 0; t < trial.subject->techniques(); ++t) {
-        Source technique(*trial.subject, t, trial.wo, trial.light);
+    for (int t = 0; t < check_case.adapter->techniques(); ++t) {
+        Source technique(*check_case.adapter, t, check_case.wo, check_case.light);
         technique.density(wi, p);
         for (std::size_t i = 0; i < wi.size(); ++i) to.rose_p[i] = std::max(to.rose_p[i], p[i]);
     }

@@ -9,22 +9,23 @@
 namespace crescent::check {
 namespace {
 
-struct MappedTrial {
-    CheckCase trial;
+struct MappedCase {
+    CheckCase check_case;
     CheckAt at;
 };
-MappedTrial mapped(const char* arm, double theta) {
-    MappedTrial out{make_case_on(case_setup(lobe_named("ggx"), false, "fill", 0.1), theta, 120, arm, nullptr), {}};
-    out.trial.subject = sampler_on(arm, out.trial);
-    out.at = check_sampler_at(*out.trial.subject, 0, out.trial.wo, {out.trial.light}, CheckBudget::limited(), 1);
+MappedCase mapped(const char* arm, double theta) {
+    MappedCase out{make_case_on(case_setup(lobe_named("ggx"), false, "fill", 0.1), theta, 120, arm, nullptr), {}};
+    out.check_case.adapter = sampler_on(arm, out.check_case);
+    out.at = check_sampler_at(
+        *out.check_case.adapter, 0, out.check_case.wo, {out.check_case.light}, CheckBudget::limited(), 1);
     return out;
 }
 double sum_of(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
 TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
     for (double theta : {0.0, 60.0}) {
-        const MappedTrial m = mapped("ggx-vndf", theta);
-        const std::optional<BinHistogram> map = bin_map(m.trial, m.at);
+        const MappedCase m = mapped("ggx-vndf", theta);
+        const std::optional<BinHistogram> map = bin_map(m.check_case, m.at);
         ASSERT_TRUE(map);
         const auto bins = static_cast<std::size_t>(map->rings * map->sectors);
         ASSERT_EQ(map->observed.size(), bins);
@@ -44,12 +45,12 @@ TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
 }
 
 TEST(PicturesOfACheck, ShowTheWeightsAndTheTail) {
-    const MappedTrial m = mapped("uniform", 30);
+    const MappedCase m = mapped("uniform", 30);
     const std::vector<double> x = weights_of({&m.at, 1});
-    WeightHistogram w = weight_picture(m.trial, x, tail_of({&m.at, 1}));
+    WeightHistogram w = weight_picture(m.check_case, x, tail_of({&m.at, 1}));
     EXPECT_EQ(sum_of(w.counts) + w.zeros, static_cast<double>(x.size()));
     EXPECT_EQ(w.log10_edges.size(), w.counts.size() + 1);
-    add_rose(m.trial, w);
+    add_rose(m.check_case, w);
     ASSERT_EQ(w.rose_p.size(), 179u);
     ASSERT_EQ(w.rose_f.size(), 179u);
     // The plane of incidence: the lobe is across from w_o.

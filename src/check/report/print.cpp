@@ -1,5 +1,5 @@
 // The terminal's table shows the worst state over all w_o; JSON and JUnit have every verdict. What takes time goes into
-// the timing alone, so that a judgement has the same bytes each time.
+// the timing alone, so that a result has the same bytes each time.
 #include "check/report/print.h"
 
 #include <array>
@@ -11,7 +11,7 @@
 #include "check/verdict_names.h"
 #include "output/junit.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 namespace {
 
@@ -25,10 +25,10 @@ State worst(State a, State b) {
 /// The worst state of each verdict of one arm.
 using Row = std::map<std::string, State>;
 
-std::string rows_of(const CheckResult& judgement) {
+std::string rows_of(const CheckResult& result) {
     std::vector<std::string> order;
     std::map<std::string, Row> rows;
-    for (const Verdict& v : judgement.verdicts) {
+    for (const Verdict& v : result.verdicts) {
         if (!rows.count(v.arm)) order.push_back(v.arm);
         Row& row = rows[v.arm];
         row[v.name] = row.count(v.name) ? worst(row[v.name], v.state) : v.state;
@@ -47,19 +47,19 @@ std::string rows_of(const CheckResult& judgement) {
     return out;
 }
 
-std::string expected_ones(const CheckResult& judgement) {
+std::string expected_ones(const CheckResult& result) {
     std::map<std::string, int> lines;  // told once each, with how often
-    for (const Verdict& v : judgement.verdicts)
+    for (const Verdict& v : result.verdicts)
         if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
             ++lines[fmt::format(
                 "{}: {} {} as {}: {}", v.arm, word(v.state), v.name, v.waived ? "waived" : "expected", v.why_expected)];
-    std::string out = lines.empty() && judgement.unmet.empty() ? "" : "\n";
+    std::string out = lines.empty() && result.unmet.empty() ? "" : "\n";
     for (const auto& [line, count] : lines) out += fmt::format("{} ({} cases)\n", line, count);
-    for (const std::string& line : judgement.unmet) out += line + "\n";
+    for (const std::string& line : result.unmet) out += line + "\n";
     return out;
 }
 
-nlohmann::ordered_json head_of(const char* format, const JudgementSource& source) {
+nlohmann::ordered_json head_of(const char* format, const ResultSource& source) {
     nlohmann::ordered_json root;
     root["format"] = format;
     for (const auto& [key, value] :
@@ -72,57 +72,57 @@ std::string text_of(const nlohmann::ordered_json& root) {
     return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-nlohmann::ordered_json cases_of(const CheckResult& judgement) {
+nlohmann::ordered_json cases_of(const CheckResult& result) {
     nlohmann::ordered_json out = nlohmann::ordered_json::array();
-    for (const Verdict& v : judgement.verdicts)
-        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}}; out.empty() || out.back() != one)
+    for (const Verdict& v : result.verdicts)
+        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.check_case}}; out.empty() || out.back() != one)
             out.push_back(std::move(one));
     return out;
 }
 
 }  // namespace
 
-std::string verdict_table(const CheckResult& judgement, bool all) {
-    const std::string summary = summary_of(judgement);
+std::string verdict_table(const CheckResult& result, bool all) {
+    const std::string summary = summary_of(result);
     const std::size_t details = std::min(summary.find("\n\n"), summary.size());
     std::string out =
-        summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(judgement) + expected_ones(judgement);
+        summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(result) + expected_ones(result);
     if (details < summary.size()) out += summary.substr(details + 1);
-    for (const Verdict& v : judgement.verdicts)
-        if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
+    for (const Verdict& v : result.verdicts)
+        if (all)
+            out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.check_case, v.name, word(v.state), describe(v));
     for (const std::string& last :
-        {implied_told(judgement), unseen_told(judgement), nothing_drawn_told(judgement), not_looked_at_told(judgement)})
+        {implied_text(result), unseen_text(result), nothing_drawn_text(result), not_tested_text(result)})
         if (!last.empty()) out += "\n" + last + "\n";
-    const std::string asked =
-        judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
+    const std::string asked = result.questions > 0 ? fmt::format("; {} questions were answered", result.questions) : "";
     out += fmt::format(
         "\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n",
-        word(judgement.state), judgement.tests, judgement.alpha, judgement.screened, judgement.confirmed, asked);
+        word(result.state), result.tests, result.alpha, result.screened, result.confirmed, asked);
     return out;
 }
 
-std::string verdict_json(const CheckResult& judgement, const JudgementSource& source) {
+std::string verdict_json(const CheckResult& result, const ResultSource& source) {
     nlohmann::ordered_json root = head_of("crescent check 2", source);
-    root["state"] = word(judgement.state);
-    root["as_expected"] = judgement.as_expected;
-    root["alpha"] = judgement.alpha;
-    root["tests"] = judgement.tests;
-    root["failed_once"] = judgement.screened;
-    root["failed_twice"] = judgement.confirmed;
-    if (judgement.questions > 0) root["questions"] = judgement.questions;
-    if (!judgement.unmet.empty()) root["unmet_expectations"] = judgement.unmet;
-    root["asked_for"] = cases_of(judgement);
+    root["state"] = word(result.state);
+    root["as_expected"] = result.as_expected;
+    root["alpha"] = result.alpha;
+    root["tests"] = result.tests;
+    root["failed_once"] = result.screened;
+    root["failed_twice"] = result.confirmed;
+    if (result.questions > 0) root["questions"] = result.questions;
+    if (!result.unmet.empty()) root["unmet_expectations"] = result.unmet;
+    root["asked_for"] = cases_of(result);
     root["left_out"] = nlohmann::ordered_json::array();
-    for (const SkippedCase& l : judgement.left_out)
-        root["left_out"].push_back({{"arm", l.arm}, {"case", l.trial}, {"verdicts", l.verdicts}, {"why", l.why}});
+    for (const SkippedCase& l : result.left_out)
+        root["left_out"].push_back({{"arm", l.arm}, {"case", l.check_case}, {"verdicts", l.verdicts}, {"why", l.why}});
     root["verdicts"] = nlohmann::ordered_json::array();
-    for (const Verdict& v : judgement.verdicts) {
+    for (const Verdict& v : result.verdicts) {
         nlohmann::ordered_json one;
         one["arm"] = v.arm;
-        one["case"] = v.trial;
+        one["case"] = v.check_case;
         one["name"] = v.name;
         one["state"] = word(v.state);
-        one["say"] = v.say;
+        one["say"] = v.message;
         if (!v.cause.empty()) one["cause"] = v.cause;
         if (const std::string next = settling(v); !next.empty()) one["settle"] = next;
         one["expected"] = v.expected;
@@ -134,22 +134,22 @@ std::string verdict_json(const CheckResult& judgement, const JudgementSource& so
     return text_of(root);
 }
 
-std::string verdict_timing(const CheckResult& judgement, const JudgementSource& source) {
+std::string verdict_timing(const CheckResult& result, const ResultSource& source) {
     nlohmann::ordered_json root = head_of("crescent check timing 1", source);
     root["verdicts"] = nlohmann::ordered_json::array();
-    for (const Verdict& v : judgement.verdicts) {
-        nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}, {"name", v.name}, {"seconds", v.seconds}};
-        if (!v.say_timed.empty()) one["say"] = v.say_timed;
+    for (const Verdict& v : result.verdicts) {
+        nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"seconds", v.seconds}};
+        if (!v.timed_message.empty()) one["say"] = v.timed_message;
         one.update(v.timing);
         root["verdicts"].push_back(std::move(one));
     }
     return text_of(root);
 }
 
-std::string verdict_junit(const CheckResult& judgement) {
+std::string verdict_junit(const CheckResult& result) {
     using Case = JunitCase::State;
     JunitSuite suite{"crescent check", {}, {}};
-    for (const Verdict& v : judgement.verdicts) {
+    for (const Verdict& v : result.verdicts) {
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         const bool open = v.state == State::skipped || v.state == State::inconclusive;
         const std::string next = settling(v);
@@ -157,12 +157,12 @@ std::string verdict_junit(const CheckResult& judgement) {
             : fails                                ? Case::failed
             : open                                 ? Case::skipped
                                                    : Case::passed;
-        suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.trial), state,
-            fmt::format("{}: {}", word(v.state), sentences_of(v.say).front()),
-            v.say + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next),
+        suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
+            fmt::format("{}: {}", word(v.state), sentences_of(v.message).front()),
+            v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next),
             v.seconds});
     }
-    for (const std::string& line : judgement.unmet)
+    for (const std::string& line : result.unmet)
         suite.cases.push_back({"crescent check", "expectations", Case::failed, line, line, 0});
     return junit_text(suite);
 }
@@ -183,7 +183,7 @@ std::string named(const Words& words, FrontEnd front_end) { return words[static_
 
 std::string settling(const Verdict& v, FrontEnd front_end) {
     switch (v.next.kind) {
-        case NextStep::Kind::none: return v.settle;
+        case NextStep::Kind::none: return v.next_step;
         case NextStep::Kind::more_draws:
             return named(thorough, front_end) + " draws more" +
                 (v.next.times > 0 ? fmt::format(" (about {:.2g} times as many draws are needed).", v.next.times) : ".");
@@ -191,7 +191,7 @@ std::string settling(const Verdict& v, FrontEnd front_end) {
         case NextStep::Kind::heavier_pdf:
             return "a pdf that falls off no faster than f; " + named(accept, front_end) + " accepts a heavy tail.";
     }
-    return v.settle;
+    return v.next_step;
 }
 
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end) {
@@ -208,4 +208,4 @@ std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end) {
     return "";
 }
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

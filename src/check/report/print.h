@@ -7,24 +7,24 @@
 
 #include "check/verdict.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
-/// Where a judgement comes from; equal calls have equal ones.
-struct JudgementSource {
+/// Where a result comes from; equal calls have equal ones.
+struct ResultSource {
     std::string version, commit, command;
 };
 
 /// One line a finding over all w_o, an arm a line with its verdicts, then the details; `all`: every verdict.
-std::string verdict_table(const CheckResult& judgement, bool all = false);
+std::string verdict_table(const CheckResult& result, bool all = false);
 /// docs/check.schema.json. Equal calls give equal bytes: what varies from run to run stands in verdict_timing.
-std::string verdict_json(const CheckResult& judgement, const JudgementSource& source = {});
+std::string verdict_json(const CheckResult& result, const ResultSource& source = {});
 /// Seconds of each verdict, nanoseconds of a sample, variance x time and the ranks that follow from them.
-std::string verdict_timing(const CheckResult& judgement, const JudgementSource& source = {});
-std::string verdict_junit(const CheckResult& judgement);
+std::string verdict_timing(const CheckResult& result, const ResultSource& source = {});
+std::string verdict_junit(const CheckResult& result);
 /// The summary, a matrix of w_o and verdicts, then case by case: maps of observed, expected and standardised
 /// difference, weight histograms with their tail, and roses of p over f L cos; of a sampler without pdf(w) the map and
 /// the table of the density that its draws imply.
-std::string verdict_html(const CheckResult& judgement, const JudgementSource& source = {});
+std::string verdict_html(const CheckResult& result, const ResultSource& source = {});
 /// Throws OutputError where write_whole would.
 void can_write(const std::string& path);
 /// Writes beside the place and renames; throws OutputError.
@@ -32,12 +32,12 @@ void write_whole(const std::string& path, const std::string& text);
 
 // ---- Next steps in the words of a front end: flags of the command line, calls of C++ or of Python.
 
-/// Who shows a judgement.
+/// Who shows a result.
 enum class FrontEnd { command_line, cpp, python };
 
 /// What would settle a verdict that is inconclusive: "--full draws more." or the same in calls; "" for none.
 std::string settling(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
-/// How to judge the sampler at one w_o alone: theta and azimuth in degrees.
+/// How to check the sampler at one w_o alone: theta and azimuth in degrees.
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end);
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

@@ -135,9 +135,10 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
             return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, numbers,
                 fmt::format(": weight {:.5g}, f cos / pdf {:.5g}", checks.weight.first.draw.weight.value_or(0),
                     checks.weight.first.due));
-        case Family::true_f:
-            return pair_sentence("f is not the BRDF", a.difference, checks.true_f.first, numbers,
-                fmt::format(": f cos {:.5g}, expected {:.5g}", checks.true_f.first.p, checks.true_f.first.due));
+        case Family::reference_f:
+            return pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, numbers,
+                fmt::format(
+                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.due));
         case Family::repeats:
             return fmt::format("{:g} pairs of {:g} draws have the same direction. Expected {:.2g}.", a.difference,
                 c.observations.independent, a.expected);

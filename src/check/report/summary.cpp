@@ -16,7 +16,7 @@
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 
-namespace crescent::inline judgements {
+namespace crescent::inline results {
 
 namespace {
 
@@ -26,7 +26,7 @@ using Key = std::pair<std::string, std::string>;  // arm and case
 
 std::map<Key, std::set<std::string>> left_out_of(const CheckResult& j) {
     std::map<Key, std::set<std::string>> out;
-    for (const SkippedCase& l : j.left_out) out[{l.arm, l.trial}].insert(l.verdicts.begin(), l.verdicts.end());
+    for (const SkippedCase& l : j.left_out) out[{l.arm, l.check_case}].insert(l.verdicts.begin(), l.verdicts.end());
     return out;
 }
 
@@ -37,10 +37,10 @@ struct Count {
 
 std::map<std::string, Count> count_cases(const CheckResult& j) {
     std::map<std::string, std::set<std::string>> cases;
-    for (const Verdict& v : j.verdicts) cases[v.arm].insert(v.trial);
+    for (const Verdict& v : j.verdicts) cases[v.arm].insert(v.check_case);
     std::map<std::string, Count> out;
-    for (const auto& [arm, trials] : cases)
-        out[arm] = {trials.size(), std::all_of(trials.begin(), trials.end(), [](const std::string& t) {
+    for (const auto& [arm, check_cases] : cases)
+        out[arm] = {check_cases.size(), std::all_of(check_cases.begin(), check_cases.end(), [](const std::string& t) {
                         return t.starts_with("w_o") && t.find(',') == std::string::npos;
                     })};
     return out;
@@ -52,23 +52,23 @@ void add(Finding& f, const Verdict& v) {
 }
 
 /// What a verdict says beyond what the worst of its finding says already.
-std::string told_beside(const Verdict& v, const std::set<std::string>& already) {
+std::string without_repeats(const Verdict& v, const std::set<std::string>& already) {
     std::string out;
-    for (const std::string& sentence : sentences_of(told(v)))
+    for (const std::string& sentence : sentences_of(describe(v)))
         if (!already.contains(sentence)) out += (out.empty() ? "" : " ") + sentence;
     return out;
 }
 
 void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
-    const std::vector<std::string> of_worst = sentences_of(told(*f.worst));
+    const std::vector<std::string> of_worst = sentences_of(describe(*f.worst));
     const std::set<std::string> already(of_worst.begin(), of_worst.end());
     for (const Verdict* v : all) {
-        const std::string say = told_beside(*v, already);
-        if (say.empty()) continue;
+        const std::string message = without_repeats(*v, already);
+        if (message.empty()) continue;
         const auto same =
-            std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == say; });
-        if (same != f.sentences.end()) same->second.push_back(v->trial);
-        else f.sentences.push_back({say, {v->trial}});
+            std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == message; });
+        if (same != f.sentences.end()) same->second.push_back(v->check_case);
+        else f.sentences.push_back({message, {v->check_case}});
     }
 }
 
@@ -84,10 +84,10 @@ std::string cause_of(const Finding& f, const CheckResult& j) {
 
 }  // namespace
 
-std::string told(const Verdict& v, FrontEnd front_end) {
+std::string describe(const Verdict& v, FrontEnd front_end) {
     const std::string next = settling(v, front_end);
-    return v.say + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next) +
-        (v.say_timed.empty() ? "" : " " + v.say_timed);
+    return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next) +
+        (v.timed_message.empty() ? "" : " " + v.timed_message);
 }
 
 std::vector<std::string> sentences_of(const std::string& text) {
@@ -110,7 +110,7 @@ std::vector<Finding> findings_of(const CheckResult& j) {
     std::vector<std::vector<const Verdict*>> members;
     for (const Verdict& v : j.verdicts) {
         if (v.state == State::right || v.state == State::skipped) continue;
-        const auto left = left_out.find({v.arm, v.trial});
+        const auto left = left_out.find({v.arm, v.check_case});
         if (left != left_out.end() && left->second.count(v.name)) continue;
         const bool expected = v.expected && !v.why_expected.empty();
         const auto [at, fresh] =
@@ -141,51 +141,51 @@ std::vector<Finding> findings_of(const CheckResult& j) {
 
 namespace {
 
-/// "at 8 of 8 w_o, worst at w_o 60 deg az 250"; "" for a sampler that is judged once, without w_o.
+/// "at 8 of 8 w_o, worst at w_o 60 deg az 250"; "" for a sampler that is checked once, without w_o.
 std::string where_found(const Finding& f) {
-    if (f.of == 1 && f.worst->trial == without_wo) return "";
+    if (f.of == 1 && f.worst->check_case == without_wo) return "";
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    return fmt::format("at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->trial);
+    return fmt::format("at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->check_case);
 }
 
 }  // namespace
 
-std::string told(const Finding& f, FrontEnd front_end) {
-    const std::string say = told(*f.worst, front_end);
-    if (f.state == State::error && f.worst->trial == before_any_trial) return "error. " + say;
+std::string describe(const Finding& f, FrontEnd front_end) {
+    const std::string message = describe(*f.worst, front_end);
+    if (f.state == State::error && f.worst->check_case == before_any_case) return "error. " + message;
     if (f.state == State::error)
-        return fmt::format(
-            "error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of, f.worst->trial, say);
+        return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
+            f.worst->check_case, message);
     const std::string where = where_found(f);
-    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, say);
+    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, message);
     return out;
 }
 
-std::string left_out_told(const CheckResult& j) {
+std::string skipped_text(const CheckResult& j) {
     if (j.left_out.empty()) return "";
     std::set<Key> cases;
-    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
-    std::vector<std::string> trials;
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.check_case});
+    std::vector<std::string> check_cases;
     bool valid_alone = true;
     for (const SkippedCase& l : j.left_out) {
-        trials.push_back(l.trial);
+        check_cases.push_back(l.check_case);
         valid_alone = valid_alone && l.verdicts.size() + 1 == verdict_names.size();
     }
     return fmt::format("Left out: {} at {} of {} w_o ({}). {}", valid_alone ? "all but valid" : "some verdicts",
-        trials.size(), cases.size(), fmt::join(trials, "; "), j.left_out[0].why);
+        check_cases.size(), cases.size(), fmt::join(check_cases, "; "), j.left_out[0].why);
 }
 
 std::string summary_of(const CheckResult& j) {
     std::string out, details, arm;
     for (const Finding& f : findings_of(j)) {
         if (f.expected) continue;
-        out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", told(f));
+        out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", describe(f));
         if (f.sentences.empty()) continue;
         details += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
-        for (const auto& [say, trials] : f.sentences)
-            details += fmt::format("  [{}] {}\n", fmt::join(trials, "; "), say);
+        for (const auto& [message, check_cases] : f.sentences)
+            details += fmt::format("  [{}] {}\n", fmt::join(check_cases, "; "), message);
     }
-    if (const std::string left = left_out_told(j); !left.empty()) out += left + "\n";
+    if (const std::string left = skipped_text(j); !left.empty()) out += left + "\n";
     return out + details;
 }
 
@@ -198,8 +198,8 @@ std::string in_one_line(std::string text) {
 
 /// What and how large, where, and the cause: a line each.
 std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
-    if (f.state == State::error) return {in_one_line(told(f, FrontEnd::cpp))};
-    std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->say))};
+    if (f.state == State::error) return {in_one_line(describe(f, FrontEnd::cpp))};
+    std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->message))};
     if (const std::string where = where_found(f); !where.empty()) out.push_back("  " + where);
     if (with_cause && !f.cause.empty()) out.push_back("  " + in_one_line(f.cause));
     return out;
@@ -208,18 +208,18 @@ std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
 /// The step of the first finding: a wrong one is looked at alone, an open one has what would settle it.
 std::string next_step_of(const Finding& f) {
     const Verdict& v = *f.worst;
-    std::string say = in_one_line(settling(v, FrontEnd::cpp));
-    if (say.empty() && v.wo && f.state == State::wrong) say = one_wo_text(*v.wo, FrontEnd::cpp);
-    return say.empty() ? "" : "Next: " + say;
+    std::string message = in_one_line(settling(v, FrontEnd::cpp));
+    if (message.empty() && v.wo && f.state == State::wrong) message = one_wo_text(*v.wo, FrontEnd::cpp);
+    return message.empty() ? "" : "Next: " + message;
 }
 
 }  // namespace
 
-std::string what_is_wrong(const CheckResult& judgement, std::size_t most_lines) {
-    std::vector<Finding> findings = findings_of(judgement);
+std::string what_is_wrong(const CheckResult& result, std::size_t most_lines) {
+    std::vector<Finding> findings = findings_of(result);
     std::erase_if(findings, [](const Finding& f) { return f.expected; });
     std::vector<std::string> last;
-    if (const std::string left = left_out_told(judgement); !left.empty()) last.push_back(in_one_line(left));
+    if (const std::string left = skipped_text(result); !left.empty()) last.push_back(in_one_line(left));
     if (!findings.empty())
         if (const std::string next = next_step_of(findings[0]); !next.empty()) last.push_back(next);
     std::vector<std::string> lines;
@@ -239,31 +239,31 @@ std::string what_is_wrong(const CheckResult& judgement, std::size_t most_lines) 
     return lines.empty() ? "" : fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
-std::string unseen_told(const CheckResult& judgement) {
-    if (judgement.state == State::error) return "";  // what there is of right verdicts is not the whole
+std::string unseen_text(const CheckResult& result) {
+    if (result.state == State::error) return "";  // what there is of right verdicts is not the whole
     std::map<std::string, double> most;
-    for (const Verdict& v : judgement.verdicts)
+    for (const Verdict& v : result.verdicts)
         for (const auto& [kind, size] : v.hidden)
             if (v.state == State::right) most[kind] = std::max(most[kind], size);
-    std::vector<std::string> said;
-    const auto say = [&](const char* kind, const char* words, double unit) {
+    std::vector<std::string> sizes;
+    const auto add = [&](const char* kind, const char* words, double unit) {
         if (const auto at = most.find(kind); at != most.end())
-            said.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
+            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
     };
-    say("constant", "a constant factor of {:.2g} %", 100);
-    say("leak", "{:.2g} % of the draws uniform", 100);
-    say("cap", "a cap with {:.2g} % of p never drawn", 100);
-    say("rotation", "a rotation by {:.2g} rad", 1);
-    say("parameter", "an exponent off by {:.2g} %", 100);
-    return said.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(said, ", "));
+    add("constant", "a constant factor of {:.2g} %", 100);
+    add("leak", "{:.2g} % of the draws uniform", 100);
+    add("cap", "a cap with {:.2g} % of p never drawn", 100);
+    add("rotation", "a rotation by {:.2g} rad", 1);
+    add("parameter", "an exponent off by {:.2g} %", 100);
+    return sizes.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(sizes, ", "));
 }
 
-std::string nothing_drawn_told(const CheckResult& judgement) {
+std::string nothing_drawn_text(const CheckResult& result) {
     constexpr double worth_saying = 0.01;
-    const auto most = std::ranges::max_element(judgement.verdicts, {}, &Verdict::nothing);
-    if (most == judgement.verdicts.end() || !(most->nothing > worth_saying)) return "";
+    const auto most = std::ranges::max_element(result.verdicts, {}, &Verdict::nothing);
+    if (most == result.verdicts.end() || !(most->nothing > worth_saying)) return "";
     return fmt::format("Up to {:.3g} % of the draws returned no sample (pdf 0, or below the horizon): {}{}.",
-        100 * most->nothing, most->arm, most->trial == without_wo ? "" : " at " + most->trial);
+        100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
 }
 
 // ---- Read off the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
@@ -284,7 +284,7 @@ std::string with_error(double v, double se) {
 }
 
 /// The mean over the rows between two angles.
-std::string ring_told(const nlohmann::ordered_json& rows, double from, double to) {
+std::string ring_text(const nlohmann::ordered_json& rows, double from, double to) {
     double sum = 0, square = 0, whole = 0;
     for (const auto& row : rows) {
         const double low = row[0].get<double>(), high = row[1].get<double>();
@@ -300,13 +300,13 @@ std::string ring_told(const nlohmann::ordered_json& rows, double from, double to
 std::string line_of(const Verdict& v, const std::string& name) {
     const nlohmann::ordered_json &rows = v.evidence["implied_rings"]["rows"], &peak = v.evidence["implied_peak"];
     std::string out = fmt::format("{:<20}", name);
-    for (std::size_t k = 0; k < rings; ++k) out += fmt::format(" {:<15}", ring_told(rows, edges[k], edges[k + 1]));
+    for (std::size_t k = 0; k < rings; ++k) out += fmt::format(" {:<15}", ring_text(rows, edges[k], edges[k + 1]));
     return out + " " + with_error(peak["pdf"].get<double>(), peak["standard_error"].get<double>()) + "\n";
 }
 
 }  // namespace
 
-std::string implied_told(const CheckResult& j) {
+std::string implied_text(const CheckResult& j) {
     std::vector<const Verdict*> all;
     bool one_arm = true;
     for (const Verdict& v : j.verdicts)
@@ -320,14 +320,14 @@ std::string implied_told(const CheckResult& j) {
         out += fmt::format(" {:<15}", fmt::format("{:g} to {:g}", edges[k], edges[k + 1]));
     out += " highest\n";
     for (std::size_t i = 0; i < std::min(all.size(), most_lines); ++i)
-        out += line_of(*all[i], one_arm ? all[i]->trial : all[i]->arm + " " + all[i]->trial);
+        out += line_of(*all[i], one_arm ? all[i]->check_case : all[i]->arm + " " + all[i]->check_case);
     if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
     return "The density that the draws imply, there being no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +
         out + "Finer in the JSON: implied_rings, implied_bins.";
 }
 
-std::string not_looked_at_told(const CheckResult& j) {
+std::string not_tested_text(const CheckResult& j) {
     if (j.state == State::error) return "";
     std::vector<std::string> all;
     for (const Verdict& v : j.verdicts) {
@@ -339,4 +339,4 @@ std::string not_looked_at_told(const CheckResult& j) {
     return all.empty() ? "" : fmt::format("Not looked at: {}.", fmt::join(all, "; "));
 }
 
-}  // namespace crescent::inline judgements
+}  // namespace crescent::inline results

@@ -1,4 +1,4 @@
-// What a failing test prints of a judgement: few lines, in a fixed order, in calls of C++.
+// What a failing test prints of a result: few lines, in a fixed order, in calls of C++.
 #include "check/report/summary.h"
 
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@ CheckResult of_verdicts(std::initializer_list<std::tuple<const char*, State, dou
     for (const auto& [name, state, theta, cause] : verdicts) {
         Verdict v;
         v.arm = "sampler", v.name = name, v.state = state, v.cause = cause;
-        v.trial = "w_o " + std::to_string(static_cast<int>(theta)) + " deg";
+        v.check_case = "w_o " + std::to_string(static_cast<int>(theta)) + " deg";
         v.wo = {theta, 0};
-        v.say = std::string("What of ") + name + ".\nHow large.";
+        v.message = std::string("What of ") + name + ".\nHow large.";
         j.verdicts.push_back(v);
     }
     return j;
@@ -29,13 +29,14 @@ std::vector<std::string> lines(const std::string& text) {
 }
 
 TEST(WhatIsWrong, IsWhatHowLargeWhereCauseAndNext) {
-    const auto said = lines(what_is_wrong(of_verdicts({{"normalised", State::wrong, 60, ""},
+    const auto message = lines(what_is_wrong(of_verdicts({{"normalised", State::wrong, 60, ""},
         {"density", State::right, 60, ""}, {"normalised", State::wrong, 30, "A factor 2."}})));
-    ASSERT_EQ(said.size(), 4u);
-    EXPECT_EQ(said[0], "normalised is wrong: What of normalised. How large.");
-    EXPECT_EQ(said[1], "  at 2 of 2 w_o, worst at w_o 60 deg");
-    EXPECT_EQ(said[2], "  A factor 2.");
-    EXPECT_EQ(said[3].find("Next: crescent::IsARightSamplerBy(settings) with settings.wo = {{60, 0}}"), 0u) << said[3];
+    ASSERT_EQ(message.size(), 4u);
+    EXPECT_EQ(message[0], "normalised is wrong: What of normalised. How large.");
+    EXPECT_EQ(message[1], "  at 2 of 2 w_o, worst at w_o 60 deg");
+    EXPECT_EQ(message[2], "  A factor 2.");
+    EXPECT_EQ(message[3].find("Next: crescent::IsARightSamplerBy(settings) with settings.wo = {{60, 0}}"), 0u)
+        << message[3];
 }
 
 TEST(WhatIsWrong, HasAtMostEightLinesHoweverMuchIsWrong) {
@@ -43,12 +44,12 @@ TEST(WhatIsWrong, HasAtMostEightLinesHoweverMuchIsWrong) {
         {{"valid", State::wrong, 0, "A."}, {"support", State::wrong, 0, "B."}, {"normalised", State::wrong, 0, "C."},
             {"density", State::wrong, 0, "D."}, {"tail", State::inconclusive, 0, ""}, {"mean", State::error, 0, ""}});
     for (std::size_t most : {5u, 8u, 12u}) {
-        const auto said = lines(what_is_wrong(j, most));
-        EXPECT_LE(said.size(), most);
-        EXPECT_GE(said.size() + 3, most);
-        EXPECT_EQ(said[0].find("valid is wrong"), 0u);
+        const auto message = lines(what_is_wrong(j, most));
+        EXPECT_LE(message.size(), most);
+        EXPECT_GE(message.size() + 3, most);
+        EXPECT_EQ(message[0].find("valid is wrong"), 0u);
         std::string all;
-        for (const std::string& line : said) all += line;
+        for (const std::string& line : message) all += line;
         for (const Verdict& v : j.verdicts)
             if (v.state != State::error) EXPECT_NE(all.find(v.name), std::string::npos) << v.name << "\n" << all;
     }

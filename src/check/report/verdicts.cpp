@@ -30,7 +30,7 @@ void add_sizes(const Sizes& s, Verdict& v) {
     add("leak", s.leak), add("cap", s.cap), add("rotation", s.rotation), add("parameter", s.parameter);
 }
 
-void judge_at(const CheckAt& c, Verdict& v) {
+void decide_at(const CheckAt& c, Verdict& v) {
     constexpr double beyond_chance = 1e9;  // standard errors of what is counted
     const DrawChecks& checks = c.observations.checks;
     if (v.name == verdict_names[0] && checks.looked_at > 0)
@@ -38,7 +38,7 @@ void judge_at(const CheckAt& c, Verdict& v) {
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name)
             v.state = State::wrong, v.size = beyond_chance * f.times / std::max(f.of, 1.0),
-            v.say += (v.say.empty() ? "" : " ") + sentence_of(f, c.numbers);
+            v.message += (v.message.empty() ? "" : " ") + sentence_of(f, c.numbers);
     const Finding* worst = nullptr;
     for (const Finding& f : c.findings)
         if (info(f.first.family).verdict == v.name) {
@@ -50,7 +50,7 @@ void judge_at(const CheckAt& c, Verdict& v) {
         const Answer& a = worst->second.sd > 0 ? worst->second : worst->first;
         v.size = std::max(v.size, std::fabs(a.difference) * (a.sd > 0 ? 1 / a.sd : beyond_chance));
     }
-    if (worst) v.state = State::wrong, v.say += (v.say.empty() ? "" : " ") + sentence_of(c, *worst);
+    if (worst) v.state = State::wrong, v.message += (v.message.empty() ? "" : " ") + sentence_of(c, *worst);
     for (const Answer& a : c.answers)
         if (info(a.family).verdict == v.name && v.state != State::wrong)
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
@@ -62,7 +62,7 @@ void judge_at(const CheckAt& c, Verdict& v) {
         if (v.name == "density") only.constant.reset();
         if (worst_ratio(only) <= c.most_ratio()) return;
         v.state = State::inconclusive;
-        v.say = "A fault ten times its target would not have been found.";
+        v.message = "A fault ten times its target would not have been found.";
         v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
     }
 }
@@ -88,37 +88,38 @@ void place(const Cause& cause, std::vector<Verdict>& all) {
 }  // namespace
 
 std::vector<Verdict> verdicts_of(
-    std::span<const CheckCase> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause) {
+    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const std::optional<Cause>& cause) {
     std::vector<Verdict> out;
-    for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
-        const CheckCase& trial = trials[outcome.trials[k]];
+    for (std::size_t k = 0; k < outcome.check_cases.size(); ++k) {
+        const CheckCase& check_case = check_cases[outcome.check_cases[k]];
         for (std::size_t n = 0; n < verdict_names.size(); ++n) {
             const std::string_view name = verdict_names[n];
             const VerdictKind& kind = *verdict_kinds[n];
             Verdict v;
-            v.arm = trial.arm, v.trial = trial.text(), v.name = name;
-            if (v.trial != without_wo) v.wo = {trial.theta_deg, trial.azimuth_deg};
-            if (!kind.applies(*trial.subject)) {
+            v.arm = check_case.arm, v.check_case = check_case.text(), v.name = name;
+            if (v.check_case != without_wo) v.wo = {check_case.theta_deg, check_case.azimuth_deg};
+            if (!kind.applies(*check_case.adapter)) {
                 v.state = State::skipped;
-                v.say = kind.needs;
+                v.message = kind.needs;
                 out.push_back(std::move(v));
                 continue;
             }
             for (const CheckAt& c : outcome.at[k]) {
-                judge_at(c, v);
+                decide_at(c, v);
                 if (kind.add) kind.add(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
-            if (name == "tail") judge_tail(trial, outcome.tails[k], v);
-            if (name == "mean") judge_plain_mean(outcome.tails[k], v);
-            for (const CheckAt& c : outcome.at[k]) note_limits(*trial.subject, c, v);
+            if (name == "tail") test_tail(check_case, outcome.tails[k], v);
+            if (name == "mean") test_plain_mean(outcome.tails[k], v);
+            for (const CheckAt& c : outcome.at[k]) note_limits(*check_case.adapter, c, v);
             if (k == 0)
                 for (const SmallFault& f : outcome.small)
                     if (info(f.family).verdict == name)
                         v.state = State::wrong,
-                        v.say += (v.say.empty() ? "" : " ") + sentence_of(f, trial.subject->traits().numbers);
-            if (v.state == State::right && v.say.empty() && !outcome.at[k].empty())
-                v.say = sentence_of_right(outcome.at[k][0], name);
+                        v.message +=
+                            (v.message.empty() ? "" : " ") + sentence_of(f, check_case.adapter->traits().numbers);
+            if (v.state == State::right && v.message.empty() && !outcome.at[k].empty())
+                v.message = sentence_of_right(outcome.at[k][0], name);
             out.push_back(std::move(v));
         }
     }

@@ -13,6 +13,6 @@ namespace crescent::check {
 
 /// The verdicts of one sampler, for each of its w_o in the order of the list of verdicts.
 std::vector<Verdict> verdicts_of(
-    std::span<const CheckCase> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause);
+    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const std::optional<Cause>& cause);
 
 }  // namespace crescent::check

@@ -20,7 +20,7 @@ struct Uniform : SamplerAdapter {
 
 std::vector<Verdict> verdicts(double factor) {
     CheckCase t;
-    t.arm = "uniform", t.wo = {0, 0, 1}, t.subject = std::make_shared<Uniform>(factor);
+    t.arm = "uniform", t.wo = {0, 0, 1}, t.adapter = std::make_shared<Uniform>(factor);
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
     ProgressMonitor monitor;

@@ -1,4 +1,4 @@
-// A built-in arm as a subject: draws in float as it renders, densities in double for quadrature; the surface is
+// A built-in arm as a sampler: draws in float as it renders, densities in double for quadrature; the surface is
 // f = rho_d/pi + rho_s lobe.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 struct SurfaceSetup {
     LobeKind lobe = LobeKind::none;
@@ -21,8 +21,8 @@ struct SurfaceSetup {
 /// f of the surface, 1/sr, without the cosine.
 double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 
-/// The site of an arm in number type F; `disks` and `others` must outlive it.
-template <class F> ShadingPoint<F> site_of(const SurfaceSetup& surface, Vec3d wo,
+/// The shading point of an arm in number type F; `disks` and `others` must outlive it.
+template <class F> ShadingPoint<F> point_of(const SurfaceSetup& surface, Vec3d wo,
     const std::vector<LocalDisk<F>>& disks, const std::vector<LocalLight<F>>& others) {
     return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d),
         static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size()), others.data(),
@@ -32,7 +32,7 @@ template <class F> ShadingPoint<F> site_of(const SurfaceSetup& surface, Vec3d wo
 inline double power_of(const CaseLighting& light) {
     double total = 0;
     for (const CaseDiskLight& d : light.disks) total += d.radiance * sqr(d.radius);
-    for (const CaseAreaLight& lamp : light.lamps) total += lamp.power();
+    for (const CaseAreaLight& area_light : light.area_lights) total += area_light.power();
     return total;
 }
 /// One-sided disks, each with its share of the choice among lights.
@@ -50,15 +50,15 @@ template <class F> std::vector<LocalLight<F>> others_of(const CaseLighting& ligh
     const double total = power_of(light);
     const Frame<double> frame = frame_about(Vec3d{0, 0, 1});
     std::vector<LocalLight<F>> out;
-    for (const CaseAreaLight& lamp : light.lamps) {
+    for (const CaseAreaLight& area_light : light.area_lights) {
         const LightNumbers n = std::visit(
             [&](const auto& l) -> LightNumbers {
                 if constexpr (requires { l.numbers(Vec3d{}, frame); }) return l.numbers(Vec3d{}, frame);
                 else return {};
             },
-            lamp.form);
-        out.push_back(
-            {lamp.form.index(), static_cast<F>(lamp.power() / total), as<F>(n.a), as<F>(n.b), as<F>(n.c), {}});
+            area_light.form);
+        out.push_back({area_light.form.index(), static_cast<F>(area_light.power() / total), as<F>(n.a), as<F>(n.b),
+            as<F>(n.c), {}});
         for (std::size_t k = 0; k < n.number.size(); ++k) out.back().number[k] = static_cast<F>(n.number[k]);
     }
     return out;
@@ -73,8 +73,8 @@ public:
           disks_double_(disks_of<double>(light)),
           others_single_(others_of<float>(light)),
           others_double_(others_of<double>(light)),
-          single_(site_of<float>(surface, wo, disks_single_, others_single_)),
-          double_(site_of<double>(surface, wo, disks_double_, others_double_)) {}
+          single_(point_of<float>(surface, wo, disks_single_, others_single_)),
+          double_(point_of<double>(surface, wo, disks_double_, others_double_)) {}
     BuiltIn(const BuiltIn&) = delete;
     BuiltIn& operator=(const BuiltIn&) = delete;
 
@@ -138,4 +138,4 @@ protected:
     A<double> double_;
 };
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

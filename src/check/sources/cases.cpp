@@ -10,7 +10,7 @@
 #include "check/sources/wrappers.h"
 #include "math/functions.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 namespace {
 
@@ -27,8 +27,8 @@ CaseLighting light_named(const std::string& name) {
     if (has("two disks")) light.disks = {behind, oblique};
     else if (has("overhead")) light.disks = {overhead};
     else if (has("disk")) light.disks = {oblique};
-    for_each_lamp([&]<class Kind>() {
-        if (has(Kind::name)) light.lamps.push_back({10, Kind::example()});
+    for_each_area_light([&]<class Kind>() {
+        if (has(Kind::name)) light.area_lights.push_back({10, Kind::example()});
     });
     return light;
 }
@@ -38,14 +38,14 @@ using Setups = std::vector<CaseSetup>;
 /// The surfaces that an arm states; where it states none, every lobe at a middling width, and Lambert.
 Setups setups_of(const SamplerInfo& arm) {
     Setups all;
-    for (const CaseSurface& on : arm.trials)
+    for (const CaseSurface& on : arm.check_cases)
         all.push_back(case_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
-    // What is judged under a disk alone aims at lights, and is judged under every kind too.
+    // What is checked under a disk alone aims at lights, and is checked under every kind too.
     const auto add = [&](std::string_view light) {
         all.push_back(case_setup(LobeKind::none, true, std::string(light), 32));
     };
-    if (std::ranges::any_of(arm.trials, [](const CaseSurface& on) { return on.light == "disk"; })) {
-        for_each_lamp([&]<class Kind>() { add(Kind::name); });
+    if (std::ranges::any_of(arm.check_cases, [](const CaseSurface& on) { return on.light == "disk"; })) {
+        for_each_area_light([&]<class Kind>() { add(Kind::name); });
         add("disk + rectangle");
     }
     if (!all.empty()) return all;
@@ -74,17 +74,17 @@ void apply(const Settings& settings, CaseSetup& setup, Settings& unread) {
     set("alpha", setup.tells_alpha, f.alpha);
     set("rho_d", f.rho_d > 0, f.rho_d);
     set("rho_s", f.rho_s > 0, f.rho_s);
-    if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).judged_from)
+    if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).checked_from)
         throw InputError({"--set", 0, 0},
             fmt::format(
                 "alpha is judged from {:g} on where the lobe is {}: the quadrature of a sharper one is not known",
-                lobe_info(f.lobe).judged_from, lobe_info(f.lobe).label));
+                lobe_info(f.lobe).checked_from, lobe_info(f.lobe).label));
     if (f.rho_d + f.rho_s > 1)
         throw InputError({"--set", 0, 0},
             fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));
 }
 
-std::shared_ptr<const SamplerAdapter> subject_of(const std::string& arm, const CaseSetup& setup, Vec3d wo) {
+std::shared_ptr<const SamplerAdapter> make_adapter(const std::string& arm, const CaseSetup& setup, Vec3d wo) {
     std::shared_ptr<const SamplerAdapter> out;
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
         if (A<float>::name == arm) out = std::make_shared<BuiltIn<A>>(setup.surface, wo, setup.light);
@@ -105,21 +105,21 @@ double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
     return f.rho_d / pi + f.rho_s * lobe_value(f.lobe, f.s, f.alpha, wo, wi);
 }
 
-std::shared_ptr<const SamplerAdapter> sampler_on(const std::string& name, const CheckCase& trial) {
+std::shared_ptr<const SamplerAdapter> sampler_on(const std::string& name, const CheckCase& check_case) {
     CaseSetup on;
     const auto value = [&](const char* key, double& to) {
-        for (const auto& [known, v] : trial.parameters)
+        for (const auto& [known, v] : check_case.parameters)
             if (known == key) to = v;
     };
     value("s", on.surface.s);
     value("alpha", on.surface.alpha);
-    on.surface.rho_d = trial.brdf.empty() || trial.brdf.starts_with("Lambert") ? 0.5 : 0;
+    on.surface.rho_d = check_case.brdf.empty() || check_case.brdf.starts_with("Lambert") ? 0.5 : 0;
     for (const LobeInfo& lobe : lobe_infos())
-        if (trial.brdf == lobe.label || trial.brdf == "Lambert + " + std::string(lobe.label))
+        if (check_case.brdf == lobe.label || check_case.brdf == "Lambert + " + std::string(lobe.label))
             on.surface.lobe = lobe.kind;
     on.surface.rho_s = on.surface.lobe == LobeKind::none ? 0 : 0.4;
-    on.light = trial.light;
-    return subject_of(name, on, trial.wo);
+    on.light = check_case.light;
+    return make_adapter(name, on, check_case.wo);
 }
 
 std::vector<std::pair<double, double>> wo_grid(bool full) {
@@ -149,7 +149,7 @@ CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, d
 }
 
 CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std::string arm,
-    std::shared_ptr<const SamplerAdapter> subject) {
+    std::shared_ptr<const SamplerAdapter> adapter) {
     CheckCase t;
     t.arm = std::move(arm);
     t.brdf = setup.brdf;
@@ -160,12 +160,12 @@ CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std
     if (setup.tells_s) t.parameters.emplace_back("s", setup.surface.s);
     if (setup.tells_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
     t.light = setup.light;
-    t.subject = std::move(subject);
+    t.adapter = std::move(adapter);
     return t;
 }
 
 std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settings, bool full, const Grid& own) {
-    std::vector<CheckCase> trials;
+    std::vector<CheckCase> check_cases;
     const std::vector<std::string> names = sampler_names();
     if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
         const std::string near = nearest(arm, names);
@@ -186,14 +186,14 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
         }
         for (const CaseSetup& s : setups)
             for (const auto& [theta, azimuth] : own.empty() ? wo_grid(full) : own) {
-                CheckCase t = make_case_on(s, theta, azimuth, name, subject_of(name, s, tilt(theta, azimuth)));
+                CheckCase t = make_case_on(s, theta, azimuth, name, make_adapter(name, s, tilt(theta, azimuth)));
                 t.theory = theory_of(*find_arm_info(name), s, theta);
-                trials.push_back(std::move(t));
+                check_cases.push_back(std::move(t));
             }
     }
     if (!unread.empty())
         throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
-    return trials;
+    return check_cases;
 }
 
 // ---- CheckCases of a user's sampler, with arms of the list beside it that are aimed at its BRDF.
@@ -215,13 +215,13 @@ private:
 
 }  // namespace
 
-CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& subject, double theta, double azimuth) {
+CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& adapter, double theta, double azimuth) {
     CheckCase t;
-    t.arm = subject->name();
+    t.arm = adapter->name();
     t.wo = tilt(theta, azimuth);
     t.theta_deg = theta;
     t.azimuth_deg = azimuth;
-    t.subject = subject;
+    t.adapter = adapter;
     return t;
 }
 
@@ -230,9 +230,9 @@ namespace {
 /// The grid of w_o that a sampler answers for: one where it has none, mirrored under the surface too where it takes
 /// both sides.
 Grid grid_for(const Traits& traits, bool full) {
-    if (traits.wo == Traits::Asked::none) return {{0, 0}};
+    if (traits.wo == Traits::WoDomain::none) return {{0, 0}};
     Grid grid = wo_grid(full);
-    if (traits.wo != Traits::Asked::both) return grid;
+    if (traits.wo != Traits::WoDomain::both) return grid;
     for (const auto& [theta, azimuth] : wo_grid(full))
         if (full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
     return grid;
@@ -241,24 +241,24 @@ Grid grid_for(const Traits& traits, bool full) {
 }  // namespace
 
 std::vector<CheckCase> make_user_cases(
-    const std::shared_ptr<const SamplerAdapter>& subject, bool full, const Grid& own) {
-    std::vector<CheckCase> trials;
-    const Traits traits = subject->traits();
+    const std::shared_ptr<const SamplerAdapter>& adapter, bool full, const Grid& own) {
+    std::vector<CheckCase> check_cases;
+    const Traits traits = adapter->traits();
     const Grid grid = own.empty() ? grid_for(traits, full) : own;
     for (const auto& [theta, azimuth] : grid) {
-        trials.push_back(make_user_case(subject, theta, azimuth));
+        check_cases.push_back(make_user_case(adapter, theta, azimuth));
         const bool can_be_ranked =
-            subject->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::Asked::none;
+            adapter->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::WoDomain::none;
         if (!can_be_ranked) continue;  // cosine and uniform reach neither delta parts nor the other side
         const Vec3d wo = tilt(theta, azimuth);
         for (const std::shared_ptr<const SamplerAdapter>& peer :
-            {std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
-                std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
-            trials.push_back(make_user_case(peer, theta, azimuth));
-            trials.back().baseline = true;
+            {std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Uniform>>(adapter, wo)),
+                std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Cosine>>(adapter, wo))}) {
+            check_cases.push_back(make_user_case(peer, theta, azimuth));
+            check_cases.back().baseline = true;
         }
     }
-    return trials;
+    return check_cases;
 }
 
 namespace {
@@ -298,22 +298,22 @@ std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<
         CheckCase b = t;
         b.arm = name;
         b.theory = {};
-        b.subject = std::make_shared<WithF>(sampler_on(name, t), named_side(t.subject, "A"));  // f is A's
+        b.adapter = std::make_shared<WithF>(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
         out.push_back(std::move(b));
     }
     return out;
 }
 
 std::vector<CheckCase> sampler_against(
-    const std::shared_ptr<const SamplerAdapter>& subject, std::span<const CheckCase> a) {
+    const std::shared_ptr<const SamplerAdapter>& adapter, std::span<const CheckCase> a) {
     std::vector<CheckCase> out;
     for (const CheckCase& t : a) {
         out.push_back(t);
-        out.back().arm = subject->name();
-        out.back().subject = subject;
+        out.back().arm = adapter->name();
+        out.back().adapter = adapter;
         out.back().theory = {};
     }
     return out;
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

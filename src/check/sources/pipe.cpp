@@ -16,7 +16,7 @@
 #include "check/sources/pipe_io.h"
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 namespace {
 
@@ -25,9 +25,10 @@ double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1
 
 class PipeSampler : public SamplerAdapter {
 public:
-    PipeSampler(const std::string& command, const PipeLimits& limits) : talk_(command, limits) {
+    PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label)
+        : talk_(command, limits, label) {
         try {
-            greet();
+            handshake_with_program(label);
         } catch (const SamplerError&) {
             const std::string& broken = talk_.broken();
             const bool unknown =
@@ -62,7 +63,7 @@ public:
             for (int k = 0; k < hello_.traits.numbers; ++k) in.push_back(hello_.protocol == 1 ? v[k] : for_float(v[k]));
         }
         std::vector<bool> delta(u.size());
-        if (hello_.blocks) ask_block("smpl", "sample", u.size(), given, got, in, answers);
+        if (hello_.blocks) query_block("smpl", "sample", u.size(), given, got, in, answers);
         else
             talk_.lines(
                 u.size(), sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
@@ -92,7 +93,7 @@ private:
     bool has_f_ = false;
 
     std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
-    Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : wo; }
+    Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
             hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
@@ -105,7 +106,7 @@ private:
             for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
         };
     }
-    void ask_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
+    void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
         const std::vector<double>& in, std::span<double> out) const {
         if (count == 0) return;
         const PipeConnection::Write write = writer(verb, given, in);
@@ -151,7 +152,7 @@ private:
         }
         const std::size_t count = in.size() / 6;
         std::vector<double> answers(count * columns);
-        if (hello_.blocks) ask_block(operation, verb, count, 6, columns, in, answers);
+        if (hello_.blocks) query_block(operation, verb, count, 6, columns, in, answers);
         else if (count > 0)
             talk_.lines(count, expected, writer(verb, 6, in), [&](std::size_t i, std::string_view s) {
                 if (operation[0] == 'f' && s == "-") {
@@ -173,13 +174,14 @@ private:
         }
     }
 
-    void greet() {
+    void handshake_with_program(const std::string& label) {
         talk_.lines(
             1, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
             [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
+                if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
                 Handshake hello;
-                if (const GreetingFault fault = read_greeting(s, hello); fault)
+                if (const HandshakeError fault = read_handshake(s, hello); fault)
                     talk_.fault("hello 2", 0, fault.got, fault.expected);
                 hello_ = hello;
                 return true;
@@ -193,7 +195,7 @@ private:
         const std::vector<double> normal = {0, 0, 1, 0, 0, 1};
         std::vector<double> answer(columns);
         if (hello_.blocks) {
-            ask_block("f___", "f", 1, 6, columns, normal, answer);
+            query_block("f___", "f", 1, 6, columns, normal, answer);
             has_f_ = !std::isnan(answer[0]);
             return;
         }
@@ -211,8 +213,9 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, const PipeLimits& limits) {
-    return std::make_shared<PipeSampler>(command, limits);
+std::shared_ptr<const SamplerAdapter> start_pipe(
+    const std::string& command, const PipeLimits& limits, const std::string& label) {
+    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label);
 }
 
 // ---- A table of keys, each with what it takes, from which the messages are made too. The name is all that stands
@@ -249,15 +252,15 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     return true;
 }
 
-struct GreetingKey {
+struct HandshakeKey {
     const char* name;
     const char* values;
     std::function<bool(std::string_view, Handshake&)> read;
 };
 
-const std::array<GreetingKey, 14>& keys() {
+const std::array<HandshakeKey, 14>& keys() {
     using S = std::string_view;
-    static const std::array<GreetingKey, 14> all = {{
+    static const std::array<HandshakeKey, 14> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
         {"domain", "hemisphere or sphere",
@@ -269,9 +272,9 @@ const std::array<GreetingKey, 14>& keys() {
             [](S v, Handshake& g) {
                 int which = 0;
                 const bool known = one_of(v, {"upper", "both", "none"}, which);
-                g.traits.wo = which == 1 ? Traits::Asked::both
-                    : which == 2         ? Traits::Asked::none
-                                         : Traits::Asked::upper;
+                g.traits.wo = which == 1 ? Traits::WoDomain::both
+                    : which == 2         ? Traits::WoDomain::none
+                                         : Traits::WoDomain::upper;
                 return known;
             }},
         {"channels", "1 or 3",
@@ -297,18 +300,18 @@ const std::array<GreetingKey, 14>& keys() {
     return all;
 }
 
-GreetingFault unknown(std::string_view name) {
+HandshakeError unknown(std::string_view name) {
     std::vector<std::string> known;
-    for (const GreetingKey& k : keys()) known.emplace_back(k.name);
+    for (const HandshakeKey& k : keys()) known.emplace_back(k.name);
     return {fmt::format("one of {} before the '='", fmt::join(known, ", ")),
         fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, known))};
 }
 
-GreetingFault read_key(std::string_view word, Handshake& out) {
+HandshakeError read_key(std::string_view word, Handshake& out) {
     const std::size_t equals = word.find('=');
     const std::string_view name = word.substr(0, equals), value = equals == word.npos ? "" : word.substr(equals + 1);
     if (equals == word.npos) return {"KEY=VALUE", fmt::format("got the word {} after the keys", shown(word))};
-    for (const GreetingKey& k : keys()) {
+    for (const HandshakeKey& k : keys()) {
         if (name != k.name) continue;
         if (k.read(value, out)) return {};
         return {fmt::format("{} for {}", k.values, k.name), "got " + shown(value)};
@@ -318,7 +321,7 @@ GreetingFault read_key(std::string_view word, Handshake& out) {
 
 }  // namespace
 
-GreetingFault read_greeting(std::string_view answer, Handshake& out) {
+HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     const std::string form = "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'";
     const bool one = answer.starts_with("hello 1 "), two = answer.starts_with("hello 2 ");
     if ((!one && !two) || blank(answer.substr(8))) return {form, "got " + shown(answer) + only_answers};
@@ -334,7 +337,7 @@ GreetingFault read_greeting(std::string_view answer, Handshake& out) {
         while (!blank(rest)) {
             rest.remove_prefix(rest.find_first_not_of(" \t"));
             const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-            if (const GreetingFault fault = read_key(rest.substr(0, end), out); fault) return fault;
+            if (const HandshakeError fault = read_key(rest.substr(0, end), out); fault) return fault;
             const std::string_view name_of_key = rest.substr(0, rest.find('='));
             if (!seen.insert(name_of_key).second)
                 return {"each key once", fmt::format("got the key {} twice", shown(name_of_key))};
@@ -350,4 +353,4 @@ GreetingFault read_greeting(std::string_view answer, Handshake& out) {
     return {};
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -10,14 +10,14 @@
 
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 /// What a program behind a pipe, or a plugin, may take.
 struct PipeLimits {
     double hello_seconds = 60;   // until the first answer: a sky of millions of texels is read first
     double quiet_seconds = 10;   // without a byte while an answer is due
     double call_seconds = 60;    // of a plugin: for one call of a function
-    double total_seconds = 120;  // for everything; beyond it the program is too slow to judge
+    double total_seconds = 120;  // for everything; beyond it the program is too slow to check
     std::size_t longest_line = 4096;
     const std::atomic<bool>* stop = nullptr;  // when set, the program is ended and Interrupted thrown
     /// The same limit for each answer of either kind; 0: as it is.
@@ -26,8 +26,11 @@ struct PipeLimits {
     }
 };
 
-/// Starts `command` with /bin/sh -c. Throws SamplerError that says at which request, what came and what was expected.
-std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, const PipeLimits& limits = {});
+/// Starts `command` with /bin/sh -c. Throws SamplerError that says at which request, what came and what was expected;
+/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is before what it
+/// writes to stderr and before that text; "": the command.
+std::shared_ptr<const SamplerAdapter> start_pipe(
+    const std::string& command, const PipeLimits& limits = {}, const std::string& label = "");
 
 // ---- What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`; docs/samplers.md has the keys.
 
@@ -42,11 +45,11 @@ struct Handshake {
 };
 
 /// What was expected of a greeting, and what came in place of it; both empty where it could be read.
-struct GreetingFault {
+struct HandshakeError {
     std::string expected, got;
     explicit operator bool() const { return !got.empty(); }
 };
 /// Reads the first line that a program answers.
-GreetingFault read_greeting(std::string_view answer, Handshake& out);
+HandshakeError read_handshake(std::string_view answer, Handshake& out);
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -11,7 +11,7 @@
 #include "base/progress.h"
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 static_assert(std::endian::native == std::endian::little, "blocks are little-endian, and are copied as they are");
 
@@ -146,7 +146,7 @@ void PipeConnection::blocks(const Rows& rows) {
     constexpr std::size_t most_rows = 1 << 15;  // 65536 are allowed; smaller ones let both sides work at once
     std::deque<std::size_t> due;
     const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
-    Exchange x{rows.count, expected, rows.told, {}, {}};
+    Exchange x{rows.count, expected, rows.describe, {}, {}};
     x.produce = [&] {
         const std::size_t n = std::min(rows.count - x.written, most_rows);
         const auto head = static_cast<std::uint32_t>(n);
@@ -189,4 +189,4 @@ void PipeConnection::take_blocks(Exchange& x, const Rows& rows, std::deque<std::
     }
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

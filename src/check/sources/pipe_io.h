@@ -15,7 +15,7 @@
 #include "base/process.h"
 #include "check/sources/pipe.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 /// What came, for a message: cut short, with what does not print shown as \xNN.
 inline std::string shown(std::string_view s) {
@@ -82,9 +82,9 @@ inline void append(std::string& to, double v) {
 
 class PipeConnection {
 public:
-    /// Starts `command` by the shell.
-    PipeConnection(const std::string& command, const PipeLimits& limits)
-        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = command}) {}
+    /// Starts `command` by the shell; `label` is before what it writes to stderr.
+    PipeConnection(const std::string& command, const PipeLimits& limits, const std::string& label)
+        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = label}) {}
     PipeConnection(const PipeConnection&) = delete;
     PipeConnection& operator=(const PipeConnection&) = delete;
 
@@ -98,7 +98,7 @@ public:
         std::size_t count, given, got;
         std::span<const double> in;
         std::span<double> out;
-        std::function<std::string(std::size_t)> told;
+        std::function<std::string(std::size_t)> describe;
     };
     void blocks(const Rows& rows);
 
@@ -117,8 +117,8 @@ private:
     struct Exchange {
         std::size_t count;
         std::string_view expected;
-        std::function<std::string(std::size_t)> told;  // request i, for a message
-        std::function<void()> produce, take;           // more requests into `outgoing`; answers out of what came
+        std::function<std::string(std::size_t)> describe;  // request i, for a message
+        std::function<void()> produce, take;               // more requests into `outgoing`; answers out of what came
         std::size_t written = 0, answered = 0, sent = 0;
         std::string outgoing{};
     };
@@ -140,7 +140,7 @@ private:
     void take_lines(Exchange& x, const Read& read);
     void take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& due);
     [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
-        fault(x.told(i), i, what, x.expected);
+        fault(x.describe(i), i, what, x.expected);
     }
     bool fill();
     std::string_view pending() const { return std::string_view(incoming_).substr(read_from_); }
@@ -150,4 +150,4 @@ private:
     std::string end_of_output() const;
 };
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

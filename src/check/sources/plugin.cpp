@@ -31,7 +31,7 @@
 #include "check/sources/plugin_host.h"
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 namespace {
 
@@ -117,7 +117,7 @@ public:
             if (c == '\n') break;
             line += c;
         }
-        read_greeting(line);
+        read_handshake(line);
     }
     ~Host() { process_.end(200); }
     Host(const Host&) = delete;
@@ -126,13 +126,13 @@ public:
     const About& about() const { return about_; }
 
     /// One request: its runs, and the random numbers or directions of its rows. The answer is there until the next.
-    PluginRows ask(char operation, std::span<const OutsideRun> runs, std::span<const double> given, std::size_t rows,
+    PluginRows ask(char operation, std::span<const ExternalRun> runs, std::span<const double> given, std::size_t rows,
         const Call& call) {
         const PluginRows block(memory_.at(), rows, given.size() / rows);
         std::ranges::copy(given, block.given);
         const PluginRequest head{operation, static_cast<std::uint32_t>(runs.size()), static_cast<std::uint32_t>(rows)};
         std::vector<double> columns;
-        for (const OutsideRun& r : runs)
+        for (const ExternalRun& r : runs)
             for (const double v : {static_cast<double>(r.rows), r.wo.x, r.wo.y, r.wo.z, r.surface.s, r.surface.alpha,
                      r.surface.diffuse, r.surface.lobe})
                 columns.push_back(v);
@@ -188,14 +188,14 @@ private:
                                : fmt::format("the plugin {} closed its pipe to crescent {}", library_, what));
     }
 
-    void read_greeting(std::string_view line) {
-        const std::string expected = fmt::format("{}... columns={}", plugin_greeting, plugin_columns);
+    void read_handshake(std::string_view line) {
+        const std::string expected = fmt::format("{}... columns={}", plugin_handshake, plugin_columns);
         const auto refuse = [&](std::string_view got) {
             throw OutputError(fmt::format("cannot open the plugin {}: {} answers '{}', expected '{}'", library_,
                 printable(host_program()), printable(got, 200), expected));
         };
-        if (!line.starts_with(plugin_greeting)) refuse(line);
-        std::string_view rest = line.substr(std::strlen(plugin_greeting));
+        if (!line.starts_with(plugin_handshake)) refuse(line);
+        std::string_view rest = line.substr(std::strlen(plugin_handshake));
         if (rest.starts_with("error "))
             throw OutputError(fmt::format("cannot open the plugin {}: {}", library_, printable(rest.substr(6))));
         bool columns = false;
@@ -218,7 +218,7 @@ private:
 
 class Plugin : public PluginSampler {
 public:
-    Plugin(const std::string& path, const PipeLimits& limits, const OutsideSurface& surface)
+    Plugin(const std::string& path, const PipeLimits& limits, const ExternalSurface& surface)
         : path_(path), limits_(limits), surface_(surface) {
         free_.push_back(std::make_unique<Host>(path_, limits_));
         about_ = free_.front()->about();
@@ -235,7 +235,7 @@ public:
     }
     bool has_f() const override { return about_.f; }
 
-    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const Call call{"crescent_sampler_sample", batch.runs.front().wo};
         on_host([&](Host& host) {
             const PluginRows rows = host.ask('s', batch.runs, batch.u, out.pdf.size(), call);
@@ -252,7 +252,7 @@ public:
             numbers.clear(), wi.resize(rows), pdf.resize(rows);
             for (const PrimarySample& row : u.subspan(first, rows))
                 for (int k = 0; k < about_.numbers; ++k) numbers.push_back(row[k]);
-            const OutsideRun run{wo, surface_, rows};
+            const ExternalRun run{wo, surface_, rows};
             draw({{&run, 1}, numbers}, {wi, pdf});
             for (std::size_t i = 0; i < rows; ++i) out[first + i] = Draw{wi[i], pdf[i]};
         }
@@ -266,7 +266,7 @@ public:
     }
     bool has_density() const override { return about_.pdf; }
     void density(
-        Vec3d wo, const OutsideSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+        Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
         std::vector<Pair> at;
         for (const Vec3d& w : wi) at.push_back({wo, w});
         values('p', "crescent_sampler_pdf", at, surface, out);
@@ -275,9 +275,9 @@ public:
 private:
     static std::span<double> doubles(std::span<Vec3d> v) { return {&v.data()->x, 3 * v.size()}; }
 
-    void values(char operation, const char* function, std::span<const Pair> at, const OutsideSurface& on,
+    void values(char operation, const char* function, std::span<const Pair> at, const ExternalSurface& on,
         std::span<double> out) const {
-        std::vector<OutsideRun> runs;
+        std::vector<ExternalRun> runs;
         std::vector<Vec3d> wi;
         for (std::size_t first = 0; first < at.size(); first += plugin_rows) {
             const std::size_t rows = std::min<std::size_t>(plugin_rows, at.size() - first);
@@ -324,19 +324,19 @@ private:
 
     std::string path_;
     PipeLimits limits_;
-    OutsideSurface surface_;
+    ExternalSurface surface_;
     About about_;
     mutable std::mutex serial_, lock_;
     mutable std::vector<std::unique_ptr<Host>> free_;  // both under lock_
     mutable std::string fault_;
 };
 
-static_assert(sizeof(Vec3d) == 3 * sizeof(double) && sizeof(OutsideSurface) == 4 * sizeof(double));
+static_assert(sizeof(Vec3d) == 3 * sizeof(double) && sizeof(ExternalSurface) == 4 * sizeof(double));
 
 }  // namespace
 
 std::shared_ptr<const PluginSampler> open_plugin(
-    const std::string& path, const PipeLimits& limits, const OutsideSurface& surface) {
+    const std::string& path, const PipeLimits& limits, const ExternalSurface& surface) {
     return std::make_shared<Plugin>(path, limits, surface);
 }
 
@@ -345,4 +345,4 @@ std::uint64_t plugin_mark(const std::string& path) {
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

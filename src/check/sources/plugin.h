@@ -11,7 +11,7 @@
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 /// Drawn for any surface point as an arm; checked on one surface.
 class PluginSampler : public ExternalSampler, public InProcessAdapter {
@@ -23,9 +23,9 @@ public:
 /// such library, with what is missing, and SamplerError if it ends its process, throws or takes longer than
 /// limits.call_seconds, here or in a later call.
 std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
-    const OutsideSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
+    const ExternalSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
 
 /// XXH3 of the file: films of another library are other films.
 std::uint64_t plugin_mark(const std::string& path);
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -27,7 +27,7 @@
 
 #include "check/sampler_plugin.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 const char* const plugin_host_name = "crescent-plugin-host";
 
@@ -196,9 +196,9 @@ void answer(
     pipes.write(&head, sizeof head);
 }
 
-std::string greeting(const Library& library) {
+std::string handshake(const Library& library) {
     const auto number = [](const char* key, unsigned value) { return key + std::to_string(value) + " "; };
-    return plugin_greeting + number("numbers=", library.numbers) + number("pdf=", library.pdf != nullptr) +
+    return plugin_handshake + number("numbers=", library.numbers) + number("pdf=", library.pdf != nullptr) +
         number("f=", library.f != nullptr) + number("serial=", library.serial) + "columns=" + plugin_columns +
         " name=" + library.name + "\n";
 }
@@ -207,12 +207,12 @@ std::string greeting(const Library& library) {
 const Library& load(const Pipes& pipes, const char* path) {
     try {
         const Library* library = new Library(path);
-        pipes.write(greeting(*library));
+        pipes.write(handshake(*library));
         return *library;
     } catch (Fault& fault) {
         const std::string function = fault.function.empty() ? "" : fault.function + " ";
         std::replace(fault.text.begin(), fault.text.end(), '\n', ' ');
-        pipes.write(std::string(plugin_greeting) + "error " + function + fault.text + "\n");
+        pipes.write(std::string(plugin_handshake) + "error " + function + fault.text + "\n");
     }
     leave();
 }
@@ -251,7 +251,7 @@ namespace {
 
 }  // namespace
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources
 
 #ifdef CRESCENT_PLUGIN_HOST_PROGRAM
 int main() {

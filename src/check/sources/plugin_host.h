@@ -15,9 +15,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
-inline constexpr const char* plugin_greeting = "crescent-plugin 1 ";
+inline constexpr const char* plugin_handshake = "crescent-plugin 1 ";
 inline constexpr const char* plugin_columns = "wo,s,alpha,rho_d,rho_s";
 
 struct PluginRequest {
@@ -46,4 +46,4 @@ extern const char* const plugin_host_name;
 /// The same as a function: serves the library over stdin and stdout until the input ends.
 [[noreturn]] void serve_plugin(const char* library);
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -75,10 +75,10 @@ TEST_F(Plugins, AnswerManyThreadsAtOnce) {
 
 TEST_F(Plugins, ThatEndTheirProcessAreGivenUp) {
     const auto plugin = open_plugin(compiled("raise(SIGFPE)"));
-    const std::string said = error<SamplerError>(*plugin);
-    EXPECT_THAT(said, HasSubstr("libodd.so"));
-    EXPECT_THAT(said, HasSubstr("SIGFPE"));
-    EXPECT_THAT(said, HasSubstr("crescent_sampler_sample at w_o = (0, 0, 1)"));
+    const std::string message = error<SamplerError>(*plugin);
+    EXPECT_THAT(message, HasSubstr("libodd.so"));
+    EXPECT_THAT(message, HasSubstr("SIGFPE"));
+    EXPECT_THAT(message, HasSubstr("crescent_sampler_sample at w_o = (0, 0, 1)"));
     EXPECT_THAT(error<SamplerExited>(*plugin), HasSubstr("SIGFPE"));
 }
 

@@ -9,7 +9,7 @@
 #include "math/functions.h"
 #include "math/simd/random.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 namespace {
 
@@ -52,10 +52,10 @@ PrimarySample even_cover(std::uint64_t i, const PrimarySample& shift, int count)
     return out;
 }
 
-std::string told(const PrimarySample& u, int count, int digits) {
+std::string describe(const PrimarySample& u, int count, int digits) {
     std::string out = "u = (";
     for (int k = 0; k < count; ++k) out += fmt::format("{}{:.{}g}", k ? ", " : "", u[k], digits);
     return out + ")";
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -1,10 +1,10 @@
-// The random numbers that samplers on trial are given: drawn, or spread evenly. Multiples of 2^-24 where a sampler may
+// The random numbers that samplers on case are given: drawn, or spread evenly. Multiples of 2^-24 where a sampler may
 // compute in single precision.
 #pragma once
 
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 /// Sample i of a stream: pairs of numbers from pcg4d, as the estimator draws them. Blocks of dimensions are told apart
 /// by `technique`.
@@ -13,6 +13,6 @@ PrimarySample drawn_numbers(
 /// An even cover of the cube, the same for every seed: Roberts' sequence, moved by `shift`.
 PrimarySample even_cover(std::uint64_t i, const PrimarySample& shift, int count);
 /// "u = (0, 0.5)".
-std::string told(const PrimarySample& u, int count, int digits = 9);
+std::string describe(const PrimarySample& u, int count, int digits = 9);
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -16,7 +16,7 @@
 #include "math/simd/scalar.h"
 #include "math/spherical.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 namespace {
 
@@ -333,4 +333,4 @@ std::string SampleFile::place(std::size_t row) const {
     return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

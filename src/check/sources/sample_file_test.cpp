@@ -7,7 +7,7 @@
 
 #include "check/sources/sample_file.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 namespace {
 
 using testing::ElementsAre;
@@ -27,7 +27,7 @@ NumberTable read(const std::string& path) {
 }
 
 /// What is said of a file that cannot be read.
-std::string told(const std::string& path) {
+std::string error_of(const std::string& path) {
     try {
         read(path);
     } catch (const InputError& e) { return e.what(); }
@@ -79,18 +79,18 @@ TEST(TableFiles, TakeWhatOverflowsForInfinityAndWhatUnderflowsForZero) {
 }
 
 TEST(TableFiles, NameEveryMistakeWithItsPlace) {
-    const std::string said = told(file_of("m.csv", "a,b\n1,two\n3\n"));
-    EXPECT_THAT(said, HasSubstr("m.csv:2:3: expected a number, not 'two'"));
-    EXPECT_THAT(said, HasSubstr("m.csv:3:1: expected 2 values, as the header has, not 1"));
-    EXPECT_THAT(told(file_of("h.csv", "a,z\n1,2\n")), HasSubstr("expected the header a,b or a,b,c, not a,z"));
-    EXPECT_THAT(told(file_of("e.csv", "")), HasSubstr("is empty"));
-    EXPECT_THAT(told(testing::TempDir() + "absent.csv"), HasSubstr("cannot be read"));
+    const std::string message = error_of(file_of("m.csv", "a,b\n1,two\n3\n"));
+    EXPECT_THAT(message, HasSubstr("m.csv:2:3: expected a number, not 'two'"));
+    EXPECT_THAT(message, HasSubstr("m.csv:3:1: expected 2 values, as the header has, not 1"));
+    EXPECT_THAT(error_of(file_of("h.csv", "a,z\n1,2\n")), HasSubstr("expected the header a,b or a,b,c, not a,z"));
+    EXPECT_THAT(error_of(file_of("e.csv", "")), HasSubstr("is empty"));
+    EXPECT_THAT(error_of(testing::TempDir() + "absent.csv"), HasSubstr("cannot be read"));
 }
 
 TEST(TableFiles, OfNumPyThatAreBrokenAreRefused) {
     const std::string numbers = bytes_of<double>({1, 2});
     const std::string order = "'fortran_order': False, ";
-    for (const auto& [dictionary, say] :
+    for (const auto& [dictionary, message] :
         {std::pair<std::string, std::string>{"{" + order + "'descr': '<i8', 'shape': (1, 2)}", "<f4"},
             {"{" + order + "'descr': '<f8', 'shape': (2,)}", "two-dimensional"},
             {"{" + order + "'descr': '<f8', 'shape': (1, 7)}", "columns, not 7"},
@@ -99,8 +99,8 @@ TEST(TableFiles, OfNumPyThatAreBrokenAreRefused) {
                 "ends in row 2 of 9999999999999999999"},
             {"{" + order + "'descr': '<f8', 'shape': (99999999999999999999, 2)}", "'shape'"},
             {"{'descr': '<f8', 'shape': (1, 2)}", "'fortran_order'"}, {"", "'descr'"}})
-        EXPECT_THAT(told(file_of("b.npy", npy(dictionary, numbers))), HasSubstr(say)) << dictionary;
-    EXPECT_THAT(told(file_of("s.npy", "\x93NUM")), HasSubstr("expected an NPY file"));
+        EXPECT_THAT(error_of(file_of("b.npy", npy(dictionary, numbers))), HasSubstr(message)) << dictionary;
+    EXPECT_THAT(error_of(file_of("s.npy", "\x93NUM")), HasSubstr("expected an NPY file"));
 }
 
 // Gaps as long as the header may be, which an expression that calls itself once a character would not survive.
@@ -111,4 +111,4 @@ TEST(TableFiles, OfNumPyMayHaveLongGaps) {
 }
 
 }  // namespace
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

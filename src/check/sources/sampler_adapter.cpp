@@ -8,7 +8,7 @@
 #include "math/simd/scalar.h"
 #include "math/spherical.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 std::optional<double> CaseDiskLight::distance(Vec3d wi) const {
     const double c = dot(center, normal), v = dot(wi, normal);
@@ -40,7 +40,7 @@ std::optional<CaseLighting::Met> CaseLighting::first_met(Vec3d wi) const {
                 first = Met{*d, light.radiance};
     };
     look(disks);
-    look(lamps);
+    look(area_lights);
     return first;
 }
 
@@ -51,7 +51,7 @@ double CaseLighting::operator()(Vec3d wi) const {
 }
 
 std::string CheckCase::text() const {
-    const bool none = subject && subject->traits().wo == Traits::Asked::none;
+    const bool none = adapter && adapter->traits().wo == Traits::WoDomain::none;
     std::string s = none ? std::string(without_wo) : fmt::format("w_o {:g} deg", theta_deg);
     if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
     for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
@@ -65,4 +65,4 @@ Vec3d tilt(double theta_deg, double azimuth_deg) {
     return math::spherical(theta.sin, theta.cos, azimuth_deg * pi / 180);
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -15,7 +15,7 @@
 #include "samplers/info.h"
 #include "scene/lights/all.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 // ---- How a sampler from outside fails to answer: what is thrown to whoever asked it.
 
@@ -24,7 +24,7 @@ struct SamplerError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// It was given up in an earlier trial.
+/// It was given up in an earlier case.
 struct SamplerExited : SamplerError {
     using SamplerError::SamplerError;
 };
@@ -34,7 +34,7 @@ struct SamplerTimeout : SamplerError {
     using SamplerError::SamplerError;
 };
 
-// ---- A sampler on trial, whatever it is written in: built-in arm, planted fault, a user's struct, a file, a pipe.
+// ---- A sampler on case, whatever it is written in: built-in arm, planted fault, a user's struct, a file, a pipe.
 // Local frame, n = +z, wo given, wi drawn, both leave the surface; pdf in 1/sr; f without the cosine, in 1/sr.
 // Calls come in batches, so that a pipe can be kept full.
 
@@ -61,10 +61,11 @@ struct Index : std::optional<Vec3d> {
 
 /// What a sampler is, apart from its answers: what it takes, what it gives, and what is known of its surface.
 struct Traits {
-    enum class Asked { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
-    int numbers = 2;                         // random numbers of a sample
-    int channels = 1;                        // of f and of the weight, 1 or 3
-    Asked wo = Asked::upper;
+    enum class WoDomain { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
+    using Asked = WoDomain;
+    int numbers = 2;                            // random numbers of a sample
+    int channels = 1;                           // of f and of the weight, 1 or 3
+    WoDomain wo = WoDomain::upper;
     bool has_pdf = true;      // false: no pdf(w), and the pdf of a draw is 1 or 0
     bool own_random = false;  // it draws random numbers of its own: the same u may give another answer
     bool delta = false;       // some of its draws are of delta parts
@@ -128,7 +129,7 @@ public:
     }
     /// What f ought to be where that is known apart from f; the same as f elsewhere.
     virtual bool has_true_f() const { return false; }
-    virtual void true_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
+    virtual void reference_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
     /// f is known at the draws, though not elsewhere: their weights can be looked at, but compared with no integral.
     virtual bool has_drawn_f() const { return has_f(); }
     /// A tabulated p is known to this much there, 1/sr.
@@ -179,14 +180,14 @@ struct CaseAreaLight {
 
 /// Channel 0, 1 or 2 of a colour.
 inline double channel_of(Vec3d c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
-inline double luminance(Vec3d c) { return color::luminance(Rgb{c.x, c.y, c.z}); }
+inline double luminance(Vec3d c) { return output::luminance(Rgb{c.x, c.y, c.z}); }
 
 /// What shines on the surface: an even fill of the upper hemisphere, and lights that hide it and one another.
 struct CaseLighting {
     double fill = 1;  // radiance
     std::vector<CaseDiskLight> disks;
-    std::vector<CaseAreaLight> lamps{};  // that are no disks
-    bool even() const { return disks.empty() && lamps.empty(); }
+    std::vector<CaseAreaLight> area_lights{};  // that are no disks
+    bool even() const { return disks.empty() && area_lights.empty(); }
     /// The nearest light that wi meets: how far it is and its radiance.
     struct Met {
         double distance, radiance;
@@ -208,13 +209,13 @@ struct CheckCase {
     CaseLighting light;
     ExpectedBehaviour theory;
     bool baseline = false;  // only its efficiency counts, for others to be ranked against
-    std::shared_ptr<const SamplerAdapter> subject;
+    std::shared_ptr<const SamplerAdapter> adapter;
     std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"
 };
 
 /// The text of a case whose sampler takes no w_o, and of one that never came to be judged.
 inline constexpr std::string_view without_wo = "no w_o";
-inline constexpr std::string_view before_any_trial = "start";
+inline constexpr std::string_view before_any_case = "start";
 
 /// The direction theta from n, phi from x, in degrees.
 Vec3d tilt(double theta_deg, double azimuth_deg = 0);
@@ -241,7 +242,7 @@ public:
     void f(std::span<const Pair> at, std::span<double> out) const override { inner_->f(at, out); }
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override { inner_->f_channels(at, out); }
     bool has_true_f() const override { return inner_->has_true_f(); }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override { inner_->true_f(at, out); }
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override { inner_->reference_f(at, out); }
     bool has_drawn_f() const override { return inner_->has_drawn_f(); }
     double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
     bool can_draw() const override { return inner_->can_draw(); }
@@ -311,4 +312,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -7,7 +7,7 @@
 
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 /// w_o of one's own: theta and azimuth in degrees.
 using Grid = std::vector<std::pair<double, double>>;
@@ -17,8 +17,8 @@ using Grid = std::vector<std::pair<double, double>>;
 /// A sampler whose draws and p are the same whatever w_o is, and that has no BRDF, as that of an environment light, is
 /// judged once.
 std::vector<CheckCase> make_user_cases(
-    const std::shared_ptr<const SamplerAdapter>& subject, bool full, const Grid& grid = {});
+    const std::shared_ptr<const SamplerAdapter>& adapter, bool full, const Grid& grid = {});
 /// The same at one w_o.
-CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& subject, double theta, double azimuth);
+CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& adapter, double theta, double azimuth);
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -18,23 +18,25 @@ namespace crescent::user {
 
 /// Result and parameters of a member that is not overloaded.
 template <class M> struct Signature;
-template <class R, bool is_const_, class... A> struct Told {
+template <class R, bool is_const_, class... A> struct CallSignature {
     using Result = R;
     using Parameters = std::tuple<A...>;
     static constexpr bool is_const = is_const_;
 };
-template <class R, class S, class... A> struct Signature<R (S::*)(A...)> : Told<R, false, A...> {};
-template <class R, class S, class... A> struct Signature<R (S::*)(A...) const> : Told<R, true, A...> {};
-template <class R, class S, class... A> struct Signature<R (S::*)(A...) noexcept> : Told<R, false, A...> {};
-template <class R, class S, class... A> struct Signature<R (S::*)(A...) const noexcept> : Told<R, true, A...> {};
-template <class R, class... A> struct Signature<R (*)(A...)> : Told<R, true, A...> {};
-template <class R, class... A> struct Signature<R (*)(A...) noexcept> : Told<R, true, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...)> : CallSignature<R, false, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...) const> : CallSignature<R, true, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...) noexcept> : CallSignature<R, false, A...> {};
+template <class R, class S, class... A> struct Signature<R (S::*)(A...) const noexcept> : CallSignature<R, true, A...> {
+};
+template <class R, class... A> struct Signature<R (*)(A...)> : CallSignature<R, true, A...> {};
+template <class R, class... A> struct Signature<R (*)(A...) noexcept> : CallSignature<R, true, A...> {};
 /// Data members that can be called: lambdas, function pointers; a std::function, which may hold what is not const.
 template <class C>
 concept Called = std::is_class_v<C> && requires { &C::operator(); };
 template <class S, Called C> struct Signature<C S::*> : Signature<decltype(&C::operator())> {};
-template <class S, class R, class... A> struct Signature<R (*S::*)(A...)> : Told<R, true, A...> {};
-template <class S, class R, class... A> struct Signature<std::function<R(A...)> S::*> : Told<R, false, A...> {};
+template <class S, class R, class... A> struct Signature<R (*S::*)(A...)> : CallSignature<R, true, A...> {};
+template <class S, class R, class... A> struct Signature<std::function<R(A...)> S::*> : CallSignature<R, false, A...> {
+};
 template <class M>
 concept HasSignature = requires { typename Signature<M>::Parameters; };
 

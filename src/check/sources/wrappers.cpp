@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 namespace {
 
@@ -31,28 +31,28 @@ struct KeyHash {
     }
 };
 
-template <class Value> using Kept = std::unordered_map<Key, Value, KeyHash>;
+template <class Value> using Cache = std::unordered_map<Key, Value, KeyHash>;
 
 /// Answers from what is kept; `ask` is called once, with the pairs that are new, in their order.
-template <class Value, class Ask>
-void answer(Kept<Value>& kept, std::span<const Pair> at, std::span<Value> out, const Ask& ask) {
+template <class Value, class Forward>
+void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out, const Forward& forward) {
     std::vector<Pair> fresh;
     for (const Pair& p : at)
-        if (kept.try_emplace(Key(p)).second) fresh.push_back(p);
+        if (cache.try_emplace(Key(p)).second) fresh.push_back(p);
     std::vector<Value> values(fresh.size());
     try {
-        if (!fresh.empty()) ask(std::span<const Pair>(fresh), std::span<Value>(values));
+        if (!fresh.empty()) forward(std::span<const Pair>(fresh), std::span<Value>(values));
     } catch (...) {
-        for (const Pair& p : fresh) kept.erase(Key(p));
+        for (const Pair& p : fresh) cache.erase(Key(p));
         throw;
     }
-    for (std::size_t i = 0; i < fresh.size(); ++i) kept[Key(fresh[i])] = values[i];
-    for (std::size_t i = 0; i < at.size(); ++i) out[i] = kept[Key(at[i])];
+    for (std::size_t i = 0; i < fresh.size(); ++i) cache[Key(fresh[i])] = values[i];
+    for (std::size_t i = 0; i < at.size(); ++i) out[i] = cache[Key(at[i])];
 }
 
 bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
 
-/// What one trial asks, whichever others ask the same sampler meanwhile.
+/// What one case asks, whichever others ask the same sampler meanwhile.
 class Counted : public ForwardingAdapter {
 public:
     using ForwardingAdapter::ForwardingAdapter;
@@ -85,9 +85,9 @@ private:
     mutable std::uint64_t answers_ = 0;
 };
 
-class AskedOnce : public ForwardingAdapter {
+class CachingAdapter : public ForwardingAdapter {
 public:
-    AskedOnce(std::shared_ptr<const SamplerAdapter> sampler, bool draws)
+    CachingAdapter(std::shared_ptr<const SamplerAdapter> sampler, bool draws)
         : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), keeps_draws_(draws) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         if (!keeps_draws_) return inner().sample(t, wo, u, out);
@@ -119,8 +119,8 @@ public:
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
         answer<Vec3d>(channels_, at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        if (has_true_f()) inner().true_f(at, out);
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        if (has_true_f()) inner().reference_f(at, out);
         else f(at, out);
     }
     const SamplerAdapter& anew() const { return inner(); }
@@ -134,33 +134,34 @@ private:
     };
     bool keeps_draws_;
     mutable std::vector<Drawn> drawn_;
-    mutable std::array<Kept<double>, 2> plain_pdf_;  // by technique
-    mutable std::array<Kept<double>, 2> pdf_;        // by technique
-    mutable Kept<double> f_;
-    mutable Kept<Vec3d> channels_;
+    mutable std::array<Cache<double>, 2> plain_pdf_;  // by technique
+    mutable std::array<Cache<double>, 2> pdf_;        // by technique
+    mutable Cache<double> f_;
+    mutable Cache<Vec3d> channels_;
 };
 
 }  // namespace
 
 std::shared_ptr<const SamplerAdapter> cached(std::shared_ptr<const SamplerAdapter> sampler, bool draws) {
-    return std::make_shared<AskedOnce>(std::move(sampler), draws);
+    return std::make_shared<CachingAdapter>(std::move(sampler), draws);
 }
 
-Side PerDirectionCache::of(const CheckCase& trial, std::uint32_t stream) {
-    Side out{trial, stream};
-    if (!trial.subject->limited()) return out;
-    if (!trial.subject->serial()) return out.trial.subject = cached(trial.subject), out;  // of many threads
-    const std::array<double, 3> wo = {trial.wo.x, trial.wo.y, trial.wo.z};
-    if (asked_ != trial.subject || wo != wo_)
-        asked_ = trial.subject, wo_ = wo, stream_ = stream, kept_ = cached(trial.subject, true);
+Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
+    Side out{check_case, stream};
+    if (!check_case.adapter->limited()) return out;
+    if (!check_case.adapter->serial())
+        return out.check_case.adapter = cached(check_case.adapter), out;  // of many threads
+    const std::array<double, 3> wo = {check_case.wo.x, check_case.wo.y, check_case.wo.z};
+    if (cached_of_ != check_case.adapter || wo != wo_)
+        cached_of_ = check_case.adapter, wo_ = wo, stream_ = stream, cache_ = cached(check_case.adapter, true);
     out.stream = stream_;
-    out.trial.subject = kept_;
+    out.check_case.adapter = cache_;
     return out;
 }
 
 const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
-    const auto* kept = dynamic_cast<const AskedOnce*>(&sampler);
-    return kept ? kept->anew() : sampler;
+    const auto* cache = dynamic_cast<const CachingAdapter*>(&sampler);
+    return cache ? cache->anew() : sampler;
 }
 
 // ---- A fault is thrown again with the side in front and with its kind kept: too slow, given up before, or new.
@@ -175,42 +176,42 @@ public:
         : ForwardingAdapter(std::move(sampler)),
           who_(fmt::format("{}{} ({}): ", opening, side, printable(inner().name(), 40))) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        ask([&] { inner().sample(t, wo, u, out); });
+        forward([&] { inner().sample(t, wo, u, out); });
     }
     void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        ask([&] { inner().pdf(t, at, out); });
+        forward([&] { inner().pdf(t, at, out); });
     }
     void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        ask([&] { inner().exact_pdf(t, at, out); });
+        forward([&] { inner().exact_pdf(t, at, out); });
     }
     void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
-        ask([&] { inner().mis_weight(t, at, out); });
+        forward([&] { inner().mis_weight(t, at, out); });
     }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        ask([&] { inner().f(at, out); });
+        forward([&] { inner().f(at, out); });
     }
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        ask([&] { inner().f_channels(at, out); });
+        forward([&] { inner().f_channels(at, out); });
     }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        ask([&] { inner().true_f(at, out); });
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        forward([&] { inner().reference_f(at, out); });
     }
 
 private:
     std::string who_;
 
-    std::string told(const SamplerError& fault) const {
+    std::string message_of(const SamplerError& fault) const {
         const std::string_view what = fault.what();
         return what.starts_with(opening) ? std::string(what) : who_ + std::string(what);
     }
-    template <class Call> void ask(Call&& call) const {
+    template <class Call> void forward(Call&& call) const {
         try {
             call();
         } catch (const SamplerTimeout& fault) {
-            throw SamplerTimeout(told(fault));
-        } catch (const SamplerExited& fault) { throw SamplerExited(told(fault)); } catch (const SamplerError& fault) {
-            throw SamplerError(told(fault));
-        }
+            throw SamplerTimeout(message_of(fault));
+        } catch (const SamplerExited& fault) {
+            throw SamplerExited(message_of(fault));
+        } catch (const SamplerError& fault) { throw SamplerError(message_of(fault)); }
     }
 };
 
@@ -222,4 +223,4 @@ std::shared_ptr<const SamplerAdapter> named_side(
     return std::make_shared<LabelledAdapter>(std::move(sampler), side);
 }
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

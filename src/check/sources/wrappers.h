@@ -7,10 +7,10 @@
 
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline subjects {
+namespace crescent::inline sources {
 
 // ---- A sampler that is asked for the same thing once: what p and f are at a pair of directions is kept as long as a
-// trial lasts. Integrals of one trial start from the same cells, so that a sampler answers for their nodes a single
+// case lasts. Integrals of one case start from the same cells, so that a sampler answers for their nodes a single
 // time.
 
 /// `sampler`, with its answers for quadrature and for f kept, and those that it gives counted; for one thread. draws:
@@ -21,18 +21,18 @@ const SamplerAdapter& uncached(const SamplerAdapter& sampler);
 
 /// One side of a comparison and the stream that it draws from.
 struct Side {
-    CheckCase trial;
+    CheckCase check_case;
     std::uint32_t stream = 0;
 };
 
-/// A program is asked once at each w_o: its answers and its draws there serve every trial that has this w_o, whatever
+/// A program is asked once at each w_o: its answers and its draws there serve every case that has this w_o, whatever
 /// the surface and the light of the other side are. CheckCases of one w_o come one after the other.
 class PerDirectionCache {
 public:
-    Side of(const CheckCase& trial, std::uint32_t stream);
+    Side of(const CheckCase& check_case, std::uint32_t stream);
 
 private:
-    std::shared_ptr<const SamplerAdapter> asked_, kept_;
+    std::shared_ptr<const SamplerAdapter> cached_of_, cache_;
     std::array<double, 3> wo_{};
     std::uint32_t stream_ = 0;
 };
@@ -44,4 +44,4 @@ private:
 std::shared_ptr<const SamplerAdapter> named_side(
     std::shared_ptr<const SamplerAdapter> sampler, const std::string& side);
 
-}  // namespace crescent::inline subjects
+}  // namespace crescent::inline sources

@@ -10,7 +10,7 @@ namespace crescent::check {
 namespace {
 
 /// More than a share of the draws, and more than a few. per: how many each one counted stands for.
-void ask_share(Family family, const Count& count, double of, double tolerated, const Visit& visit, double per = 1) {
+void test_share(Family family, const Count& count, double of, double tolerated, const Visit& visit, double per = 1) {
     const double times = per * static_cast<double>(count.times);
     visit({family, 0, of > 0 ? times / of : 0, 0, tolerated, times > tolerated * of + tolerated_breaks ? 0.0 : 1.0, 0});
 }
@@ -18,7 +18,7 @@ void ask_share(Family family, const Count& count, double of, double tolerated, c
 /// Pairs of equal directions, against those that the lattice of the arithmetic makes: N^2 / 2 pairs, of which a step^2
 /// of the sphere holds the integral of p^2 = E[p]. In single precision a small disk about an axis is one direction
 /// (`one_direction`), which then comes N p times.
-void ask_repeats(const Evidence& e, const Visit& visit) {
+void test_repeats(const Evidence& e, const Visit& visit) {
     const Observations& o = e.observations;
     std::vector<Observations::Met> met = o.met;
     std::ranges::sort(met, {}, &Observations::Met::key);
@@ -38,7 +38,7 @@ void ask_repeats(const Evidence& e, const Visit& visit) {
 
 }  // namespace
 
-void ask_counts(const Evidence& e, const Visit& visit) {
+void test_counts(const Evidence& e, const Visit& visit) {
     const DrawChecks& c = e.observations.checks;
     const double followed = static_cast<double>(c.followed);
     // All rows of a file were looked at before.
@@ -46,11 +46,11 @@ void ask_counts(const Evidence& e, const Visit& visit) {
     const double invalid = static_cast<double>(of_draws + e.source.invalid());
     visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
     const double per = static_cast<double>(c.odd) / static_cast<double>(std::max<std::uint64_t>(c.odd_compared, 1));
-    ask_share(Family::pointwise, c.pointwise, followed, tolerated_share, visit, std::max(per, 1.0));
-    ask_share(Family::zero, c.zero, followed, tolerated_zeros, visit, std::max(per, 1.0));
-    ask_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
-    ask_share(Family::true_f, c.true_f, static_cast<double>(c.weights), tolerated_share, visit);
-    if (!e.source.traits.delta) ask_repeats(e, visit);
+    test_share(Family::pointwise, c.pointwise, followed, tolerated_share, visit, std::max(per, 1.0));
+    test_share(Family::zero, c.zero, followed, tolerated_zeros, visit, std::max(per, 1.0));
+    test_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
+    test_share(Family::reference_f, c.reference_f, static_cast<double>(c.weights), tolerated_share, visit);
+    if (!e.source.traits.delta) test_repeats(e, visit);
 }
 
 }  // namespace crescent::check

@@ -19,7 +19,7 @@ int member_of(const DeltaPart& p) {
 }
 
 /// Draws of a part against q, by Bennett's bound: it holds at every count.
-void ask_delta_share(const DeltaPart& p, double n, const Visit& visit) {
+void test_delta_share(const DeltaPart& p, double n, const Visit& visit) {
     const double share = static_cast<double>(p.drawn) / n, floor = detection_floor * p.q, v = p.q * (1 - p.q) / n;
     Answer a{Family::delta_share, member_of(p), share - p.q, std::sqrt(std::max(v, 0.0)), floor, 1, p.q};
     a.p = bennett_p(bennett_z2(std::fabs(a.difference) - floor, std::max(v, 0.0), 1 / n, 1e12));
@@ -28,12 +28,12 @@ void ask_delta_share(const DeltaPart& p, double n, const Visit& visit) {
 
 }  // namespace
 
-void ask_deltas(const Evidence& e, const Visit& visit) {
+void test_deltas(const Evidence& e, const Visit& visit) {
     const Observations& o = e.observations;
     if (o.deltas.empty()) return;
     double sum = 0, otherwise = 0;
     for (const DeltaPart& p : o.deltas.parts(o.independent)) {
-        ask_delta_share(p, o.independent, visit);
+        test_delta_share(p, o.independent, visit);
         sum += p.q, otherwise += static_cast<double>(p.otherwise);
     }
     const bool certain = sum > 1 + same_number;

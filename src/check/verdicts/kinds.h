@@ -1,4 +1,4 @@
-// What is known of each verdict of the list (judgements/all.h) beside its name and question. A verdict is wrong if a
+// What is known of each verdict of the list (results/all.h) beside its name and question. A verdict is wrong if a
 // family of questions.h that names it fails; what else it looks at is said here.
 #pragma once
 

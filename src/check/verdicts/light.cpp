@@ -18,7 +18,7 @@ Estimate mean_of(const Sums& s, double n) {
     return {m, std::max(s.square / n - m * m, 0.0) / n, 0};
 }
 
-void ask_mean(const Evidence& e, int channel, const Visit& visit) {
+void test_mean(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
     const Estimate drawn = mean_of(o.mean[c], o.weighed), &due = e.integrals.light.mean[c];
@@ -36,7 +36,7 @@ void ask_mean(const Evidence& e, int channel, const Visit& visit) {
 
 /// Without a density the weights alone say where the draws go: their sum in each node of the upper tree against the
 /// integral of f cos there.
-void ask_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
+void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const auto c = static_cast<std::size_t>(channel);
     const double n = e.observations.weighed;
@@ -64,7 +64,7 @@ void ask_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
     }
 }
 
-void ask_albedo(const Evidence& e, int channel, const Visit& visit) {
+void test_albedo(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
     const Estimate& of_density = e.integrals.light.albedo[c];
@@ -81,25 +81,25 @@ bool tail_may_be_heavy(std::span<const double> weights) {
     for (double x : weights) mean += x / static_cast<double>(weights.size()), largest = std::max(largest, x);
     if (largest <= bounded_weight * mean) return false;
     std::vector<double> w(weights.begin(), weights.end());
-    const std::size_t m = std::min(stats::tail_length(w.size()) + 1, w.size());
+    const std::size_t m = std::min(statistics::tail_length(w.size()) + 1, w.size());
     std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
-    const std::optional<stats::Tail> tail = stats::fit_tail(std::span<const double>(w).first(m));
+    const std::optional<statistics::Tail> tail = statistics::fit_tail(std::span<const double>(w).first(m));
     return tail && tail->k + 2 * tail->se >= heavy_index;
 }
 
-bool mean_can_be_asked(const Evidence& e) {
+bool mean_can_be_tested(const Evidence& e) {
     const Observations& o = e.observations;
     // A mean that is not bridged needs a variance.
     return o.weighed > 0 && o.weightless == 0 && (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
 }
 
-void ask_light(const Evidence& e, const Visit& visit) {
+void test_light(const Evidence& e, const Visit& visit) {
     if (!e.source.has_f() || !(e.integrals.light.points > 0)) return;
-    const bool of_mean = mean_can_be_asked(e);
+    const bool of_mean = mean_can_be_tested(e);
     for (int c = 0; c < e.source.channels(); ++c) {
-        if (of_mean) ask_mean(e, c, visit);
-        if (of_mean && !e.source.has_density()) ask_mean_by_nodes(e, c, visit);
-        if (e.source.traits.wo != Traits::Asked::none) ask_albedo(e, c, visit);
+        if (of_mean) test_mean(e, c, visit);
+        if (of_mean && !e.source.has_density()) test_mean_by_nodes(e, c, visit);
+        if (e.source.traits.wo != Traits::WoDomain::none) test_albedo(e, c, visit);
     }
     if (!e.source.has_density() || e.plan.estimates) return;
     const LightIntegrals& l = e.integrals.light;

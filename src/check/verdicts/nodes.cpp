@@ -89,7 +89,7 @@ Answer answer_of_sets(const Evidence& e, const std::vector<Replicates>& sets, st
 
 }  // namespace
 
-void ask_nodes(const Evidence& e, const Visit& visit) {
+void test_nodes(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density()) return;
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const std::vector<NodeSums> sums = node_sums(e);
@@ -115,7 +115,7 @@ void ask_nodes(const Evidence& e, const Visit& visit) {
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)
             visit({Family::depth, static_cast<int>(d), chi[d] - degrees[d], std::sqrt(2 * degrees[d]), 0,
-                stats::chi_squared_p(chi[d], degrees[d]), degrees[d]});
+                statistics::chi_squared_p(chi[d], degrees[d]), degrees[d]});
 }
 
 }  // namespace crescent::check

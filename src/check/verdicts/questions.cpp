@@ -41,7 +41,7 @@ const FamilyInfo& info(Family family) {
 }
 
 bool is_of_f(Family f) {
-    return f == Family::weight || f == Family::support || f == Family::mean || f == Family::true_f ||
+    return f == Family::weight || f == Family::support || f == Family::mean || f == Family::reference_f ||
         f == Family::albedo;
 }
 

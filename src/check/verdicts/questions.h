@@ -35,7 +35,7 @@ enum class Family {
     state,          // the same u gives another draw, alone or in another batch
     support,        // f cos where p is 0
     mean,           // bridged weights against the integral of f cos
-    true_f,         // f against what it ought to be
+    reference_f,    // f against what it ought to be
     mis,            // weights of combined techniques sum to 1
     albedo,         // more light comes back than arrives
     reciprocity,
@@ -75,16 +75,16 @@ struct Evidence {
 };
 
 // Each visits every member of its families.
-void ask_sums(const Evidence& e, const Visit& visit);
-void ask_nodes(const Evidence& e, const Visit& visit);
-void ask_light(const Evidence& e, const Visit& visit);
-void ask_counts(const Evidence& e, const Visit& visit);
-void ask_deltas(const Evidence& e, const Visit& visit);
+void test_sums(const Evidence& e, const Visit& visit);
+void test_nodes(const Evidence& e, const Visit& visit);
+void test_light(const Evidence& e, const Visit& visit);
+void test_counts(const Evidence& e, const Visit& visit);
+void test_deltas(const Evidence& e, const Visit& visit);
 
 /// Whether the weights may have an infinite variance, by their Pareto index and its standard error.
 bool tail_may_be_heavy(std::span<const double> weights);
 /// Whether their mean can be compared with the integral of f cos.
-bool mean_can_be_asked(const Evidence& e);
+bool mean_can_be_tested(const Evidence& e);
 
 /// What a deviation of a whole sum may be: a share of the sum itself (mass, bridge) or of the spread of h (slope,
 /// centre), and for a logarithm the rounding of p in single precision.

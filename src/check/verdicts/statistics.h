@@ -59,11 +59,11 @@ template <class Values> struct ReplicateMean {
 
 /// Two-sided Student p of a difference d beyond its floor, of variance v with nu degrees of freedom.
 inline double student_p_of(double d, double v, double nu) {
-    return d > 0 && std::isfinite(v) ? stats::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
+    return d > 0 && std::isfinite(v) ? statistics::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
 }
 /// One-sided: the chance that a normal exceeds its mean by d.
 inline double normal_p_of(double d, double v) {
-    return d > 0 ? stats::normal_two_sided(d / std::sqrt(v + 1e-30)) / 2 : 1;
+    return d > 0 ? statistics::normal_two_sided(d / std::sqrt(v + 1e-30)) / 2 : 1;
 }
 
 }  // namespace crescent::check

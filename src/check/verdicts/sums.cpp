@@ -63,7 +63,7 @@ double drawn_variance(const Evidence& e, int integrand) {
     return draws_vary(e, integrand) ? std::max(s.square / n - mean * mean, 0.0) / n : least_spread * least_spread;
 }
 
-void ask_sums(const Evidence& e, const Visit& visit) {
+void test_sums(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density()) return;
     const Observations& o = e.observations;
     const double n = o.independent;

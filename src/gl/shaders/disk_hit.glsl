@@ -1,19 +1,19 @@
-// Which disk light a direction meets first, and whether something stands before it, as src/estimator/disk_hit.h: the
-// local frame for the disks, the world's for the bodies. Lengths in m.
+// Finds the disk light that a direction meets first, and whether a body blocks it, as src/render/disk_hit.h: disks in
+// the local frame, bodies in the world's. Lengths in m.
 //
-// Bodies stand in order of kind, three vectors each:
+// Bodies are in order of kind, three vectors each:
 //            sphere         box         quad        disk         plane
 //   3i       centre         min         corner      centre       point      .w: index of the shape
 //   3i + 1   -              max         edge u      normal       normal     .w: radius
 //   3i + 2   -              -           edge v      -            -            .w: normal.point of its plane
 // Large and far bodies have other numbers, see numbers() in src/scene/shapes/.
-#include "site.glsl"
+#include "shading_point.glsl"
 
 uniform vec4 bodies[3 * BODY_SLOTS];
 const int first_box = SPHERES, first_quad = first_box + BOXES, first_plate = first_quad + QUADS,
           first_plane = first_plate + PLATES, end_of_bodies = first_plane + PLANES;
 
-// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where none does, r2 < 0.
+// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. If none does, r2 < 0.
 struct FacingDisk {
     vec3 c, n;
     float k, r2;  // c.n; radius squared
@@ -54,7 +54,7 @@ bool crosses_sphere(vec3 center, float radius, vec3 o, vec3 d, float t_max) {
     return disc > 0.0 && (within(along - root, eps, t_max) || within(along + root, eps, t_max));
 }
 
-// Body i, which is a sphere.
+// Body i, a sphere.
 bool crosses_ball(int i, vec3 o, vec3 d, float t_max) {
     vec3 at = bodies[3 * i].xyz, n = bodies[3 * i + 1].xyz;
     float radius = bodies[3 * i + 1].w, k = bodies[3 * i + 2].w;
@@ -69,7 +69,7 @@ bool crosses_box(vec3 lo, vec3 hi, vec3 o, vec3 d, float t_max) {
     return near < far && (within(near, eps, t_max) || within(far, eps, t_max));
 }
 
-// Where a ray meets the plane n.p = offset.
+// Returns where a ray meets the plane n.p = offset.
 float plane_distance(float offset, vec3 n, vec3 o, vec3 d) {
     float denominator = dot(n, d);
     return (offset - dot(n, o)) / (denominator == 0.0 ? 1e-30 : denominator);
@@ -95,9 +95,9 @@ bool crosses_plate(vec3 center, vec3 n, vec3 outwards, float radius, float offse
     return within(t, t_max * 1e-5, t_max) && dot(p, p) <= reach;
 }
 
-// Does a body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either
-// end it does not: a body that touches the surface point or the light hides nothing there. A shape does not shadow
-// itself.
+// Returns whether a body's surface crosses the ray o + t d before a light at `distance`. Crossings within 1e-5 of the
+// distance from either end do not count, so a body that touches the surface point or the light hides nothing there. A
+// shape does not shadow itself.
 bool blocked(vec3 o, vec3 d, float distance, float own) {
     bool hidden = false;
     float t_max = distance * (1.0 - 1e-5);

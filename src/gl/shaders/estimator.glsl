@@ -1,15 +1,16 @@
-// The estimator, as src/estimator/kernel_body.h: one pixel a fragment, samples [first_sample, first_sample + samples)
-// one after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. The files of an arm and of a lobe stand before
-// this one; LOBE is that lobe's place in the list from 1 on, 0 for none.
+// The estimator, as src/render/kernel_body.h: one pixel per fragment, samples [first_sample, first_sample + samples)
+// one after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. The files of a sampler and of a lobe precede
+// this one; LOBE is that lobe's index in the list from 1 on, 0 for none.
+//
 //
 //   sums    sum of g = cos/p, of g lobe, of (X - mean)^2 of this draw's samples; largest X
-//   counts  directions under the horizon, directions that met a disk, bad samples; mean X of this draw
+//   counts  directions below the horizon, directions that met a disk, bad samples; mean X of this draw
 //   met     sum of g and of g lobe over the samples that met disk first_recorded + 2k (x, y) and the next (z, w)
 //
-// Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no
-// more than three times 16 roundings (relative error < 3e-6, a tenth of that as a rule); the
-// program adds draws up in double.
-#include "site.glsl"
+// Sums run in float over 16 samples, over 16 such blocks and over the rest, so that a draw of 4096 samples has an error
+// of at most three times 16 roundings (relative error < 3e-6, usually a tenth of that); the program sums draws in
+// double.
+#include "shading_point.glsl"
 #include "disk_hit.glsl"
 #include "random.glsl"
 
@@ -27,12 +28,12 @@ layout(location = 2) out vec4 met[(RECORDED + 1) / 2];
 
 struct Sums {
     vec2 all;                   // g, g lobe
-    vec2 disk[RECORDED_SLOTS];  // an even number, 2 at least
+    vec2 disk[RECORDED_SLOTS];  // an even number, at least 2
 };
 Sums block, middle, top;
 float largest = 0.0;
 // Mean of X over the blocks so far, sum of (X - mean)^2 over them; sums of X - mean and of its square in the block. The
-// first block, which has none before it, takes them about the smaller of the draw's first two X: outliers are large.
+// first block uses the smaller of the draw's first two X instead of a mean, because outliers are large.
 float mean = 0.0, spread = 0.0, block_off = 0.0, block_square = 0.0;
 uint horizon = 0u, hits = 0u, bad = 0u;
 Surroundings around;
@@ -49,7 +50,7 @@ void add(inout Sums to, inout Sums from) {  // and clears what was added
     from = no_sums();
 }
 
-// Joins the block's `more` samples to the `before` that came before it: Chan, Golub & LeVeque 1983, "Algorithms for
+// Joins the block's `more` samples to the `before` samples so far: Chan, Golub & LeVeque 1983, "Algorithms for
 // Computing the Sample Variance".
 void join(float before, float more) {
     float off = block_off / more, all = before + more;
@@ -75,8 +76,8 @@ bool meets_light(int k, vec3 wi, int aimed, bool met, out float t) {
     return DISKS + k == aimed ? met && shines(others[k]) : hit;
 }
 
-// A sample that met a disk: the nearest disk first, and of two as near as rounding can tell the one that stands first
-// in the file; then what stands before it. Returns X where one was met, else x.
+// Handles a sample that met a disk: finds the nearest disk, or the first one in the file if rounding cannot order them,
+// then tests the bodies before it. Returns X if one was met, else x.
 float resolve_light_hit(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
     float nearest = 1e30;
     int index = -1;
@@ -105,14 +106,14 @@ float resolve_light_hit(vec3 wi, float g, float lobe, float x, int aimed, bool m
     return x;
 }
 
-// X of one drawn direction, adding what it carries to the sums.
+// Returns X of one drawn direction and adds its contribution to the sums.
 float accumulate(Drawn drawn, float weight, int aimed, bool met) {
     float cosine = drawn.wi.z;
     bool down = cosine <= 0.0;  // false for NaN, which must reach the sums and be counted
     bool up = !down && drawn.pdf != 0.0;
     horizon += down ? 1u : 0u;
     float g = up ? weight * (cosine / drawn.pdf) : 0.0;
-    float lobe = up ? lobe_of(site.wo, drawn.wi) : 0.0;
+    float lobe = up ? lobe_of(shading_point.wo, drawn.wi) : 0.0;
     block.all.xy += g * vec2(1.0, lobe);
     float x = g * (around.fill_d + lobe * around.fill_s);
     bool any = false;
@@ -133,11 +134,11 @@ void take(uint pixel, uvec4 h, uint sample_index) {
     vec2 u = unit_floats(odd ? h.zw : h.xy);
 #ifdef TWO_TECHNIQUES
     uvec4 second = draws(pixel, sample_index >> 1u, 1u, seed);
-    Drawn a = sample_mixture(site.wo, u), b = sample_light_area(site.wo, unit_floats(odd ? second.zw : second.xy));
-    float x = accumulate(a, weight_of(a.pdf, pdf_light_area(site.wo, a.wi)), -1, false);
-    x += accumulate(b, weight_of(b.pdf, pdf_mixture(site.wo, b.wi)), aimed_disk, aimed_met);
+    Drawn a = sample_mixture(shading_point.wo, u), b = sample_light_area(shading_point.wo, unit_floats(odd ? second.zw : second.xy));
+    float x = accumulate(a, weight_of(a.pdf, pdf_light_area(shading_point.wo, a.wi)), -1, false);
+    x += accumulate(b, weight_of(b.pdf, pdf_mixture(shading_point.wo, b.wi)), aimed_disk, aimed_met);
 #else
-    Drawn drawn = sample_arm(site.wo, u);
+    Drawn drawn = sample_arm(shading_point.wo, u);
     float x = accumulate(drawn, 1.0, aimed_disk, aimed_met);
 #endif
     if (sample_index == uint(first_sample)) mean = x;
@@ -145,14 +146,14 @@ void take(uint pixel, uvec4 h, uint sample_index) {
     block_square += sqr(x - mean);
     if (sample_index == uint(first_sample + 1) && x < mean) mean = x, block_off = -block_off;
     largest = x > largest ? x : largest;
-    // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0 is no negative number.
+    // Only NaN, infinite and negative numbers have bits from 0x7f800000 up; -0 is not negative.
     uint b_x = floatBitsToUint(x);
     bad += b_x > 0x7f7fffffu && b_x != 0x80000000u ? 1u : 0u;
 }
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    around = load_site(at);
+    around = load_point(at);
     for (int k = 0; k < DISKS; ++k) facing[k] = facing_disk(disks[k]);
     uint pixel = uint((corner.y + at.y) * image_width + corner.x + at.x);
     bool mine = around.kind == float(LOBE);

@@ -1,4 +1,4 @@
-// Orthonormal frames, as src/simd/frame.h: n = +z, wo is given, wi is drawn, both leave the surface.
+// Orthonormal frames, as src/math/simd/frame.h: n = +z, wo is given, wi is drawn, both leave the surface.
 #include "math.glsl"
 
 struct Frame {

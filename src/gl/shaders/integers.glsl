@@ -1,5 +1,5 @@
-// The integers of the random streams, one hash a fragment: fragment (x, y) has pixel x + y width, and everything else
-// is uniform. For the proof that they are the CPU's.
+// The integers of the random streams, one hash per fragment: fragment (x, y) has pixel x + y width, and everything else
+// is uniform. Used to test that they equal the CPU's.
 #include "random.glsl"
 
 uniform int image_width;

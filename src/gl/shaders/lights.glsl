@@ -1,6 +1,6 @@
-// Lights that are no disks, as src/scene/lights/sphere.h and rectangle.h, in a surface point's local frame: what a, b,
-// c and the numbers are is each kind's own and written there. SPHERE_LIGHT and RECTANGLE_LIGHT are places in the list
-// of kinds.
+// Lights other than disks, as src/scene/lights/sphere.h and rectangle.h, in a surface point's local frame: the meaning
+// of a, b, c and the numbers depends on the kind and is documented there. SPHERE_LIGHT and RECTANGLE_LIGHT are indices
+// in the list of kinds.
 #include "frame.glsl"
 
 struct LocalLight {
@@ -10,9 +10,9 @@ struct LocalLight {
     float number[7];
 };
 LocalLight others[OTHER_SLOTS];
-vec2 light_worth[OTHER_SLOTS];  // as disk_worth
+vec2 light_worth[OTHER_SLOTS];  // like disk_worth
 
-// A direction towards a light and its density in 1/sr; 0 where the light gives the point nothing.
+// A direction towards a light and its density in 1/sr; 0 if the light does not reach the point.
 struct Aimed {
     vec3 wi;
     float pdf;
@@ -36,7 +36,7 @@ bool meets_rectangle_light(LocalLight l, vec3 w, out float t) {
     return abs(dot(off, l.b)) <= l.number[0] * abs(v) && abs(dot(off, l.c)) <= l.number[1] * abs(v) && ahead &&
         shines(l);
 }
-// Whether w meets it, and how far it is.
+// Returns whether w meets it, and at which distance.
 bool meets_other(LocalLight l, vec3 w, out float t) {
     return l.kind == SPHERE_LIGHT ? meets_sphere_light(l, w, t) : meets_rectangle_light(l, w, t);
 }
@@ -85,7 +85,7 @@ Aimed sphere_by_angle(LocalLight l, vec2 u) {
     vec3 e = to_world(frame_about(axis), vec3(sin * phi.cos, sin * phi.sin, -drop));
     return Aimed(axis + e, sphere_angle_density(l));
 }
-// Urena, Fajardo & King 2013; points of the rectangle where its solid angle is too small for floats.
+// Urena, Fajardo & King 2013; points of the rectangle if its solid angle is too small for floats.
 Aimed rectangle_by_angle(LocalLight l, vec2 u) {
     if (!(l.number[2] > 0.0)) return rectangle_by_area(l, u);
     const float tiny = 1e-30;

@@ -1,6 +1,7 @@
-// Elementary functions as in src/simd/math.h: the same polynomials, because those that GLSL has built in are only as
-// good as a driver makes them. What is left out is the compensated part (a compiler of GLSL may cancel (a + b) - a):
-// log2 is one float, and so pow is good to about |log2 x^y| 1e-7 instead of 3 ULP.
+// Elementary functions as in src/math/simd/math.h: the same polynomials, because the accuracy of GLSL's built-in
+// functions depends on the driver. The compensated part is omitted (a compiler of GLSL may cancel (a + b) - a): log2 is
+// one float, so pow is accurate to about |log2 x^y| 1e-7 instead of 3 ULP.
+//
 //
 //   sincos_turns   u in [0, 1]               1.5e-7 absolute
 //   power          x in [0, 1], y > 0        2e-7 + 1e-7 |log2 x^y| relative; 0 below 2^-126
@@ -44,7 +45,7 @@ Power exp2_split(float x) {
     return Power(value, k == 0.0 ? -q : 1.0 - value);
 }
 
-// log2(x) for normal x > 0; `x_minus_1` is used where x is close to 1. After FreeBSD's e_logf.c.
+// log2(x) for normal x > 0; `x_minus_1` is used if x is close to 1. After FreeBSD's e_logf.c.
 float log2_from(float x, float x_minus_1) {
     uint t = floatBitsToUint(x) + (0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
     float e = float(int(t >> 23u) - 127);
@@ -58,8 +59,8 @@ float log2_from(float x, float x_minus_1) {
     return e + (f - (square - s * (square + R))) * 1.44269504;
 }
 
-// x^y and 1 - x^y for x in [0, 1] given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
-// result under 2^-126.
+// x^y and 1 - x^y for x in [0, 1] given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a result below
+// 2^-126.
 Power power(float x, float x_minus_1, float y) {
     bool positive = x > 1.17549435e-38;  // smallest normal
     float l = y * log2_from(positive ? x : 1.0, positive ? x_minus_1 : 0.0);
@@ -72,7 +73,7 @@ Power power(float x, float y) { return power(x, x - 1.0, y); }
 // u^y and 1 - u^y for u in [2^-24, 1] and 0 < y <= 1/2, the inverse of a lobe's distribution.
 Power root(float u, float y) { return exp2_split(y * log2_from(u, u - 1.0)); }
 
-// (a.b)^s of unit vectors, from |a - b|^2, which loses nothing where they nearly meet.
+// (a.b)^s of unit vectors, from |a - b|^2, which keeps its precision where they nearly coincide.
 float cosine_power(vec3 a, vec3 b, float s) {
     vec3 d = a - b;
     float x_minus_1 = -0.5 * dot(d, d);

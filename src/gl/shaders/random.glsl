@@ -1,4 +1,4 @@
-// Random numbers as a pure function of (seed, pixel, sample, dimension): src/simd/random.h in GLSL, bit for bit.
+// Random numbers as a pure function of (seed, pixel, sample, dimension): src/math/simd/random.h in GLSL, bit for bit.
 // pcg4d of Jarzynski & Olano 2020, "Hash Functions for GPU Rendering", JCGT 9(3).
 
 uvec4 pcg4d(uvec4 v) {

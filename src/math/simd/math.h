@@ -1,14 +1,14 @@
 // Elementary functions from + - x / and sqrt alone, so that every instruction set and compiler returns the same bits.
-//   function        range                          error (bounds that math_isa_test.cpp holds on every instruction set)
+//   function        range                          error (bounds that math_isa_test.cpp tests on every instruction set)
 //   sincos_turns    u in [0, 1]                    1.2e-7 absolute
 //   exp2            x in [-126, 127]               1.5 ULP; 0 below -126
 //   root            u in [2^-24, 1], y <= 1/2      2 + y |log2 u| ULP
-//   pow             x in [0, 1], y in (0, 2^17]    3 ULP where the result > 2^-24, 12 ULP above 2^-126, else 0
+//   pow             x in [0, 1], y in (0, 2^17]    3 ULP if the result > 2^-24, 12 ULP above 2^-126, else 0
 //   one_minus       of root and power              5 ULP of 1 - x^y
 //   log_one_minus   u in [0, 1 - 2^-24], of 24 bits  3 ULP
 //   cosine_power    unit a, b; s up to 10^6        3 + 4 s (1 - c)/c ULP of c^s, c = 1 - |a - b|^2 / 2
-//   normalize       any finite a                   3 ULP a component
-// On double the same names forward to math/functions.h, for quadrature and verdicts.
+//   normalize       any finite a                   3 ULP per component
+// On double the same names forward to math/functions.h, for quadrature and checks.
 #pragma once
 #include "base/vec.h"
 #include "math/functions.h"
@@ -24,7 +24,8 @@ template <class F> struct SinCos {
 /// integer.
 inline constexpr double round_magic = 12582912.0;
 
-/// sin and cos of 2 pi u. Quarter turns are split off exactly; minimax polynomials on an eighth of a turn either way.
+/// sin and cos of 2 pi u. Quarter turns are split off exactly; minimax polynomials on an eighth of a turn to either
+/// side.
 template <class F> CRESCENT_INLINE SinCos<F> sincos_turns(F u) {
     using U = UintOf<F>;
     const F magic = number<F>(round_magic);
@@ -57,7 +58,7 @@ template <class F> struct Power {
 template <class F> CRESCENT_INLINE Power<F> exp2_split(F shifted, F r) {
     using U = UintOf<F>;
     const F one = number<F>(1);
-    const F r2 = r * r;  // Estrin's scheme: a sample is one long chain, and this shortens it
+    const F r2 = r * r;  // Estrin's scheme shortens the chain of dependent operations
     const F low = number<F>(6.9314718803e-01) + r * number<F>(2.4022651084e-01);
     const F middle = number<F>(5.5503571055e-02) + r * number<F>(9.6180308269e-03);
     const F high = number<F>(1.3390866863e-03) + r * number<F>(1.5469717178e-04);
@@ -86,9 +87,9 @@ template <class F> struct Split {
 };
 template <class F> CRESCENT_INLINE F upper_half(F x) { return from_bits<F>(bits(x) & UintOf<F>(0xfffff000u)); }
 
-/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute. x - 1 is used where x is close to 1:
-/// pass a more accurate value than the rounded x gives where there is one. After FreeBSD's e_log2f.c (log(1+f) by
-/// atanh-like series in f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
+/// log2(x) for normal x > 0 as hi + lo, accurate to about 2^-33 absolute. x - 1 is used if x is close to 1: pass a more
+/// accurate value than the rounded x gives, if available. After FreeBSD's e_log2f.c (log(1+f) by atanh-like series in
+/// f/(2+f), Remez), with f^2 split to keep precision for f near the ends.
 template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F x_minus_1) {
     using U = UintOf<F>;
     const U t = bits(x) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
@@ -122,7 +123,7 @@ template <class F> CRESCENT_INLINE F log_one_minus(F u) {
 inline double log_one_minus(double u) { return math::log1p(-u); }
 
 /// x^y and 1 - x^y for x in [0, 1], y > 0, given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
-/// result under 2^-126.
+/// result below 2^-126.
 template <class F> CRESCENT_INLINE Power<F> power(F x, F x_minus_1, F y) {
     const F none = number<F>(0);
     const F tiny = number<F>(1.17549435e-38);  // smallest normal
@@ -142,8 +143,8 @@ template <class F> CRESCENT_INLINE F pow(F x, F y) { return power(x, x - number<
 /// x^y and 1 - x^y.
 template <class F> CRESCENT_INLINE Power<F> power(F x, F y) { return power(x, x - number<F>(1), y); }
 
-/// u^y and 1 - u^y for u in [2^-24, 1] and 0 < y <= 1/2, the inverse of a lobe's distribution. A plain log2 is enough
-/// where a small y scales its error down: (2 + y |log2 u|) ULP.
+/// u^y and 1 - u^y for u in [2^-24, 1] and 0 < y <= 1/2, the inverse of a lobe's distribution. A plain log2 is
+/// sufficient because a small y scales its error down: (2 + y |log2 u|) ULP.
 template <class F> CRESCENT_INLINE Power<F> root(F u, F y) {
     using U = UintOf<F>;
     const U t = bits(u) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
@@ -164,14 +165,14 @@ inline Power<double> root(double u, double y) {
     return {math::exp(l), -math::expm1(l)};
 }
 
-/// (a.b)_+^s for unit a and b, through 1 - a.b = |a - b|^2 / 2, which loses nothing where a sharp lobe peaks.
+/// (a.b)_+^s for unit a and b, through 1 - a.b = |a - b|^2 / 2, which keeps its precision where a sharp lobe peaks.
 template <class F> CRESCENT_INLINE F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
     const Vec3<F> d = a - b;
     const F cos_minus_1 = number<F>(-0.5) * dot(d, d);
     return power(number<F>(1) + cos_minus_1, cos_minus_1, s).value;
 }
 
-/// The functions above in double: the reference and the verdicts use them.
+/// The functions above in double, for the reference and the checks.
 inline SinCos<double> sincos_turns(double u) {
     const auto [sin, cos] = math::sincos(2 * pi * u);
     return {sin, cos};
@@ -184,7 +185,7 @@ inline Power<double> power(double x, double y) {
     const double l = y * math::log(x);
     return {math::exp(l), -math::expm1(l)};
 }
-/// (a.b)_+^s for unit a and b. Whole s up to 256 are powers by squaring, to s ULP of c^s.
+/// (a.b)_+^s for unit a and b. Integer s up to 256 are powers by squaring, to s ULP of c^s.
 inline double cosine_power(Vec3<double> a, Vec3<double> b, double s) {
     const Vec3<double> d = a - b;
     const double cos_minus_1 = -0.5 * dot(d, d);

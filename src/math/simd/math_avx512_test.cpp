@@ -1,4 +1,4 @@
-// The functions of simd/math.h on avx512; the flags stand in tests/CMakeLists.txt.
+// The functions of simd/math.h on avx512; tests/CMakeLists.txt has the flags.
 #define CRESCENT_ISA avx512
 #include "math/simd/pack.h"
 // clang-format off

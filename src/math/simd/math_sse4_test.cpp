@@ -1,4 +1,4 @@
-// The functions of simd/math.h on sse4; the flags stand in tests/CMakeLists.txt.
+// The functions of simd/math.h on sse4; tests/CMakeLists.txt has the flags.
 #define CRESCENT_ISA sse4
 #include "math/simd/pack.h"
 // clang-format off

@@ -1,9 +1,9 @@
 // Packs of floats over Highway's static target: the only intrinsics of crescent. The file that includes this one is
-// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of estimator/isas.h), which becomes
-// the namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
+// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of render/isas.h), which becomes the
+// namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
 //
-// A pack is two vectors side by side: a sample is one long chain of dependent operations, and a second chain beside it
-// fills the time that each step of the first one waits.
+// A pack is two vectors: a sample is one long chain of dependent operations, and a second, independent chain fills the
+// latency of each step of the first.
 #pragma once
 
 #ifndef CRESCENT_ISA
@@ -26,7 +26,7 @@ using FloatVec = hn::Vec<FloatTag>;
 using UintVec = hn::Vec<UintTag>;
 inline constexpr std::size_t half_lanes = HWY_MAX_BYTES / sizeof(float);
 
-/// One truth value a lane.
+/// One boolean per lane.
 struct Mask {
     hn::Mask<FloatTag> a, b;
 };
@@ -35,7 +35,7 @@ CRESCENT_INLINE Mask operator|(Mask x, Mask y) { return {hn::Or(x.a, y.a), hn::O
 CRESCENT_INLINE Mask operator!(Mask x) { return {hn::Not(x.a), hn::Not(x.b)}; }
 CRESCENT_INLINE bool any(Mask x) { return !hn::AllFalse(FloatTag{}, hn::Or(x.a, x.b)); }
 
-/// 32-bit unsigned integers, one a lane, modulo 2^32.
+/// 32-bit unsigned integers, one per lane, modulo 2^32.
 struct Uint {
     UintVec a, b;
     Uint() = default;
@@ -56,7 +56,7 @@ CRESCENT_INLINE Mask operator==(Uint x, Uint y) { return mask_of(hn::Eq(x.a, y.a
 template <int n> CRESCENT_INLINE Uint shift_right(Uint x) { return {hn::ShiftRight<n>(x.a), hn::ShiftRight<n>(x.b)}; }
 template <int n> CRESCENT_INLINE Uint shift_left(Uint x) { return {hn::ShiftLeft<n>(x.a), hn::ShiftLeft<n>(x.b)}; }
 
-/// IEEE 754 single precision, one number a lane.
+/// IEEE 754 single precision, one number per lane.
 struct Pack {
     FloatVec a, b;
     Pack() = default;

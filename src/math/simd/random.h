@@ -1,6 +1,6 @@
 // Random numbers as a pure function of (seed, pixel, sample, dimension): pcg4d of Jarzynski & Olano 2020, "Hash
 // Functions for GPU Rendering", JCGT 9(3). One call serves two neighbouring samples and two dimensions; there is no
-// state, so threads, lanes, ranks and rungs cannot change a draw.
+// state, so threads, lanes, ranks and sample counts cannot change a draw.
 #pragma once
 
 #include <cstdint>
@@ -45,14 +45,14 @@ CRESCENT_INLINE Vec4u<U> draws(U pixel, std::uint32_t pair, std::uint32_t block,
     return pcg4d(Vec4u<U>{pixel, U(pair), U(block), U(seed)});
 }
 
-/// The same for one sample, for those who draw one by one.
+/// The same for one sample, for callers that draw one by one.
 inline Vec2<float> draw(std::uint32_t seed, std::uint32_t pixel, std::uint64_t sample, std::uint32_t block = 0) {
     const auto h = draws<std::uint32_t>(pixel, static_cast<std::uint32_t>(sample >> 1), block, seed);
     return sample & 1 ? Vec2<float>{unit_float<float>(h.z), unit_float<float>(h.w)}
                       : Vec2<float>{unit_float<float>(h.x), unit_float<float>(h.y)};
 }
 
-/// Seeds of a series: the first is the given one, the rest are hashed from it.
+/// Seeds of a series: the first is the given one, the others are hashed from it.
 inline std::uint32_t seed_of(std::uint32_t first, std::uint32_t index) {
     return index == 0 ? first : pcg4d(Vec4u<std::uint32_t>{first, index, 0x5eedu, 0u}).x;
 }

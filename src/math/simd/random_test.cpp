@@ -37,7 +37,7 @@ double chi_square_of_pairs(std::uint32_t pixel_step, std::uint32_t sample_step) 
     return sum;
 }
 
-TEST(RandomStreams, PairsFillTheSquareAlongSamplesAndAlongPixels) {
+TEST(RandomStreams, PairsFillTheSquareBySampleAndPixel) {
     for (const double chi : {chi_square_of_pairs(0, 1), chi_square_of_pairs(1, 0), chi_square_of_pairs(1, 1),
              chi_square_of_pairs(960, 0)}) {
         EXPECT_GT(chi, 255 - 5 * 22.6);
@@ -45,7 +45,7 @@ TEST(RandomStreams, PairsFillTheSquareAlongSamplesAndAlongPixels) {
     }
 }
 
-TEST(RandomStreams, NeighbouringSamplesPixelsAndBlocksAreUncorrelated) {
+TEST(RandomStreams, NeighboursAreUncorrelated) {
     constexpr int n = 100'000;
     double along_samples = 0, along_pixels = 0, across_blocks = 0, across_dimensions = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -59,7 +59,7 @@ TEST(RandomStreams, NeighbouringSamplesPixelsAndBlocksAreUncorrelated) {
     for (double sum : {along_samples, along_pixels, across_blocks, across_dimensions}) EXPECT_LT(std::fabs(sum), bound);
 }
 
-TEST(RandomStreams, SeriesOfSeedsStartsWithTheGivenOneAndDoesNotRepeat) {
+TEST(RandomStreams, SeedSeriesBeginsAsGivenWithoutRepeats) {
     EXPECT_EQ(seed_of(329363537, 0), 329363537u);
     std::set<std::uint32_t> seen;
     for (std::uint32_t k = 0; k < 1000; ++k) seen.insert(seed_of(329363537, k));

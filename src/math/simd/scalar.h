@@ -1,17 +1,17 @@
-// The vocabulary of the kernels on plain numbers: float (with uint32_t beside it and bool as mask) and double.
-// simd/pack.h says the same words for packs; a template written in these words gives the same bits on both.
+// The operations of the kernels on plain numbers: float (with uint32_t and bool as mask) and double. simd/pack.h has
+// the same names for packs; a template written with these names gives the same bits on both.
 #pragma once
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-/// For what stands inside the sample loop: a call there costs more than the work.
+/// For functions inside the sample loop, where a call costs more than the work.
 #define CRESCENT_INLINE inline __attribute__((always_inline))
 
 namespace crescent::inline simd {
 
-/// What belongs to a number type F: its mask and, for single precision, its 32-bit integers.
+/// The types that belong to a number type F: its mask and, for single precision, its 32-bit integers.
 template <class F> struct Lanes;
 template <> struct Lanes<float> {
     using Mask = bool;
@@ -25,7 +25,7 @@ template <> struct Lanes<double> {
 template <class F> using MaskOf = typename Lanes<F>::Mask;
 template <class F> using UintOf = typename Lanes<F>::Uint;
 
-/// a where m holds, b elsewhere: the vocabulary of packs (pack.h) for one number.
+/// a if m holds, else b: the operations of packs (pack.h) for one number.
 constexpr float select(bool m, float a, float b) { return m ? a : b; }
 constexpr double select(bool m, double a, double b) { return m ? a : b; }
 constexpr std::uint32_t select(bool m, std::uint32_t a, std::uint32_t b) { return m ? a : b; }
@@ -48,17 +48,17 @@ template <> inline float to_float<float>(std::uint32_t u) { return static_cast<f
 template <int n> constexpr std::uint32_t shift_right(std::uint32_t u) { return u >> n; }
 template <int n> constexpr std::uint32_t shift_left(std::uint32_t u) { return u << n; }
 
-/// b where either is NaN, as maxps has it.
+/// b if either is NaN, like maxps.
 template <class F> CRESCENT_INLINE F larger(F a, F b) { return select(a > b, a, b); }
 template <class F> CRESCENT_INLINE F smaller(F a, F b) { return select(a < b, a, b); }
 
 inline constexpr double pi = 3.14159265358979323846;
-/// A constant in the number type at hand.
+/// A constant in the current number type.
 template <class F> CRESCENT_INLINE F number(double x) { return F(static_cast<float>(x)); }
 template <> inline double number<double>(double x) { return x; }
 template <> inline float number<float>(double x) { return static_cast<float>(x); }
 
-/// From and to memory, as many at once as F has lanes.
+/// Loads and stores as many numbers as F has lanes.
 template <class F> F load_as(const float* p);
 template <> inline float load_as<float>(const float* p) { return *p; }
 template <class U> U load_as(const std::uint32_t* p);

@@ -1,29 +1,33 @@
-// The one list of meters: what is read off a film, of every region or of the frame. A new one is one file beside this
-// one and one line here; the list feeds what a run measures and keeps, metrics.json and metrics.csv, the quantities
-// that a check can name, the spread over seeds, `crescent list meters`, the report and the tests.
+// The list of metrics, computed from a film for every region or for the frame. To add one, add a file in this folder
+// and a line here. The list determines what a run measures and stores, metrics.json and metrics.csv, the quantities
+// that an assertion can name, the spread over seeds, `crescent list metrics`, the report and the tests.
 //
-// meter(name, type)
+// metric(name, type)
 #pragma once
 
 #include "render/film_metrics/bad.h"
 #include "render/film_metrics/fireflies.h"
 #include "render/film_metrics/horizon_frac.h"
 #include "render/film_metrics/largest.h"
+#include "render/film_metrics/rel_mse.h"
 #include "render/film_metrics/rmse.h"
 #include "render/film_metrics/rmse_frame.h"
+#include "render/film_metrics/smape.h"
 #include "render/film_metrics/var.h"
 #include "render/film_metrics/y_mean.h"
 
 // clang-format off: one a line
-#define CRESCENT_REGION_METRICS(meter) \
-    meter(rmse, RmseMeter)            \
-    meter(var, VarMeter)
+#define CRESCENT_REGION_METRICS(metric) \
+    metric(rmse, RmseMetric)            \
+    metric(var, VarMetric)              \
+    metric(rel_mse, RelMseMetric)       \
+    metric(smape, SmapeMetric)
 
-#define CRESCENT_FRAME_METRICS(meter)       \
-    meter(fireflies, FirefliesMeter)       \
-    meter(horizon_frac, HorizonFracMeter)  \
-    meter(y_mean, YMeanMeter)              \
-    meter(rmse_frame, RmseFrameMeter)      \
-    meter(largest, LargestMeter)           \
-    meter(bad, BadMeter)
+#define CRESCENT_FRAME_METRICS(metric)       \
+    metric(fireflies, FirefliesMetric)       \
+    metric(horizon_frac, HorizonFracMetric)  \
+    metric(y_mean, YMeanMetric)              \
+    metric(rmse_frame, RmseFrameMetric)      \
+    metric(largest, LargestMetric)           \
+    metric(bad, BadMetric)
 // clang-format on

@@ -1,11 +1,11 @@
-// bad: samples that are not a number, infinite or negative.
+// bad: samples that are NaN, infinite or negative.
 #pragma once
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct BadMeter {
+struct BadMetric {
     static constexpr MetricInfo info = {
         .means = "samples that are not a number, infinite or negative; the arm's highest rung unless n is said",
         .in_tables = false,
@@ -14,4 +14,4 @@ struct BadMeter {
     std::uint64_t value(const FilmFacts& f) const { return f.bad; }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

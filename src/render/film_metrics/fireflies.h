@@ -1,13 +1,13 @@
-// fireflies: geometry pixels that are off by more than firefly_k times the reference.
+// fireflies: geometry pixels whose error is larger than firefly_k times the reference.
 #pragma once
 
 #include <cmath>
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct FirefliesMeter {
+struct FirefliesMetric {
     static constexpr MetricInfo info = {.means = "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"};
     std::uint64_t count = 0;
     void add(const FilmPixel& p, const FilmFacts& f) {
@@ -16,4 +16,4 @@ struct FirefliesMeter {
     std::uint64_t value(const FilmFacts&) const { return count; }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

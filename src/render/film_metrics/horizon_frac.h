@@ -1,12 +1,12 @@
-// horizon_frac: of the directions drawn at geometry pixels, two a sample for an arm of two techniques, the part that
-// falls under the horizon.
+// horizon_frac: the share of the directions drawn at geometry pixels (two per sample for a sampler with two techniques)
+// that are below the horizon.
 #pragma once
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct HorizonFracMeter {
+struct HorizonFracMetric {
     static constexpr MetricInfo info = {
         .means = "part of the directions drawn at geometry pixels that fall under the horizon",
         .label = "horizon share"};
@@ -19,4 +19,4 @@ struct HorizonFracMeter {
     }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

@@ -5,9 +5,9 @@
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct LargestMeter {
+struct LargestMetric {
     static constexpr MetricInfo info = {
         .means = "largest single sample of the frame; the arm's highest rung unless n is said",
         .in_tables = false,
@@ -17,4 +17,4 @@ struct LargestMeter {
     double value(const FilmFacts&) const { return most; }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

@@ -1,42 +1,43 @@
-// What a meter sees of a film, and what it says of itself. A meter takes the pixels of a box, row by row from the
-// bottom-left, and then tells its value; its sums run in double, so that equal films give equal numbers.
+// The input of a metric and its description. A metric receives the pixels of a box, row by row from the bottom-left,
+// and then returns its value; it sums in double, so that equal films give equal numbers.
 #pragma once
 
 #include <cstdint>
 #include <string_view>
 #include <utility>
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-/// One pixel of a film beside the reference. Y in W/(sr m^2).
+/// One pixel of a film, with the reference. Y in W/(sr m^2).
 struct FilmPixel {
     double y = 0, reference = 0;
     double var = 0;         // variance of the mean of Y
     double largest = 0;     // single sample
-    double horizon = 0;     // directions drawn at or under the horizon
-    bool geometry = false;  // the camera sees a shape there
+    double horizon = 0;     // directions drawn at or below the horizon
+    bool geometry = false;  // whether the camera sees a shape there
     double difference() const { return y - reference; }
 };
 
-/// What is the same for every pixel.
+/// Values that are the same for every pixel.
 struct FilmFacts {
     double pixels = 0;  // of the box
     std::uint64_t n = 0;
-    std::uint64_t directions = 1;  // drawn a sample
+    std::uint64_t directions = 1;  // drawn per sample
     std::uint64_t bad = 0;         // samples of the whole film
     double firefly_k = 0;
 };
 
-/// What a meter says of itself.
+/// The description of a metric.
 struct MetricInfo {
     std::string_view means;
-    std::string_view label{};        // markup, where the report writes it otherwise than its name
-    bool in_tables = true;           // of the report and the terminal
-    bool from_two_samples = false;   // one sample a pixel leaves it unknown
-    bool of_single_samples = false;  // the highest rung holds those of all others; it has no spread over seeds
+    std::string_view label{};        // markup, if the report shows something else than the name
+    bool in_tables = true;           // in the report and on the terminal
+    bool from_two_samples = false;   // unknown at one sample per pixel
+    bool of_single_samples = false;  // the highest sample count includes the samples of all others; no spread over
+                                     // seeds
 };
 
-/// What a meter's value is: double, or an integer where it counts.
-template <class Meter> using MeterOf = decltype(std::declval<const Meter&>().value(FilmFacts{}));
+/// The type of a metric's value: double, or an integer for a count.
+template <class Metric> using MetricOf = decltype(std::declval<const Metric&>().value(FilmFacts{}));
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

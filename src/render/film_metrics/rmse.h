@@ -5,9 +5,9 @@
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct RmseMeter {
+struct RmseMetric {
     static constexpr MetricInfo info = {
         .means = "root mean square error of Y against the reference over a region", .label = "RMSE"};
     double squares = 0;
@@ -15,4 +15,4 @@ struct RmseMeter {
     double value(const FilmFacts& f) const { return std::sqrt(squares / f.pixels); }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

@@ -1,13 +1,13 @@
-// rmse_frame: the same over the whole frame, which lumps the regions together: a footnote, never a headline.
+// rmse_frame: rmse over the whole frame. It mixes the regions, so reports show it only as a footnote.
 #pragma once
 
 #include "render/film_metrics/rmse.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct RmseFrameMeter : RmseMeter {
+struct RmseFrameMetric : RmseMetric {
     static constexpr MetricInfo info = {
         .means = "root mean square error of Y over the whole frame", .label = "whole-frame RMSE", .in_tables = false};
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

@@ -5,9 +5,9 @@
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct VarMeter {
+struct VarMetric {
     static constexpr MetricInfo info = {
         .means = "mean over a region of the variance of the mean of Y", .from_two_samples = true};
     double sum = 0;
@@ -17,4 +17,4 @@ struct VarMeter {
     }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

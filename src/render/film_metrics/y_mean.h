@@ -3,13 +3,13 @@
 
 #include "render/film_metrics/measure.h"
 
-namespace crescent::inline measures {
+namespace crescent::inline render {
 
-struct YMeanMeter {
+struct YMeanMetric {
     static constexpr MetricInfo info = {.means = "mean Y of the whole frame", .label = "<i>Y</i><sub>mean</sub>"};
     double sum = 0;
     void add(const FilmPixel& p, const FilmFacts&) { sum += p.y; }
     double value(const FilmFacts& f) const { return sum / f.pixels; }
 };
 
-}  // namespace crescent::inline measures
+}  // namespace crescent::inline render

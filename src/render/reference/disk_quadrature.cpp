@@ -1,6 +1,6 @@
-// Bodies that cannot stand before the light are ruled out by balls and planes first. Then by the cheapest way that
-// serves: nothing is left of the light, the whole disk by polar rules, or fan by fan. Lambert's part and the lobe's,
-// per unit of radiance; errors of parts are added up.
+// Tests with balls and planes first exclude bodies that cannot hide the light. Then the cheapest valid method is used:
+// the light is hidden completely, the whole disk by polar rules, or fan by fan. Parts are those of Lambert and of the
+// lobe, per unit of radiance; the errors of parts are added.
 #include "render/reference/disk_quadrature.h"
 
 #include <algorithm>
@@ -15,8 +15,9 @@ namespace crescent::inline reference {
 
 namespace {
 
-/// Does one body hide the whole figure? Its shadow on the figure's plane is convex: if two opposite sides of a
-/// parallelogram around the figure lie in it, so does all between them. From within a body the shadow is not convex.
+/// Returns whether one body hides the whole figure. Its shadow on the figure's plane is convex: if it contains two
+/// opposite sides of a parallelogram around the figure, it contains everything between them. From within a body the
+/// shadow is not convex.
 bool hides_all(const Blocker& blocker, Vec3d x, const Figure& figure) {
     if (holds(blocker.body, x)) return false;
     const auto whole = [&](Vec3d from, Vec3d to) {
@@ -27,8 +28,8 @@ bool hides_all(const Blocker& blocker, Vec3d x, const Figure& figure) {
     return whole(at[0], at[1]) && whole(at[3], at[2]);
 }
 
-/// Is the lobe wide against the disk as seen from the point, so that rules which know nothing of its peak see all of
-/// it?
+/// Returns whether the lobe is wide compared with the disk as seen from the point, so that rules that do not know its
+/// peak resolve it.
 bool is_soft(const DiskPoint& point, const Figure& figure, double height) {
     if (!(point.surface.rho_s > 0)) return true;
     const Vec3d d = middle_of(figure) - point.x;
@@ -42,7 +43,7 @@ bool is_soft(const DiskPoint& point, const Figure& figure, double height) {
     return height > 0 && radius < nearest && point.sharpness(radius / nearest) < 2;
 }
 
-/// May the body reach into the ball about c? Never false where it does.
+/// Returns whether the body may reach into the ball around c. Never false if it does.
 bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
     return std::visit(
         [&](const auto& b) {
@@ -58,8 +59,8 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
         body.body);
 }
 
-/// The directions of a figure from a point, and what stands before it: lobes of other exponents share all but the
-/// integral.
+/// The directions of a figure from a point, and the bodies before it; lobes of other exponents share everything except
+/// the integral.
 class FigureSeen {
 public:
     FigureSeen(const DiskPoint& point, const Figure& figure, Vec3d normal, const std::vector<const Blocker*>& near)
@@ -71,7 +72,7 @@ public:
               std::any_of(near.begin(), near.end(), [&](const Blocker* b) { return hides_all(*b, point.x, figure); })) {
     }
 
-    /// At the same point, its lobe apart.
+    /// At the same point, with another lobe.
     DiskIntegral operator()(const DiskPoint& point) {
         if (is_hidden_) return {};
         const bool soft = is_soft(point, figure_, height_);
@@ -93,11 +94,11 @@ private:
 DiskIntegral operator+(const DiskIntegral& a, const DiskIntegral& b) {
     return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
 }
-/// What is left of a without b.
+/// Returns a without b.
 DiskIntegral operator-(const DiskIntegral& a, const DiskIntegral& b) {
     return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
 }
-/// The truth lies between a and b.
+/// Returns an estimate of a value between a and b.
 DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
     const auto off = [](double p, double q, double error, double other) {
         return 0.5 * std::fabs(p - q) + std::max(error, other);
@@ -106,22 +107,22 @@ DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
         off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error), off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
 }
 
-/// How far the ball's nearest point is, of the way to the middle of its figure.
+/// Returns the distance of the ball's nearest point, as a fraction of the distance to the middle of its figure.
 double nearest_of(const lights::Sphere& ball, Vec3d x) {
     const Vec3d d = ball.center - x;
     const double far = std::sqrt(dot(d, d));
     return far / (far + ball.radius);
 }
 
-/// A ball that bodies or other lights reach into. Its surface bulges before the figure, and what stands behind it hides
-/// nothing. In rings about the middle, each as if all of it were as near as its inner edge and as if as far as its
-/// outer one: the truth is between.
+/// A ball that bodies or other lights reach into. Its surface lies before the figure, and a body behind that surface
+/// hides nothing. The integral is taken in rings around the middle, each at the distance of its inner edge and at that
+/// of its outer edge: the true value is between the two.
 DiskIntegral ring_by_ring(
     const DiskPoint& point, Vec3d normal, const lights::Sphere& ball, const std::vector<const Blocker*>& near) {
     const shapes::Disk whole = std::get<shapes::Disk>(ball.seen_from(point.x));
     const Vec3d d = whole.center - point.x, c = ball.center - point.x;
     const double plane = std::sqrt(dot(d, d)), far = std::sqrt(dot(c, c));
-    // The share of the way at which the ball is met on the way to a point of the figure at `off` from its middle.
+    // The fraction of the way at which the ball is met, on the way to a point of the figure at `off` from its middle.
     const auto met_at = [&](double off) {
         const double way = std::sqrt(sqr(plane) + sqr(off)), along = far * plane / way;
         const double half2 = sqr(ball.radius) - sqr(far * off / way);
@@ -130,7 +131,7 @@ DiskIntegral ring_by_ring(
     constexpr int rings = 8;
     DiskIntegral sum;
     for (int k = 0; k < rings; ++k) {
-        // Evenly in how far the surface bulges, about: it falls like a root at the edge.
+        // About evenly spaced in the distance between surface and figure, which falls like a root at the edge.
         const auto edge = [&](int at) {
             return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(at) / rings));
         };
@@ -145,7 +146,8 @@ DiskIntegral ring_by_ring(
     return sum;
 }
 
-/// The same of a ball whose figure gives `out`: nothing may stand where the surface bulges before the figure.
+/// The result for a ball whose figure gives `out`, for cases in which a body may lie between the ball's surface and the
+/// figure.
 DiskIntegral before_bulge(const DiskPoint& point, Vec3d normal, const lights::Sphere& ball,
     const std::vector<const Blocker*>& near, const DiskIntegral& out) {
     const Figure nearest = moved(ball.seen_from(point.x), point.x, nearest_of(ball, point.x));
@@ -162,7 +164,7 @@ DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene
     for (const Occluder& body : scene.occluders()) blockers_.push_back({body});
     for (std::size_t other = 0; other < scene.lights().size(); ++other) {
         if (other == k) continue;
-        const Light& light = scene.lights()[other];  // of two in one place the first is met
+        const Light& light = scene.lights()[other];  // of two at the same place the first is met
         blockers_.push_back({{light.body(), -1}, {0, other < k ? 1 + at_an_end : 1 - at_an_end}, &light});
     }
 }
@@ -174,7 +176,7 @@ std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Fig
     for (const Blocker& b : blockers_) {
         if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
         if (passes_by(b.around, hit.x, all)) continue;
-        // A light in this one's plane stands before it at the end of the way, or does not.
+        // A light in the plane of this one lies before it at the end of the way, or not at all.
         const bool apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.between.to)))
                                    : is_separated(b.body, {hit.x}, light);
         if (!apart) out.push_back(&b);
@@ -208,8 +210,8 @@ void DiskQuadrature::operator()(const Hit& hit, std::span<const Surface> surface
     }
 }
 
-// ---- Lambert's part in closed form. The lobe by polar rules of rising order, Gauss-Legendre in r^2 times even angles,
-// from 3 points to 3840, until two of them agree to 1e-5 of the pixel.
+// ---- Lambert's part is in closed form; the lobe uses polar rules of rising order, Gauss-Legendre in r^2 times even
+// angles, from 3 points to 3840, until two of them agree to 1e-5 of the pixel.
 
 namespace {
 
@@ -245,9 +247,9 @@ const std::vector<PolarRule>& polar_rules() {
     return rules;
 }
 
-/// The whole disk is above the horizon and open, Lambert: integral of cos(theta_i) dw / pi in closed form. The light's
-/// vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view factors, elements
-/// parallel and perpendicular to a disk), written without cancellation.
+/// Lambert's part of the whole disk, above the horizon and unoccluded: integral of cos(theta_i) dw / pi in closed form.
+/// The light's vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view
+/// factors, elements parallel and perpendicular to a disk), written without cancellation.
 double whole_disk_diffuse(const DiskPoint& point, const shapes::Disk& disk) {
     const Vec3d d = disk.center - point.x;
     const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
@@ -272,7 +274,7 @@ DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const 
                 n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
         return sum * sqr(disk.radius);
     };
-    constexpr double good = 1e-5;  // relative, between two rules; the finer one, which is kept, is better by far
+    constexpr double good = 1e-5;  // relative, between two rules; the finer rule, which is kept, is much more accurate
     const auto& rules = polar_rules();
     double coarse = apply(rules[0]);
     for (std::size_t k = 1; k < rules.size(); ++k) {

@@ -1,5 +1,6 @@
-// Gauss-Kronrod over the fans' azimuth, 7 points, each span between two cuts by itself; along each fan lobe_along.h.
-// Spans whose rules differ are halved, first at kinks, which bisection finds. Lambert's tolerance is 4e-5 of the whole.
+// Gauss-Kronrod over the fans' azimuth, 7 points, one rule for each span between two cuts; along each fan lobe_along.h.
+// Spans whose rules differ are halved, first at kinks, which are found by bisection. Lambert's tolerance is 4e-5 of the
+// whole.
 #include "render/reference/fans.h"
 
 #include <algorithm>
@@ -15,12 +16,12 @@
 
 namespace crescent::inline reference {
 
-// ---- A half-plane from the axis through the point cuts the light's figure in a segment. Along it the angle al from
-// the axis rises; Lambert's part has a closed form in al, with a series where it would cancel.
+// ---- A half-plane from the axis through the point cuts the light's figure in a segment; along it the angle al from
+// the axis rises, and Lambert's part has a closed form in al, with a series where it would cancel.
 
 namespace {
 
-/// al - sin(al) cos(al), its series where the difference would cancel.
+/// Returns al - sin(al) cos(al), by its series where the difference would cancel.
 double sector(const Direction& d) {
     if (d.al > 0.3) return d.al - d.sin * d.cos;
     const double x = d.al * d.al;
@@ -72,7 +73,7 @@ double Fan::lambert(const DiskPoint& point, const Direction& from, const Directi
 
 namespace {
 
-/// What fans add up to: both parts, and the error of the lobe's rule along them.
+/// The sum over fans: both parts, and the error of the lobe's rule along them.
 struct FanSum {
     double diffuse = 0, lobe = 0, inner = 0;
     friend FanSum operator+(FanSum a, FanSum b) { return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.inner + b.inner}; }
@@ -86,7 +87,7 @@ struct FansUnderLobe {
     const DiskPoint& point;
     LobeShape shape{point};
 
-    /// What one fan adds.
+    /// Returns the contribution of one fan.
     FanSum operator()(const OpenFan& fan) const {
         FanSum sum = {fan.diffuse};
         if (!(point.surface.rho_s > 0)) return fan.slope * sum;
@@ -102,8 +103,8 @@ struct FansUnderLobe {
     }
 };
 
-/// The fans between two cuts, by u in [0, 1]: tau(u) has no slope at a cut where a shadow opens like a root, which
-/// makes that smooth.
+/// The fans between two cuts, by u in [0, 1]: tau(u) has slope 0 at a cut where a shadow opens like a root, so the
+/// integrand is smooth there.
 struct Span {
     FanCut from, to;
 
@@ -122,12 +123,12 @@ private:
     }
 };
 
-/// Two rules over a part of a span: the integral, and how far the smaller rule is from it.
+/// Two rules over a part of a span: the integral, and the difference of the smaller rule from it.
 struct Panel {
     Span span;
     double lo, hi;  // in u
     FanSum fine, off, spread;
-    std::optional<Interval> kink;  // in u: the edges at its ends are others
+    std::optional<Interval> kink;  // in u: the edges differ between its two ends
 
     Panel(const FansUnderLobe& all, const Span& whole, double u0, double u1) : span(whole), lo(u0), hi(u1) {
         std::array<std::pair<double, FanEdges>, 9> nodes;
@@ -139,14 +140,15 @@ struct Panel {
         };
         const TwoRules<FanSum> both = by_two_rules(kronrod_7, f, lo, hi);
         fine = both.fine, off = both.off, spread = both.spread;
-        for (const double u : {1e-3, 1 - 1e-3})  // what lies between an end of the span and the node next to it
+        for (const double u : {1e-3, 1 - 1e-3})  // between an end of the span and the nearest node
             if (u > lo && u < hi) nodes[count++] = {u, all.fans.edges_at(span.tau(u))};
         std::sort(nodes.begin(), nodes.begin() + count);
         for (std::size_t k = 0; k + 1 < count && !kink; ++k)
             if (nodes[k].second != nodes[k + 1].second) kink = Interval{nodes[k].first, nodes[k + 1].first};
     }
 
-    /// How far the larger rule may be off: by as much less than the smaller one as that is off by less than the middle.
+    /// Returns the expected error of the larger rule: smaller than that of the smaller rule by the factor by which the
+    /// smaller one improves on the middle point.
     FanSum expected_off() const {
         const auto of = [](double error, double coarser) {
             return std::fabs(error) * std::min(1.0, 4 * std::fabs(error) / std::max(std::fabs(coarser), 1e-300));
@@ -154,12 +156,12 @@ struct Panel {
         return {of(off.diffuse, spread.diffuse), of(off.lobe, spread.lobe), 0};
     }
 
-    /// Where to cut it: at the first kink, else in the middle.
+    /// Returns where to cut it: at the first kink, else in the middle.
     double cut(AllFans& fans) const {
         if (!kink) return 0.5 * (lo + hi);
         Interval at = *kink;
         const FanEdges before = fans.edges_at(span.tau(at.lo));
-        for (int k = 0; k < 9; ++k) {  // what is left over counts by its square
+        for (int k = 0; k < 9; ++k) {  // the effect of the remainder is quadratic
             const double middle = 0.5 * (at.lo + at.hi);
             (fans.edges_at(span.tau(middle)) == before ? at.lo : at.hi) = middle;
         }
@@ -169,11 +171,11 @@ struct Panel {
 
 constexpr int halvings = 14, first_halvings = 2;
 
-/// The sum of panels, cut where their rules differ, and first of all at kinks, where a shadow's edge meets the light's:
-/// they may lie where no node is.
+/// The sum of panels, cut where their rules differ, and first at kinks, where a shadow's edge meets the light's; no
+/// node may lie there.
 struct Adaptive {
     const FansUnderLobe& all;
-    double tolerance = 0;  // of one panel, in the unit of `weigh`
+    double tolerance = 0;  // for one panel, in the unit of `weigh`
     DiskIntegral sum{};
 
     void add(const Panel& panel, int depth = 0) {
@@ -195,7 +197,7 @@ struct Adaptive {
 
 DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans) {
     const Vec3d d = middle_of(fans.light()) - point.x;
-    const double open = disk_area(fans.light()) / dot(d, d);  // Lambert's, about
+    const double open = disk_area(fans.light()) / dot(d, d);  // Lambert's part, approximately
     if (!(point.weigh({1, 1}) > 0)) return {};                // a black surface
     fans.rewind();
     const FansUnderLobe under_lobe{fans, point};
@@ -213,15 +215,15 @@ DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans) {
         fans.look_between(panel.span.from.tau, panel.span.to.tau);
         sum.add(panel);
     }
-    // Light that falls through a slit between two bodies may fall between two fans.
+    // Light that passes a slit between two bodies may lie between two fans.
     const double unseen = fans.bodies() > 1 ? 3e-5 : 0;
     sum.sum.diffuse_error += unseen * std::min(open, 1.0), sum.sum.lobe_error += unseen * sum.sum.lobe;
     return sum.sum;
 }
 
-// ---- A light is cut into half-planes about an axis, fans, by their azimuth. Where the light does not surround the
-// axis the azimuth runs as a sine, so that the integrand has no root at the ends. What is seen at a node is kept: lobes
-// of other exponents ask for the same ones. Angles in radians.
+// ---- A light is cut into half-planes about an axis, called fans, by their azimuth; if the light does not surround the
+// axis, the azimuth runs as a sine, so that the integrand has no root at the ends. What is visible at a node is cached,
+// because lobes of other exponents use the same nodes. Angles in radians.
 
 namespace {
 
@@ -229,7 +231,7 @@ Azimuths azimuths_of(const Bodies::Any& body, Vec3d x, const Frame<double>& fram
     return std::visit([&](const auto& b) { return b.azimuths(x, frame); }, body);
 }
 
-/// The frame about R, its t in the plane of incidence, away from the surface.
+/// Returns the frame about R; its t lies in the plane of incidence and points away from the surface.
 Frame<double> frame_about_lobe(const DiskPoint& point) {
     const Vec3d r = mirror(point.wo);
     const Vec3d up = Vec3d{0, 0, 1} - r.z * r;
@@ -271,7 +273,7 @@ void AllFans::cut(double phi, bool root) {
     if (std::fabs(off) < light_.half) cuts_.push_back({light_.whole() ? off : math::asin(off / light_.half), root});
 }
 
-/// Of a body with corners, where one stands before the light; of others, where they begin and end.
+/// For a body with corners, cuts where one lies before the light; for others, where they begin and end.
 void AllFans::add_cuts(const Body& body) {
     const auto stands_before = [&](Vec3d d) {
         const double t = std::visit([&](const auto& light) { return light.intersect(point_.x, d).t; }, figure_);

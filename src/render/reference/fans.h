@@ -1,7 +1,7 @@
-// A disk light's part of the reflected radiance in polar coordinates of directions about an axis: fan by fan (fan.h),
-// each with its open parts found exactly, and across the fans adaptive Gauss-Kronrod between the azimuths where bodies
-// begin and end. The axis is the lobe's where the lobe is sharp, so that no rule can miss its peak; else the disk's
-// centre.
+// A disk light's part of the reflected radiance in polar coordinates of directions about an axis. Each fan has its
+// unoccluded parts found exactly; across the fans, adaptive Gauss-Kronrod runs between the azimuths where bodies begin
+// and end. If the lobe is sharp, the axis is the lobe's, so that no rule can miss its peak; else it is the direction to
+// the disk's centre.
 #pragma once
 
 #include <span>
@@ -26,23 +26,23 @@ struct Direction {
 
 struct Fan {
     Vec3d axis, aside;
-    Vec3d to0{}, step{};  // from the point to where the light begins, and on to where it ends
+    Vec3d to0{}, step{};  // from the point to the start of the light, and from there to its end
     bool empty = true;
 
     Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, const math::SinCos& azimuth);
-    /// Towards the light's point v of the way from its beginning to its end.
+    /// Returns the direction to the light's point at fraction v between its start and its end.
     Direction at(double v) const;
-    /// Leaves the part that is above the surface's horizon; to.al < from.al where none is.
+    /// Keeps the part that is above the surface's horizon; to.al < from.al if there is none.
     void rise_above(const DiskPoint& point, Direction& from, Direction& to) const;
-    /// Integral of cos(theta_i) sin(al) over a part that is above the horizon, in closed form.
+    /// Returns the integral of cos(theta_i) sin(al) over a part that is above the horizon, in closed form.
     double lambert(const DiskPoint& point, const Direction& from, const Direction& to) const;
 };
 
-// ---- All fans (fan.h) from a surface point that meet a light, each with the parts of its line that no body hides
-// found exactly; and the azimuths between which what they add up to is smooth. Radians, double precision.
+// ---- All fans from a surface point that meet a light, each with the exact unoccluded parts of its line, and the
+// azimuths between which their sum is smooth. Radians, double precision.
 
-/// How many parts of a fan are open, and which of their ends are the light's: what changes where a shadow's edge meets
-/// the light's.
+/// The number of unoccluded parts of a fan, and which of their ends are the light's: this changes where a shadow's edge
+/// meets the light's.
 using FanEdges = unsigned;
 
 /// Where panels must end; `root`: a round body begins or ends there, and its shadow opens like a root.
@@ -51,38 +51,39 @@ struct FanCut {
     bool root;
 };
 
-/// What a fan shows of the light, whatever the lobe is.
+/// What is visible of the light in a fan, for any lobe.
 struct OpenFan {
-    Vec3d axis, aside;   // as in Fan, in the surface's frame
+    Vec3d axis, aside;   // like Fan, in the surface's frame
     double cos_azimuth;  // about the lobe's axis: from the plane of incidence
     double slope;        // d azimuth / d tau
     double diffuse = 0;  // Lambert's part without rho_d
     FanEdges edges = 1;
-    std::size_t first_part = 0, parts = 0;  // among those of all fans
+    std::size_t first_part = 0, parts = 0;  // in the list for all fans
 };
 
-/// By a parameter tau in which the fans' integral is smooth where the light is a disk and open: the azimuth itself
-/// where the axis meets it; else middle + half sin(tau), as chords grow from a tangent like a root. For one thread.
+/// By a parameter tau in which the fans' integral is smooth if the light is a disk and unoccluded: the azimuth itself
+/// if the axis meets the disk; else middle + half sin(tau), because chords grow from a tangent like a root. For one
+/// thread.
 class AllFans {
 public:
-    /// About the lobe's axis, or the light's middle; `at_horizon`: part of the light may lie under the surface's
-    /// horizon. All of it must outlive this.
+    /// About the lobe's axis or the light's middle; `at_horizon`: part of the light may be below the surface's horizon.
+    /// All arguments must outlive this object.
     AllFans(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies, bool about_lobe,
         bool at_horizon);
 
     const Figure& light() const { return figure_; }
     std::size_t bodies() const { return bodies_.size(); }
     bool about_lobe() const { return about_lobe_; }
-    /// In order, from the first fan to the last.
+    /// Returns the cuts in order, from the first fan to the last.
     const std::vector<FanCut>& cuts() const { return cuts_; }
-    /// The bodies that fans between two tau may meet: the next calls look at no others.
+    /// Selects the bodies that fans between two tau may meet; the next calls test only these.
     void look_between(double lo, double hi);
-    /// One fan, until the next call.
+    /// Returns one fan, valid until the next call.
     const OpenFan& operator()(double tau);
     FanEdges edges_at(double tau);
-    /// The open parts of a fan: al from and to.
+    /// Returns the unoccluded parts of a fan: al from and to.
     std::span<const Interval> parts(const OpenFan& fan) const { return {parts_.data() + fan.first_part, fan.parts}; }
-    /// For another lobe: fans that were asked for are there.
+    /// Restarts for another lobe; fans already computed are reused.
     void rewind() { fans_.rewind(), edges_.rewind(); }
 
 private:
@@ -90,12 +91,12 @@ private:
         const Blocker* blocker;
         Azimuths azimuths;
     };
-    /// Calls f with each part of the fan's line that nothing hides.
+    /// Calls f with each unoccluded part of the fan's line.
     template <class F> FanEdges each_open(const Fan& fan, F&& f);
     OpenFan look_at(double tau);
     double last() const { return light_.whole() ? pi : pi / 2; }  // tau runs from -last() to last()
     double azimuth_of(Vec3d d) const;
-    /// The azimuth at tau, and d azimuth / d tau.
+    /// Returns the azimuth at tau, and d azimuth / d tau.
     struct Turn {
         double azimuth, slope;
     };
@@ -117,7 +118,7 @@ private:
     Replay<FanEdges> edges_;
 };
 
-/// At the point of the fans, with this or another exponent of its lobe.
+/// Integrates at the point of the fans, with this or another exponent of its lobe.
 DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans);
 
 }  // namespace crescent::inline reference

@@ -1,5 +1,5 @@
-// Shadows whose edges cross a light: bodies that hide one part of it each, and together all of it, leave parts that add
-// up to the whole, of which Lambert's integral is known in closed form.
+// Shadows whose edges cross a light: bodies that each hide one part of it and together all of it. The visible parts add
+// up to the whole light, whose Lambert integral is known in closed form.
 #include "render/reference/fans.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double far_away = 40;
 
-/// A point at the origin under a disk, its normal tilted.
+/// Returns a point at the origin under a disk, with a tilted normal.
 DiskPoint lambert_point(const shapes::Disk& light) {
     Surface surface{};
     surface.rho_d = {0.5, 0.5, 0.5};
@@ -24,7 +24,7 @@ DiskPoint lambert_point(const shapes::Disk& light) {
 
 const shapes::Disk light = {{0.15, 0.1, 2}, {0, 0, -1}, 0.6};
 
-/// What one wall leaves open.
+/// Returns the part that one wall leaves visible.
 double open_part(const shapes::Quad& wall) {
     const Blocker blocker{{wall}};
     const DiskPoint point = lambert_point(light);
@@ -36,7 +36,7 @@ double open_part(const shapes::Quad& wall) {
 
 double whole() { return whole_disk(lambert_point(light), light, frame_about(light.normal)).diffuse; }
 
-/// A wall at height 1 in the quadrant of two arrows, as good as endless.
+/// Returns a wall at height 1 in the quadrant of two vectors, effectively infinite.
 shapes::Quad quadrant(Vec3d corner, Vec3d a, Vec3d b) { return {corner, far_away * a, far_away * b}; }
 
 TEST(Fans, TwoHalvesOfALightAreTheWhole) {

@@ -1,4 +1,4 @@
-// The kinds of light that are no disks: their sampling by itself, and films under them against the quadrature.
+// Lights other than disks: their sampling alone, and films under them against the quadrature.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -12,15 +12,16 @@
 namespace crescent::inline reference {
 namespace {
 
-/// A light as the point x sees it, n = +z.
+/// Returns a light as the point x sees it, n = +z.
 template <class Kind> LocalLight<double> local(const Kind& kind, Vec3d x) {
     const LightNumbers n = kind.numbers(x, frame_about(Vec3d{0, 0, 1}));
     return {0, 1, n.a, n.b, n.c, n.number};
 }
 
 struct Techniques {
-    double share = 0, share_error = 0;  // mean density by solid angle over that by area, of points by area: 1
-    double worst_pdf = 0;               // what sample and pdf say of the same direction, relative
+    double share = 0, share_error = 0;  // mean over points by area of the density by solid angle over that by area:
+                                        // expected 1
+    double worst_pdf = 0;               // relative difference between sample and pdf for the same direction
     int missed = 0;                     // directions that do not meet the light
 };
 
@@ -50,13 +51,13 @@ template <class Kind> Techniques try_out(const Kind& kind, Vec3d x) {
 
 template <class Kind> void expect_sound(const Kind& kind, Vec3d x) {
     const Techniques t = try_out(kind, x);
-    EXPECT_LT(t.missed, 20) << Kind::name;  // at the very edge
+    EXPECT_LT(t.missed, 20) << Kind::name;  // only at the very edge
     EXPECT_LT(t.worst_pdf, 1e-5) << Kind::name;
     EXPECT_NEAR(t.share, 1, 4 * t.share_error + 1e-3) << Kind::name;
 }
 
 TEST(LightKinds, AreAimedAtWithTheDensityTheyState) {
-    for_each_lamp([]<class Kind>() {
+    for_each_area_light([]<class Kind>() {
         for (const Vec3d x : {Vec3d{0, 0, 0}, {0.5, -0.3, 0.1}, {-2, -1, 0}}) expect_sound(Kind::example(), x);
     });
     for (const double radius : {1e-3, 0.1, 0.9}) expect_sound(lights::Sphere{{0.2, -0.3, 1.2}, radius}, {0, 0, 0});
@@ -66,7 +67,7 @@ TEST(LightKinds, AreAimedAtWithTheDensityTheyState) {
                 lights::Rectangle{off - Vec3d{size / 2, size / 4, 0}, {size, 0, 0}, {0, size / 2, 0}, true}, {0, 0, 0});
 }
 
-/// Urena, Fajardo & King 2013: equal parts of u1 are equal solid angles, whichever part of the rectangle they cover.
+/// Urena, Fajardo & King 2013: equal parts of u1 are equal solid angles, for any part of the rectangle.
 TEST(LightKinds, ARectangleIsDrawnEvenlyBySolidAngle) {
     const lights::Rectangle wide = {{-1, -0.5, 0.4}, {3, 0, 0}, {0, 1.5, 0}, true};
     const LocalLight<double> whole = local(wide, {0, 0, 0});
@@ -76,12 +77,12 @@ TEST(LightKinds, ARectangleIsDrawnEvenlyBySolidAngle) {
         part.edge_u.x = at.wi.x / at.wi.z * 0.4 + 1;
         EXPECT_NEAR(local(part, {0, 0, 0}).number[2] / whole.number[2], u, 1e-6) << u;
     }
-    // The solid angle itself: a square seen from the centre of the cube on it is a sixth of all.
+    // The solid angle itself: a face of a cube seen from the cube's centre is a sixth of the sphere.
     const lights::Rectangle side = {{-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, true};
     EXPECT_NEAR(local(side, {0, 0, 0}).number[2], 4 * pi / 6, 1e-12);
 }
 
-/// The test scene under a ball and a rectangle besides a disk.
+/// Returns the test scene with a sphere, a rectangle and a disk light.
 Experiment lit_by_all_kinds(const Rgb& fill) {
     Experiment e = test::small_scene();
     e.image = {48, 32}, e.fill = fill;
@@ -133,23 +134,24 @@ TEST(LightKinds, StandBeforeOneAnother) {
 
 }  // namespace
 
-// ---- Lamps down to the smallest that the schema permits, and scenes as far from (0, 0, 0) as it permits: every arm
-// that is right there has the reference's mean, within its own doubt and that of the reference.
+// ---- Lights down to the smallest size, and scenes as far from (0, 0, 0), as the schema permits: the mean of every
+// unbiased sampler there agrees with the reference within both uncertainties.
 
 namespace {
 
-/// The test scene without fill, its lamps of another size and moved.
-Experiment lamps(double radius, double offset, const std::vector<std::string>& overrides = {}) {
+/// Returns the test scene without fill, with area lights of another size, moved by an offset.
+Experiment area_lights(double radius, double offset, const std::vector<std::string>& overrides = {}) {
     Experiment e = test::small_scene(overrides);
     e.image = {32, 22};
     e.fill = {};
     for (DiskLight& disk : e.disks) disk.radius = radius;
-    e.disks[0].center = {-1.5, 3.5, 1.0}, e.disks[1].center = {3, 3, 2};  // a lamp of 1 m clears ball, block and ground
+    e.disks[0].center = {-1.5, 3.5, 1.0},
+    e.disks[1].center = {3, 3, 2};  // an area light of 1 m clears ball, block and ground
     test::shift(e, {offset, -0.5 * offset, offset / 3});
     return e;
 }
 
-/// Films are single precision, and sums of 16 samples: 1e-6 of each pixel.
+/// Films are in single precision, with sums of 16 samples: 1e-6 of each pixel.
 constexpr double film_error = 1e-6;
 
 void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::string& arm, std::uint64_t n,
@@ -174,26 +176,25 @@ void expect_means(const Experiment& e, const std::vector<std::string>& arms, std
 }
 
 const std::vector<std::string> aiming = {"light-area", "light-solid-angle", "mis-balance", "mis-power"};
-const std::vector<std::string> reaching = {
-    "uniform", "cosine", "mixture"};  // whose hits are too few where a lamp is small
+const std::vector<std::string> reaching = {"uniform", "cosine", "mixture"};  // these meet a small area light too rarely
 
-class LampLaw : public testing::TestWithParam<double> {};
+class AreaLightAgreement : public testing::TestWithParam<double> {};
 
-TEST_P(LampLaw, EveryArmThatIsRightHasTheReferencesMeanWhereverTheSceneStands) {
+TEST_P(AreaLightAgreement, UnbiasedArmsMatchTheReferenceAnywhere) {
     const double radius = GetParam();
     for (const double offset : {0.0, 1e3, 1e5, 1e6}) {
         const std::string what = "radius " + std::to_string(radius) + " m, moved by " + std::to_string(offset) + " m";
-        const Experiment e = lamps(radius, offset);
+        const Experiment e = area_lights(radius, offset);
         expect_means(e, aiming, 256, what);
         if (radius >= 0.1) expect_means(e, reaching, 1024, what);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Radii, LampLaw, testing::Values(1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6));
+INSTANTIATE_TEST_SUITE_P(Radii, AreaLightAgreement, testing::Values(1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6));
 
-TEST(Lamps, TheirSizeChangesNoMoreThanTheirLight) {
-    const auto irradiance = [](double radius, const std::string& arm) {  // per area of lamp
-        const Scene scene(lamps(radius, 0));
+TEST(AreaLights, TheirSizeChangesNoMoreThanTheirLight) {
+    const auto irradiance = [](double radius, const std::string& arm) {  // per area of the area light
+        const Scene scene(area_lights(radius, 0));
         ProgressMonitor monitor;
         const Film film = estimate_films(scene, arm, {64}, 3, "", monitor)[0];
         double sum = 0;
@@ -203,8 +204,8 @@ TEST(Lamps, TheirSizeChangesNoMoreThanTheirLight) {
     for (const std::string& arm : aiming) EXPECT_NEAR(irradiance(1e-6, arm) / irradiance(1e-4, arm), 1, 1e-5) << arm;
 }
 
-TEST(Lamps, SixtyFourAreAllCounted) {
-    Experiment e = lamps(0.05, 0);
+TEST(AreaLights, SixtyFourAreAllCounted) {
+    Experiment e = area_lights(0.05, 0);
     e.disks.resize(1);
     e.disks[0].radius = 0.05, e.disks[0].normal = {0, -1, 0};
     for (int k = 1; k < 64; ++k) {
@@ -217,10 +218,10 @@ TEST(Lamps, SixtyFourAreAllCounted) {
     expect_means(e, aiming, 256, "64 lamps");
 }
 
-TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
+TEST(AreaLights, ShadowsDoNotDependOnThePlace) {
     ProgressMonitor monitor;
     const auto film_at = [&](double offset) {
-        return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", monitor)[0];
+        return estimate_films(Scene(area_lights(0.2, offset)), "light-area", {16}, 3, "", monitor)[0];
     };
     const Film here = film_at(0), there = film_at(1e6);
     std::size_t other = 0;
@@ -230,12 +231,12 @@ TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
 
 }  // namespace
 
-// ---- Balls of light that bodies and other lights reach into: the reference knows what is hidden of them, and does not
-// merely doubt it; and balls of up to 1e6 m, whose nearest point is 1 m away, in single precision.
+// ---- Spherical lights that bodies and other lights reach into: the reference finds what is hidden and does not merely
+// widen its error; and spheres of up to 1e6 m, whose nearest point is 1 m away, in single precision.
 
 namespace {
 
-/// A floor under a ball of light of radius 0.5 m, 1 m above it.
+/// Returns a floor under a spherical light of radius 0.5 m, 1 m above it.
 Experiment under_a_ball() {
     Experiment e = test::small_scene();
     e.image = {3, 2}, e.fill = {};
@@ -247,7 +248,8 @@ Experiment under_a_ball() {
     return e;
 }
 
-/// In sums over the pixels: the reference is the oracle's truth, and says that it knows it to `doubt`, relative.
+/// Compares sums over the pixels: the reference agrees with the brute-force value, and states an error of at most
+/// `doubt`, relative.
 void expect_known(const Experiment& e, double doubt, const std::string& what) {
     const Scene scene(e);
     ProgressMonitor monitor;

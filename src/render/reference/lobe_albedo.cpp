@@ -1,5 +1,5 @@
-// The directional albedo: by an integral in one dimension where the lobe has one, else over half vectors as its own
-// normals are drawn. A table in theta of five even nodes a cell is halved where it is off by more than 1e-7 (1e-6 over
+// The directional albedo: by a one-dimensional integral if the lobe has one, else over half vectors drawn as the lobe's
+// own normals are. A table in theta has five even nodes per cell; a cell is halved if its error exceeds 1e-7 (1e-6 over
 // half vectors), measured half-way between nodes.
 #include "render/reference/lobe_albedo.h"
 
@@ -16,12 +16,12 @@
 
 namespace crescent::inline reference {
 
-// ---- Gauss-Kronrod with 15 points over stretches that double away from the axis, 7 where the whole is shorter than
-// 0.3 of the lobe's width; stretches whose two rules differ are halved, six times at most.
+// ---- Gauss-Kronrod with 15 points over intervals that double away from the axis, 7 if the whole is shorter than 0.3
+// of the lobe's width; intervals whose two rules differ are halved, at most six times.
 
 namespace {
 
-/// Halved a few times where two rules differ.
+/// Halves an interval a few times if two rules differ.
 template <std::size_t n, class F>
 AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, double good, int halvings) {
     const auto [fine, off, spread] = by_two_rules(rule, f, lo, hi);
@@ -68,7 +68,7 @@ AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval p
 
 namespace {
 
-constexpr std::size_t ring_steps = 40, band_steps = 5;  // of a ring of half vectors; of one in closed form
+constexpr std::size_t ring_steps = 40, band_steps = 5;  // for a ring of half vectors; for one in closed form
 
 template <class Call> double integrate(Call&& f, double a, double b, double tolerance = 1e-9) {
     return b > a ? boost::math::quadrature::gauss_kronrod<double, 21>::integrate(f, a, b, 12, tolerance) : 0.0;
@@ -99,8 +99,8 @@ double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, c
         const auto f = [&](double t) { return ring(a + (b - a) * t * t * (3 - 2 * t)) * (b - a) * 6 * t * (1 - t); };
         return b != a ? integrate(f, 0, 1, 1e-6) : 0.0;
     };
-    // u rises as m tilts away from n or towards it: from m = n to where the first wi dips, and on to where the last one
-    // has.
+    // u is monotone in the tilt of m: the range is split at the first m whose wi is below the horizon and ends at the
+    // last m whose wi is above it.
     const double upright = normals.below(1), dips = normals.below(math::cos(0.5 * (pi / 2 - theta_o))),
                  gone = normals.below(math::cos(0.5 * (pi / 2 + theta_o)));
     return std::fabs(piece(upright, dips) + piece(dips, gone));
@@ -109,7 +109,7 @@ double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, c
 }  // namespace
 
 double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o, const YieldToHost& yield_to_host) {
-    const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no room at the horizon itself
+    const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no range at the horizon itself
     double out = 0;
     with_lobe(kind, [&]<template <class> class L>() {
         if constexpr (requires { typename L<double>::Normals; })
@@ -128,7 +128,7 @@ double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o, const Yi
 
 namespace {
 
-/// Lagrange through five even nodes, t from 0 to 4.
+/// Lagrange interpolation through five even nodes, t from 0 to 4.
 double through_five(const std::array<double, 5>& v, double t) {
     const double a = t, b = t - 1, c = t - 2, d = t - 3, e = t - 4;
     return v[0] * b * c * d * e / 24 - v[1] * a * c * d * e / 6 + v[2] * a * b * d * e / 4 - v[3] * a * b * c * e / 6 +
@@ -150,7 +150,7 @@ LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost&
         open[i / 5].value[i % 5] = exact(open[i / 5].from + open[i / 5].size * static_cast<double>(i % 5) / 4);
     });
     for (int depth = 0; !open.empty(); ++depth, std::swap(open, next)) {
-        between.resize(open.size());  // what measures a cell's error is among its halves' nodes
+        between.resize(open.size());  // the points that measure a cell's error are nodes of its halves
         parallel_for(std::size_t{0}, open.size() * 4, [&](std::size_t i) {
             between[i / 4][i % 4] = exact(open[i / 4].from + open[i / 4].size * (static_cast<double>(i % 4) + 0.5) / 4);
         });
@@ -162,7 +162,7 @@ LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost&
             for (std::size_t i = 0; i < 4; ++i)
                 c.error = std::max(c.error, std::fabs(through_five(v, static_cast<double>(i) + 0.5) - m[i]));
             if (c.error < good || depth == halvings) {
-                c.error = 2 * c.error + own;  // midpoints are not quite where five nodes are worst
+                c.error = 2 * c.error + own;  // midpoints are not exactly where the interpolation error is largest
                 cells_.push_back(c);
                 continue;
             }

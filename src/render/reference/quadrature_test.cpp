@@ -1,4 +1,4 @@
-// Against sums of 160 000 points on a disk or a million directions with no cleverness, and against closed forms.
+// Against sums over 160 000 points of a disk or a million directions, and against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
     return false;
 }
 
-/// The same integral by a million points, with no cleverness at all.
+/// Returns the same integral as a sum over a million points.
 DiskIntegral brute_force(const Scene& scene, const lights::Disk& disk, const Hit& hit, const Surface& surface) {
     const Frame<double> light = frame_about(disk.normal), local = frame_about(hit.n);
     constexpr int rings = 400, spokes = 400;
@@ -44,7 +44,7 @@ DiskIntegral brute_force(const Scene& scene, const lights::Disk& disk, const Hit
     return sum;
 }
 
-TEST(DiskQuadrature, AgreesWithBruteForceInLightPenumbraAndShadow) {
+TEST(DiskQuadrature, MatchesBruteForce) {
     const Scene scene(test::small_scene());
     int lit = 0;
     for (std::size_t k = 0; k < scene.lights().size(); ++k) {
@@ -86,9 +86,9 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
     EXPECT_GT(dark, 50);
 }
 
-/// A lamp of half-angle `half` right above a point that is seen from above, through a body that hides half of it or
-/// not.
-Experiment lamp_above(double half, bool hidden) {
+/// Returns an area light of half-angle `half` directly above a point that is seen from above; with `hidden`, a body
+/// hides half of it.
+Experiment area_light_above(double half, bool hidden) {
     Experiment e = test::small_scene();
     e.shapes.resize(2);
     e.shapes[0].form = shapes::Plane{{0, 0, 0}, {0, 1, 0}};
@@ -99,12 +99,12 @@ Experiment lamp_above(double half, bool hidden) {
     return e;
 }
 
-TEST(DiskQuadrature, StatesNoLessThanItsErrorWhereTheIntegralIsKnown) {
+TEST(DiskQuadrature, StatedErrorBoundsTheTrueError) {
     const Hit hit = {0, false, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}};
     for (const double half : {1e-6, 1e-3, 0.03, 0.3, 1.0, 1.5})
         for (const double s : {0.01, 1.0, 32.0, 1e3, 1e5, 1e6})
             for (const bool hidden : {false, true}) {
-                const Scene scene(lamp_above(half, hidden));
+                const Scene scene(area_light_above(half, hidden));
                 Surface surface;
                 surface.rho_d = {0.3, 0.3, 0.3}, surface.rho_s = 0.5, surface.s = s;
                 const DiskIntegral got = DiskQuadrature(scene, 0)(hit, surface);
@@ -120,7 +120,7 @@ TEST(DiskQuadrature, StatesNoLessThanItsErrorWhereTheIntegralIsKnown) {
             }
 }
 
-TEST(LobeAlbedo, IsOneForPhongFromAboveAndInterpolatesToItsStatedError) {
+TEST(LobeAlbedo, PhongFromAboveIsOne) {
     for (double s : {1.0, 8.0, 32.0, 128.0, 5000.0})
         EXPECT_NEAR(lobe_albedo(lobe_named("phong"), s, 0, 1.0), 1, 1e-8) << s;
     const LobeAlbedo table(lobe_named("phong"), 32, 0);
@@ -130,7 +130,7 @@ TEST(LobeAlbedo, IsOneForPhongFromAboveAndInterpolatesToItsStatedError) {
     }
 }
 
-TEST(LobeAlbedo, OfHalfVectorLobesIsThatOfAMillionDirections) {
+TEST(LobeAlbedo, HalfVectorLobesMatchAMillionDirections) {
     const auto brute_force = [](const auto& lobe, double cos_o) {
         constexpr int n = 1000;
         const Vec3<double> wo = {std::sqrt(1 - cos_o * cos_o), 0, cos_o};

@@ -1,4 +1,4 @@
-// Tile by tile and row by row, so that a stop is heard within a tile.
+// Works tile by tile and row by row, so that a stop takes effect within a tile.
 #include "render/reference/reference.h"
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace crescent::inline reference {
 
-// ---- L_o = fill (rho_d + rho_s albedo) + sum over lights of (L - fill) times its integral: a light stands in for the
-// fill behind it. Exponents differ in the lobe alone, so all of them share the search for what is hidden.
+// ---- L_o = fill (rho_d + rho_s albedo) + sum over lights of (L - fill) times its integral, because a light replaces
+// the fill behind it; exponents differ only in the lobe, so they share the visibility search.
 
 namespace {
 
@@ -66,7 +66,7 @@ private:
         double error = 0;
     };
 
-    /// A pixel at every exponent, or at the first where it has no lobe.
+    /// One pixel at every exponent, or only at the first if it has no lobe.
     struct AtPixel {
         std::vector<Surface> surfaces;
         std::vector<DiskIntegral> lights;
@@ -101,7 +101,7 @@ private:
         return out;
     }
 
-    /// A light, which stands in for the fill behind it.
+    /// Adds a light, which replaces the fill behind it.
     void add(const DiskIntegral& d, const Light& light, const Surface& surface, Sum& sum) const {
         Rgb off{};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -112,7 +112,7 @@ private:
         sum.error += luminance(off);
     }
 
-    std::vector<Scene> scenes_;  // one an exponent
+    std::vector<Scene> scenes_;  // one per exponent
     std::vector<Albedos> albedos_;
     std::vector<DiskQuadrature> disks_;
 };

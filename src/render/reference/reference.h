@@ -1,6 +1,5 @@
-// What the meters compare with, where the experiment asks for no other: the radiance of every pixel without a sample.
-// Lambert x fill in closed form, lobe x fill by a table of its albedo, every light by DiskQuadrature; states its own
-// error per pixel.
+// The default reference of the metrics: the radiance of every pixel by quadrature. Lambert x fill is in closed form,
+// lobe x fill uses a table of its albedo, every light uses DiskQuadrature. It states its own error per pixel.
 #pragma once
 
 #include <algorithm>
@@ -21,20 +20,20 @@
 
 namespace crescent::inline reference {
 
-// ---- The radiance of one pixel without a sample: Lambert x fill in closed form, lobe x fill by a table of its albedo,
-// every light by DiskQuadrature, with the error that these state. Pixels may be asked for in any order.
+// ---- The radiance of one pixel by quadrature, with the error stated by its parts; pixels may be computed in any
+// order.
 
-/// Made once for a scene; pixels may be computed by many threads.
+/// Created once for a scene; many threads may compute pixels.
 class PixelQuadrature {
 public:
-    /// At each of these exponents. `yield_to_host`: told while the tables of the lobes' albedos are made.
+    /// Prepares these exponents. `yield_to_host` is called while the tables of the lobes' albedos are computed.
     PixelQuadrature(const Scene& scene, const std::vector<double>& exponents, const YieldToHost& yield_to_host = {});
     ~PixelQuadrature();
     PixelQuadrature(PixelQuadrature&&) noexcept;
     PixelQuadrature& operator=(PixelQuadrature&&) noexcept;
 
-    /// Writes the pixels of a box into films of the scene's size, one an exponent: the same bits in any box, and
-    /// whatever other exponents there are.
+    /// Writes the pixels of a box into films of the scene's size, one per exponent. The bits depend neither on the box
+    /// nor on the other exponents.
     void write(const TileBox& box, std::span<ReferenceFilm> films) const;
 
 private:
@@ -42,19 +41,19 @@ private:
     std::unique_ptr<const Made> made_;
 };
 
-/// One pixel of a reference.
+/// Stores one pixel of a reference.
 void store_pixel(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error);
 
-// ---- A reference of every exponent of a run, tile by tile.
+// ---- A reference for every exponent of a run, tile by tile.
 
-/// The scene at each exponent, in order.
+/// Returns the scene at each exponent, in order.
 inline std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& exponents) {
     std::vector<Scene> scenes;
     for (double s : exponents) scenes.push_back(scene.with_s(s));
     return scenes;
 }
 
-/// One film per exponent, made by calling work(k, tile k, films) for every tile.
+/// Returns one film per exponent, computed by calling work(k, tile k, films) for every tile.
 template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
     ProgressMonitor& monitor, TileCheckpoint* checkpoint, Work&& work) {
     std::vector<ReferenceFilm> films(exponents.size());
@@ -69,20 +68,20 @@ template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, co
     return films;
 }
 
-/// A pixel that is the same at both exponents.
+/// Copies a pixel that is the same at both exponents.
 inline void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
     to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at],
     to.error[at] = from.error[at];
 }
 
-// ---- A cache of values by number, in the order of first use: whoever asks again asks mostly in that order.
+// ---- A cache of values by number, in the order of first use, because later passes mostly repeat that order.
 
-/// Values by number, found in the order of their first use.
+/// Values by number, stored in the order of their first use.
 template <class V> class Replay {
 public:
-    /// Empty.
+    /// Starts empty.
     Replay() { asked_.reserve(64), values_.reserve(64); }
-    /// The value for x, until the next call: make(), where it was not asked for before the last rewind.
+    /// Returns the value for x, valid until the next call; calls make() if x was not used before the last rewind.
     template <class Make> const V& operator()(double x, Make&& make) {
         const auto last = asked_.begin() + static_cast<std::ptrdiff_t>(known_);
         auto at = std::find(asked_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
@@ -99,10 +98,10 @@ public:
 private:
     std::vector<double> asked_;
     std::vector<V> values_;
-    std::size_t next_ = 0, known_ = 0;  // asked for before the last rewind; where the search begins
+    std::size_t next_ = 0, known_ = 0;  // number of values before the last rewind; where the search begins
 };
 
-/// One film per exponent, in order. `checkpoint` keeps finished tiles.
+/// Returns one film per exponent, in order. `checkpoint` keeps finished tiles.
 std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents,
     ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 

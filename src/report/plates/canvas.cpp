@@ -1,5 +1,5 @@
-// Pango sets text at its size, then half a pixel smaller each time until it fits its box; at the least size it is
-// ellipsized. What was set, where and how large is noted. Pictures are copied out of Cairo's 32-bit pixels.
+// Pango sets text at its size, then half a pixel smaller each time until it fits its box; at the smallest size it is
+// ellipsized. The text, its place and its size are recorded. Pictures are copied from Cairo's 32-bit pixels.
 #include "report/plates/canvas.h"
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 #include "report/plates/canvas_surface.h"
+#include "report/plates/fonts.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {
@@ -32,7 +33,7 @@ Canvas::Canvas(int width, int height, const Colour& paper, double scale, Theme t
 
 void Canvas::clear(const Colour& paper) {
     surface_->ink(paper);
-    cairo_set_line_join(surface_->cr, CAIRO_LINE_JOIN_MITER);  // polylines leave theirs behind
+    cairo_set_line_join(surface_->cr, CAIRO_LINE_JOIN_MITER);  // polylines change it
     cairo_paint(surface_->cr);
     settings_.clear();
     pictures_.clear();
@@ -67,7 +68,7 @@ Rect Canvas::text(const Rect& box, const std::string& markup, const Text& how) {
         pango_layout_set_height(l, -how.lines);
         cut = true;
     }
-    // What fits within half a pixel must not be wrapped for that half.
+    // Text that exceeds the width by less than half a pixel must not be wrapped.
     pango_layout_set_width(l, static_cast<int>(std::ceil((cut ? box.w : std::max(box.w, e.w)) * PANGO_SCALE)));
     PangoRectangle r;
     pango_layout_get_extents(l, nullptr, &r);
@@ -118,7 +119,7 @@ Picture Canvas::picture() const {
     return out;
 }
 
-// ---- What a canvas draws that is not text: shapes by Cairo, blocks of pixels by hand.
+// ---- The parts of a canvas other than text: shapes by Cairo, blocks of pixels by hand.
 
 void Canvas::fill(const Rect& r, const Colour& c) {
     surface_->ink(c);
@@ -214,8 +215,8 @@ void Canvas::unclip() { cairo_restore(surface_->cr); }
 
 namespace {
 
-// Which cells of a row of `cells` cells, each `size` pixels wide from `origin`, a pixel covers, and with what weight:
-// the cells' shares add to at most 1.
+// The cells of a row of `cells` cells, each `size` pixels wide from `origin`, that a pixel covers, and their weights,
+// whose sum is at most 1.
 struct Cover {
     int first = 0, last = -1;
     double from = 0, to = 0;  // in cells
@@ -275,7 +276,7 @@ void Canvas::paint(const Block& block, double x, double y, int times, double alp
 }
 
 // ---- Cairo draws on RGB24 pixels or as SVG into a string; Pango sets Inter unhinted, in grey, glyphs at unrounded
-// places, tabular figures throughout. That Inter is there is asked by the name of its family.
+// places, with tabular figures. The family name is queried to check that Inter is installed.
 
 namespace {
 
@@ -297,7 +298,7 @@ Description describe(double px, Weight weight) {
     return d;
 }
 
-// Asks by name: a font map hands out another family in silence, or ends the program where it has none at all.
+// Checks the name, because a font map silently returns another family, or ends the program if it has none at all.
 void require_font(PangoFontMap* map) {
     PangoFontFamily** families = nullptr;
     int count = 0;
@@ -317,7 +318,7 @@ void replace_all(std::string& text, std::string_view what, const std::string& by
     }
 }
 
-// <sup> and <sub> as plain spans of a size and a rise: Pango's own forms leave their scale behind when text is
+// Sets <sup> and <sub> as plain spans of a size and a rise, because Pango's own forms keep their scale when text is
 // ellipsized within them. Tabular figures throughout.
 std::string spans(std::string markup, double px) {
     auto open = [&](double rise) {
@@ -343,6 +344,7 @@ cairo_status_t append(void* document, const unsigned char* bytes, unsigned int c
 
 Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how, Medium medium)
     : scale(pixels_a_unit), theme(how) {
+    use_fonts_beside_program();
     require_font(pango_cairo_font_map_get_default());
     image = medium == Medium::svg ? cairo_svg_surface_create_for_stream(append, &document, width, height)
                                   : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
@@ -351,7 +353,7 @@ Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how,
     cairo_scale(cr, scale, scale);
     layout.reset(pango_cairo_create_layout(cr));
     PangoContext* context = pango_layout_get_context(layout.get());
-    // Grey antialiasing and no hinting: the same outlines whatever the desktop's settings are.
+    // Grey antialiasing and no hinting: the same outlines with all desktop settings.
     std::unique_ptr<cairo_font_options_t, FreeOptions> options{cairo_font_options_create()};
     cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
     cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);

@@ -1,5 +1,5 @@
-// The surface a plate is drawn on: rectangles, lines, pixel blocks, and text that is measured before it is set.
-// Units are pixels of the plate, origin top-left, y down. Colours are sRGB in [0, 1].
+// The surface of a plate: rectangles, lines, pixel blocks, and text that is measured before it is set. Units are pixels
+// of the plate, origin top-left, y down. Colours are sRGB in [0, 1].
 #pragma once
 
 #include <memory>
@@ -18,7 +18,8 @@ namespace crescent::plates {
 /// A rectangle: its top-left corner and its size.
 struct Rect {
     double x = 0, y = 0, w = 0, h = 0;
-    /// Its far edges; itself made smaller by d on each side; whether the two have an inner point in common.
+    /// Its right and bottom edges; the rectangle made smaller by d on each side; whether two rectangles have an inner
+    /// point in common.
     double right() const { return x + w; }
     double bottom() const { return y + h; }
     Rect inset(double d) const { return {x + d, y + d, w - 2 * d, h - 2 * d}; }
@@ -29,15 +30,15 @@ struct Rect {
 struct Colour {
     double r = 0, g = 0, b = 0, a = 1;
 };
-/// 8-bit sRGB as Cairo takes it.
+/// Converts 8-bit sRGB to Cairo's form.
 Colour colour(const Srgb8& c);
 
-/// How text is set: the font's weight, and where it stands in its box.
+/// How text is set: the font's weight, and its alignment in its box.
 enum class Weight { regular = 400, medium = 500, semibold = 600 };
 enum class Align { left, centre, right };
 enum class Vertical { top, middle, bottom };
 
-/// How text is set. It is shrunk from `px` to `least` until it fits its box, then wrapped words are ellipsized.
+/// How text is set. It is reduced from `px` to `least` until it fits its box, then wrapped words are ellipsized.
 struct Text {
     double px = 18;
     Colour ink;
@@ -48,7 +49,7 @@ struct Text {
     double least = 13;  // px
 };
 
-/// What became of one piece of text: for tests, which ask that nothing is cut or runs into its neighbour.
+/// The result of setting one piece of text: for tests, which require that nothing is cut or overlaps its neighbour.
 struct Setting {
     std::string text;
     Rect box, extents;  // what it was given and what it took
@@ -70,15 +71,15 @@ struct Block {
     }
 };
 
-/// What a canvas draws to.
+/// The output of a canvas.
 enum class Medium { pixels, svg };
 
 /// A picture being drawn. One thread at a time; several canvases may be drawn at once.
 class Canvas {
 public:
-    /// Throws OutputError where the font Inter is missing. `scale`: pixels a unit; all that is drawn is given in units.
-    /// Colours of style.h are shown as the theme has them; blocks of pixels, and all other colours, as they are.
-    /// Medium::svg: lines, and letters as outlines, which svg() gives; blocks of pixels cannot be painted there.
+    /// Throws OutputError if the font Inter is missing. `scale`: pixels per unit; all drawing is in units. Colours of
+    /// sheet.h are shown as the theme defines them; blocks of pixels and all other colours are unchanged. Medium::svg
+    /// has lines, and letters as outlines, returned by svg(); blocks of pixels cannot be painted there.
     Canvas(int width, int height, const Colour& ground, double scale = 1, Theme theme = Theme::dark,
         Medium medium = Medium::pixels);
     ~Canvas();
@@ -87,11 +88,11 @@ public:
 
     /// Sets Pango markup in `box`; names from the experiment must have gone through `escaped`. Returns its extents.
     Rect text(const Rect& box, const std::string& markup, const Text& how);
-    /// Width and height the markup takes on one line at how.px.
+    /// Returns width and height of the markup on one line at how.px.
     Rect measure(const std::string& markup, const Text& how) const;
 
     /// Shapes, in units of the canvas. `width` is a line's, `dash` the length of a dash and of the gap after it, 0 for
-    /// none. A polygon is filled, and so is a dot; an arrow has its head at `to`.
+    /// none. Polygons and dots are filled; an arrow has its head at `to`.
     void fill(const Rect& r, const Colour& c);
     void outline(const Rect& r, const Colour& c, double width);
     void line(double x0, double y0, double x1, double y1, const Colour& c, double width, double dash = 0);
@@ -107,29 +108,29 @@ public:
 
     /// Copies pixels one to one with the top-left corner at (x, y), which are whole numbers on the canvas.
     void paint(const Block& block, int x, int y);
-    /// Repeats each pixel times x times units with the top-left corner at (x, y) in units, `alpha` over what is there.
-    /// Where that is no whole number of the canvas's pixels, those take the average of what they cover. Cut at the
-    /// canvas's edge.
+    /// Repeats each pixel times x times units with the top-left corner at (x, y) in units, blended with `alpha`. If
+    /// that is not a whole number of the canvas's pixels, those get the average of what they cover. Cut at the canvas's
+    /// edge.
     void paint(const Block& block, double x, double y, int times, double alpha);
 
-    /// What is drawn until unclip() shows within `r` alone; blocks are not cut.
+    /// Drawing until unclip() is shown only within `r`; blocks are not cut.
     void clip(const Rect& r);
     void unclip();
-    /// The ground again, as if new; keeps the fonts that were opened.
+    /// Restores the ground; keeps the fonts that were opened.
     void clear(const Colour& ground);
-    /// Text takes its place but leaves no ink: for tests, which ask what stands behind it.
+    /// Text takes its place but is not drawn: for tests of the background of text.
     void hide_text(bool hidden) { text_hidden_ = hidden; }
 
     /// As given to the constructor; width and height in units.
     Theme theme() const { return theme_; }
     int width() const { return width_; }
     int height() const { return height_; }
-    /// Rows of 32-bit pixels 0x??RRGGBB, top-down, `stride` bytes apart; until the next drawing.
+    /// Returns rows of 32-bit pixels 0x??RRGGBB, top-down, `stride` bytes apart; valid until the next drawing.
     const unsigned char* pixels(int& stride) const;
     const std::vector<Setting>& settings() const { return settings_; }
     const std::vector<Rect>& pictures() const { return pictures_; }
     Picture picture() const;
-    /// The document, of a canvas of Medium::svg, which cannot be drawn on after.
+    /// Returns the document of a canvas of Medium::svg, which cannot be drawn on after that.
     std::string svg();
 
 private:
@@ -142,7 +143,7 @@ private:
     std::vector<Rect> pictures_;
 };
 
-/// Text with <, > and & made safe for markup.
+/// Escapes <, > and & for markup.
 std::string escaped(std::string_view plain);
 
 }  // namespace crescent::plates

@@ -1,4 +1,4 @@
-// What a canvas draws with: Cairo's surface and context, Pango's layout. For the files of this folder that draw.
+// Cairo's surface and context, Pango's layout: for the files of this folder that draw.
 #pragma once
 
 #include <pango/pangocairo.h>
@@ -21,7 +21,7 @@ struct Canvas::Surface {
     Theme theme = Theme::dark;
     std::unique_ptr<PangoLayout, Unref> layout;
 
-    std::string document;  // of Medium::svg, once it is finished
+    std::string document;  // of Medium::svg, once finished
 
     Surface(int width, int height, double scale, Theme theme, Medium medium);
     ~Surface();
@@ -29,7 +29,7 @@ struct Canvas::Surface {
     Surface& operator=(const Surface&) = delete;
 
     void ink(const Colour& c);
-    /// Lays markup out at `px`; width < 0: unbounded.
+    /// Lays out markup at `px`; width < 0: unbounded.
     Rect lay(const std::string& markup, const Text& how, double px, double width);
 };
 

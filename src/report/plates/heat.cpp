@@ -1,5 +1,5 @@
-// heat: |Y_N - Y_ref| of the float films, linear Rec.709 luminance in W/(sr m^2), through turbo on one shared scale
-// that ends at the 98th percentile of all pixels shown.
+// heat: |Y_N - Y_ref| of the float films, linear Rec.709 luminance in W/(sr m^2), in the turbo colour map on one shared
+// scale that ends at the 98th percentile of all pixels shown.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ bool within(const Box& b, const Box& box) {
     return b.x0 >= box.x0 && b.x1 <= box.x1 && b.y0 >= box.y0 && b.y1 <= box.y1;
 }
 
-// RMSE of each region that is wholly shown, and how much of the crop lies above the scale.
+// Returns the RMSE of each region that is fully shown, and how much of the crop is above the scale.
 std::string reading(const Residual& r, const Box& box, double top, const Experiment& e) {
     std::vector<std::string> parts;
     for (const Region& region : e.regions) {
@@ -107,7 +107,7 @@ std::vector<Residual> residuals(const Sheet& sheet) {
 void draw_heat(Sheet& sheet) {
     std::vector<Residual> runs = residuals(sheet);
     std::vector<RunKey> keys = keys_of(sheet.plan, sheet.experiment());
-    instrument_header(sheet, "FINGERPRINT", "linear Rec.709 Y residual, not PNG", stream_words(keys));
+    backend_header(sheet, "FINGERPRINT", "linear Rec.709 Y residual, not PNG", stream_words(keys));
     note_biased_arms(sheet);
     if (runs.empty()) {
         paint_missing(sheet, content_band, "the plan names no run");

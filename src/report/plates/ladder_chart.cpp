@@ -1,5 +1,5 @@
-// Logarithmic axes around all that can be drawn, a factor of 1.16 wider in N and of 1.4 in the value on each side.
-// Names stand at the ends of curves, pushed apart. Lengths in pixels.
+// Logarithmic axes around all values that can be drawn, a factor of 1.16 wider in N and of 1.4 in the value on each
+// side. Names are at the ends of curves, moved apart. Lengths in pixels.
 #include "report/plates/ladder_chart.h"
 
 #include <fmt/format.h>
@@ -23,26 +23,29 @@ struct Axes {
 };
 
 Axes axes_of(const std::vector<LadderCurve>& curves, const Rect& plot) {
-    std::vector<double> rungs, values;
+    std::vector<double> sample_counts, values;
     for (const LadderCurve& l : curves) {
-        rungs.insert(rungs.end(), l.n.begin(), l.n.end());
+        sample_counts.insert(sample_counts.end(), l.n.begin(), l.n.end());
         values.insert(values.end(), l.value.begin(), l.value.end());
         for (const auto& [low, high] : l.interval) values.insert(values.end(), {low, high});
     }
-    return {plot, log_axis("N", rungs, 1.16), log_axis("", values, 1.4)};
+    return {plot, log_axis("N", sample_counts, 1.16), log_axis("", values, 1.4)};
 }
 
-std::string rung_text(double n) { return n == std::floor(n) ? count(static_cast<std::uint64_t>(n)) : number(n, 3); }
+std::string sample_count_label(double n) {
+    return n == std::floor(n) ? count(static_cast<std::uint64_t>(n)) : number(n, 3);
+}
 
 void draw_axes(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves) {
-    std::set<double> rungs;
-    for (const LadderCurve& l : curves) rungs.insert(l.n.begin(), l.n.end());
+    std::set<double> sample_counts;
+    for (const LadderCurve& l : curves) sample_counts.insert(l.n.begin(), l.n.end());
     double last = -1e9;
-    for (const double n : rungs) {
+    for (const double n : sample_counts) {
         double x = a.x(n);
         c.line(x, a.plot.bottom(), x, a.plot.bottom() + 5, muted, 1.5);
         if (x - last < 44) continue;
-        c.text({x - 40, a.plot.bottom() + 6, 80, 20}, rung_text(n), with(with_px(small_text, 16), Align::centre));
+        c.text(
+            {x - 40, a.plot.bottom() + 6, 80, 20}, sample_count_label(n), with(with_px(small_text, 16), Align::centre));
         last = x;
     }
     for (const double v : a.up.ticks) {
@@ -60,14 +63,14 @@ std::string slope_text(const LadderCurve& l) {
     return l.heavy ? l.name + ": heavy tail" : fmt::format("{}: N<sup> {}</sup>", l.name, signed_number(l.slope));
 }
 
-// Where the names stand: at the ends of their lines, `pitch` apart and beside the plot.
+// Places the names at the ends of their lines, `pitch` apart and next to the plot.
 std::vector<double> name_places(const Axes& a, const std::vector<LadderCurve>& curves, double pitch) {
     std::vector<double> ends;
     for (const LadderCurve& l : curves) ends.push_back(a.up.can_hold(l.value.back()) ? a.y(l.value.back()) : a.plot.y);
     return moved_apart(ends, pitch, a.plot.y - 30 + pitch, a.plot.bottom() + 12 - pitch / 2);
 }
 
-// Each name with its slope, and under it the slope's interval where there is room for two lines.
+// Draws each name with its slope, and under it the slope's interval if there is room for two lines.
 void draw_names(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves) {
     double pitch = std::min(44.0, (a.plot.h + 30) / double(curves.size()));
     bool two = pitch >= 40;

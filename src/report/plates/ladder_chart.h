@@ -1,4 +1,4 @@
-// A quantity of one region against N, both logarithmic, one curve each with its fitted slope.
+// A quantity of one region against N, both logarithmic, one curve per arm with its fitted slope.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@ struct LadderCurve {
     std::string name;
     Colour ink;
     std::vector<double> n, value;
-    std::vector<std::pair<double, double>> interval;  // of each value; empty: none is drawn; NaN: not of this one
+    std::vector<std::pair<double, double>> interval;  // for each value; empty: none is drawn; NaN: none for this one
     double slope = 0, low = 0, high = 0;              // of log value over log N, and its interval; NaN: none
-    bool heavy = false;                               // the tail is too heavy for a slope to mean anything
+    bool heavy = false;                               // the tail is too heavy for a meaningful slope
 };
 
 /// `title` is markup. Nothing is drawn without curves.
 void draw_ladder_chart(
     Canvas& canvas, const Rect& slot, const std::string& title, const std::vector<LadderCurve>& curves);
 
-/// RMSE of a region of a run against N, one curve an arm that the plate shows.
+/// Returns the RMSE of a region of a run against N, one curve for each arm that the plate shows.
 std::vector<LadderCurve> ladder_curves(const Sheet& sheet, const std::string& region);
 
 }  // namespace crescent::plates

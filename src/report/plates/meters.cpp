@@ -1,4 +1,4 @@
-// meters: the table of what was measured on the float films, published figures beside it, and the N-ladders.
+// metrics: the table of values measured on the float films, published values next to them, and the N-ladders.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t most_regions = 3;  // with a column of their own
 
 struct Column {
-    std::string meter, title;
+    std::string metric, title;
 };
 
 std::vector<Column> columns_of(const Experiment& e) {
@@ -33,22 +33,22 @@ std::vector<Column> columns_of(const Experiment& e) {
     return c;
 }
 
-const SeedSpread* band_of(const Metrics& m, const RunKey& key, const std::string& meter) {
+const SeedSpread* band_of(const Metrics& m, const RunKey& key, const std::string& metric) {
     for (const SeedSpread& b : m.bands) {
-        if (b.meter == meter && b.key.arm == key.arm && b.key.n == key.n && b.key.s == key.s) return &b;
+        if (b.metric == metric && b.key.arm == key.arm && b.key.n == key.n && b.key.s == key.s) return &b;
     }
     return nullptr;
 }
 
-std::string value(const std::string& meter, double v, int digits = 4) {
-    if (meter == "fireflies" && std::isfinite(v)) return count(static_cast<std::uint64_t>(std::llround(v)));
+std::string value(const std::string& metric, double v, int digits = 4) {
+    if (metric == "fireflies" && std::isfinite(v)) return count(static_cast<std::uint64_t>(std::llround(v)));
     return figure(v, digits);
 }
 
-/// With as many digits, of four, as the width has room for.
-std::string band_text(const Canvas& c, const std::string& meter, const Band& b, double width) {
+/// With up to four digits, as the width permits.
+std::string band_text(const Canvas& c, const std::string& metric, const Band& b, double width) {
     if (b.heavy) return "heavy tail";
-    const auto with_digits = [&](int n) { return value(meter, b.q05, n) + " – " + value(meter, b.q95, n); };
+    const auto with_digits = [&](int n) { return value(metric, b.q05, n) + " – " + value(metric, b.q95, n); };
     int digits = 4;
     while (digits > 2 && c.measure(with_digits(digits), with_px(small_text, small_text.least)).w > width) --digits;
     return with_digits(digits);
@@ -60,7 +60,7 @@ int seeds_of(const Metrics& m) {
     return seeds;
 }
 
-// The measured runs the plate shows: the plan's, else every arm at the n and s of the experiment.
+// Returns the measured runs that the plate shows: the plan's, else every arm at the n and s of the experiment.
 std::vector<const RunMetrics*> rows_of(const Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     std::vector<RunKey> keys = keys_of(sheet.plan, e);
@@ -74,10 +74,10 @@ std::vector<const RunMetrics*> rows_of(const Sheet& sheet) {
     return rows;
 }
 
-// Under each measured value, as the number of rows allows: what was published, where anything was, and the band.
+// Under each measured value, as the number of rows permits: the published value, if any, and the band.
 struct Table {
     std::vector<const RunMetrics*> rows;
-    std::size_t runs = 0;  // of which the rows are those that fit
+    std::size_t runs = 0;  // the rows shown are those that fit
     std::vector<Column> columns;
     bool published = false, band = false;
     double row_h = 0, head_h = 32, name_w = 250;
@@ -102,7 +102,7 @@ Table plan_table(const Sheet& sheet) {
     return t;
 }
 
-/// What there was no room for; the report has all of it.
+/// Notes what does not fit; the report has all of it.
 void note_what_is_left_out(Sheet& sheet, const Table& t) {
     const std::size_t regions = sheet.experiment().regions.size();
     if (t.rows.size() < t.runs) sheet.notes.push_back(fmt::format("{} of {} runs", t.rows.size(), t.runs));
@@ -141,16 +141,16 @@ void draw_row(Sheet& sheet, const Table& t, const RunMetrics& r, double y, int s
     double top = y + (t.published || t.band ? 6 : 2);
     draw_name(sheet, t, r, top, seeds);
     for (std::size_t k = 0; k < t.columns.size(); ++k) {
-        const std::string& meter = t.columns[k].meter;
-        const SeedSpread* b = band_of(sheet.in.metrics, r.key, meter);
-        c.text(cell(t, k, top, value_h), b ? value(meter, meter_value(r, meter)) : "–", value_text);
+        const std::string& metric = t.columns[k].metric;
+        const SeedSpread* b = band_of(sheet.in.metrics, r.key, metric);
+        c.text(cell(t, k, top, value_h), b ? value(metric, metric_value(r, metric)) : "–", value_text);
         double next = top + value_h;
         if (t.published) {
-            c.text(cell(t, k, next, under_h + 2), b && b->published ? value(meter, *b->published) : "–", under);
+            c.text(cell(t, k, next, under_h + 2), b && b->published ? value(metric, *b->published) : "–", under);
             next += under_h;
         }
         if (t.band)
-            c.text(cell(t, k, next, under_h + 2), b ? band_text(c, meter, b->band, cell(t, k, 0, 0).w) : "–", under);
+            c.text(cell(t, k, next, under_h + 2), b ? band_text(c, metric, b->band, cell(t, k, 0, 0).w) : "–", under);
     }
     c.line(content_band.x, y + t.row_h - 0.5, content_band.right(), y + t.row_h - 0.5, rule, 1);
 }
@@ -173,7 +173,7 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
 
 void draw_meters(Sheet& sheet) {
     Table t = plan_table(sheet);
-    instrument_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG",
+    backend_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG",
         fmt::format("measured at seed {}", sheet.experiment().seed));
     if (t.rows.empty()) {
         paint_missing(sheet, content_band, "no run of this plate was measured");

@@ -1,4 +1,4 @@
-// The plate's kind picks its painter from the list in experiment/plate_kinds.h; caption and footer are set after it.
+// The plate's kind selects its painter from the list in experiment/experiment.h; caption and footer are set after it.
 #include "report/plates/plates.h"
 
 #include "report/plates/sheet.h"

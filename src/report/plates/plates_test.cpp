@@ -1,5 +1,5 @@
-// Every kind of plate, on experiments and films made up for it: nothing cut off, small or overlapping, equal bytes on
-// any thread, no measured number on photographs, faults of runs said, printed numbers those of the films.
+// Every kind of plate, on synthetic experiments and films: nothing cut off, too small or overlapping, equal bytes on
+// any thread, no measured number on photographs, faults of runs stated, printed numbers equal to those of the films.
 #include "report/plates/plates.h"
 
 #include <gtest/gtest.h>
@@ -28,10 +28,10 @@ std::vector<PlateKind> kinds_where(bool photograph) {
         if ((plate_infos[k].look == PlateLook::photograph) == photograph) out.push_back(PlateKind(k));
     return out;
 }
-const std::vector<PlateKind> photographs = kinds_where(true), instruments = kinds_where(false);
+const std::vector<PlateKind> photographs = kinds_where(true), backends = kinds_where(false);
 const std::vector<PlateKind> all_kinds = [] {
     std::vector<PlateKind> out = photographs;
-    out.insert(out.end(), instruments.begin(), instruments.end());
+    out.insert(out.end(), backends.begin(), backends.end());
     return out;
 }();
 
@@ -59,19 +59,19 @@ double luminance_of(const plates::Colour& c) {
     return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
 }
 
-// WCAG 2.2: text and lines that tell something at 4.5:1.
+// WCAG 2.2: text and lines that carry information at 4.5:1.
 TEST(Plates, InksOfTheLightThemeStandOutFromItsGround) {
     using namespace plates;
     const double paper = luminance_of(themed(ground, Theme::light));
     EXPECT_GT(paper, 0.9);
-    for (const Colour& c : {bright, muted, photograph_accent, instrument_accent, alert, series[0], series[1], series[2],
+    for (const Colour& c : {bright, muted, photograph_accent, backend_accent, alert, series[0], series[1], series[2],
              series[3], series[4], series[5]})
         EXPECT_GE((paper + 0.05) / (luminance_of(themed(c, Theme::light)) + 0.05), 4.5)
             << c.r << " " << c.g << " " << c.b;
     EXPECT_EQ(themed(bright, Theme::dark).r, bright.r);
 }
 
-TEST(Plates, TheLightThemeKeepsEveryWordAndHasALightGround) {
+TEST(Plates, LightThemeKeepsEveryWord) {
     World world(96, 54);
     for (PlateKind kind : all_kinds) {
         PlateInputs in = world.inputs();
@@ -91,7 +91,7 @@ TEST(Plates, APlateOfLinesIsAnSvgToo) {
     EXPECT_EQ(draw_plate_svg(world.plan(PlateKind::heat, 2), world.inputs()), "");
 }
 
-TEST(Plates, EveryKindIs1280By720AndTheSameBytesTwiceOnAnyThread) {
+TEST(Plates, EveryKindIsReproducibleAt1280By720) {
     World world(96, 54);
     for (PlateKind kind : all_kinds) {
         PlatePlan plan = world.plan(kind, 2);
@@ -127,7 +127,7 @@ TEST(Plates, LongNamesStayInTheirBoxes) {
         world.add_arm(name, "phong");
         std::swap(world.e.arms[i], world.e.arms.back());
     }
-    world.instrument =
+    world.backend =
         "OpenGL 4.5 (Core Profile) of some driver with a long name, on a renderer with a longer one (256 bits)";
     world.e.regions[0].name = "the highlight crescent as the key light draws it on the sphere";
     for (RunMetrics& run : world.metrics.runs) run.regions[0].region = world.e.regions[0].name;
@@ -143,11 +143,11 @@ TEST(Plates, LongNamesStayInTheirBoxes) {
 
 TEST(Plates, EveryInstrumentSaysWhatComputedItsFilms) {
     World world(960, 540);
-    world.instrument = "GL 4.5, llvmpipe, OSMesa";
-    for (PlateKind kind : instruments) {
+    world.backend = "GL 4.5, llvmpipe, OSMesa";
+    for (PlateKind kind : backends) {
         const std::vector<Setting> settings = world.settings(world.plan(kind, 2));
         EXPECT_TRUE(std::any_of(settings.begin(), settings.end(), [&](const Setting& s) {
-            return s.text.find(world.instrument) != std::string::npos;
+            return s.text.find(world.backend) != std::string::npos;
         })) << int(kind);
     }
 }
@@ -172,7 +172,7 @@ TEST(Plates, AnExperimentWithoutRegionsIsDrawnWhole) {
     for (PlateKind kind : all_kinds) EXPECT_NO_THROW(draw_plate(world.plan(kind, 2), world.inputs())) << int(kind);
 }
 
-TEST(Plates, APhotographSaysSoAndCarriesNoMeasuredNumber) {
+TEST(Plates, PhotographsHaveNoMeasuredNumber) {
     World world(96, 54);
     for (PlateKind kind : photographs) {
         std::vector<Setting> settings = world.settings(world.plan(kind, 2));
@@ -180,14 +180,14 @@ TEST(Plates, APhotographSaysSoAndCarriesNoMeasuredNumber) {
         EXPECT_FALSE(has(settings, "RMSE")) << int(kind);
         EXPECT_FALSE(has(settings, "INSTRUMENT")) << int(kind);
     }
-    for (PlateKind kind : instruments) {
+    for (PlateKind kind : backends) {
         std::vector<Setting> settings = world.settings(world.plan(kind, 2));
         EXPECT_TRUE(has(settings, "INSTRUMENT")) << int(kind);
         EXPECT_FALSE(has(settings, "PHOTO-ONLY")) << int(kind);
     }
 }
 
-TEST(Plates, APixelThatIsNotANumberIsMagentaAndCounted) {
+TEST(Plates, NaNPixelsAreMagentaAndCounted) {
     World world(96, 54);
     for (auto& [name, film] : world.films) film.r[100] = film.y[100] = std::nanf("");
     for (PlateKind kind : {PlateKind::hero, PlateKind::columns, PlateKind::heat}) {
@@ -211,22 +211,22 @@ TEST(Plates, ARunThatWasNotMadeIsNamedOnThePlate) {
     EXPECT_TRUE(has(world.settings(plan), "cosine n=1024 s=32 was not run"));
 }
 
-TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
+TEST(Plates, StateWhenTheReferenceIsTooImprecise) {
     World world(96, 54);
-    const char* say = "reference not good enough in H";
+    const char* message = "reference not good enough in H";
     world.metrics.references = {{32, "H", {}, {}, 0.1, {}, most_error_share}};
-    EXPECT_FALSE(has(world.settings(world.plan(PlateKind::heat, 2)), say));
+    EXPECT_FALSE(has(world.settings(world.plan(PlateKind::heat, 2)), message));
     world.metrics.references[0].error_share = 2 * most_error_share;
-    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::heat, 2)), say));
-    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), say));
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::heat, 2)), message));
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), message));
 }
 
-TEST(Meters, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
+TEST(Metrics, SevenColumnsFitByFewerBandDigits) {
     World world(96, 54);
     world.e.regions.push_back({"all", {0, 0, 95, 53}, {}});
     for (RunMetrics& m : world.metrics.runs) m.regions.push_back({"all", 1.234, 0.5, 10, {}});
     for (SeedSpread& b : world.metrics.bands)
-        if (b.meter == "var.H") b.band.q05 = 7.5968e-4, b.band.q95 = 7.8312e-4;
+        if (b.metric == "var.H") b.band.q05 = 7.5968e-4, b.band.q95 = 7.8312e-4;
     const std::vector<Setting> settings = world.settings(world.plan(PlateKind::meters, 2));
     EXPECT_TRUE(has(settings, "0.000760 – 0.000783"));
     EXPECT_TRUE(has(settings, "1.100 – 1.300"));
@@ -236,13 +236,13 @@ TEST(Meters, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
 TEST(Plates, NameTheArmsThatCannotReachAllLight) {
     World world(96, 54);
     world.e.fill = {1, 1, 1};
-    const char* say = "out of reach: light-area";
+    const char* message = "out of reach: light-area";
     for (PlateKind kind : {PlateKind::heat, PlateKind::meters})
         EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), "biased"));
     world.add_arm("light-area", "light-area");
     for (PlateKind kind : {PlateKind::heat, PlateKind::meters}) {
-        EXPECT_TRUE(has(world.settings(world.plan(kind, 4)), say));
-        EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), say)) << "not on this plate";
+        EXPECT_TRUE(has(world.settings(world.plan(kind, 4)), message));
+        EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), message)) << "not on this plate";
     }
 }
 

@@ -1,5 +1,5 @@
 // PNG, ISO/IEC 15948:2004: 8-bit RGB, sRGB chunk, provenance as tEXt (Latin-1) or iTXt (UTF-8); no time, so that equal
-// pictures are equal bytes.
+// pictures have equal bytes.
 #include <png.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace crescent::plates {
 
 namespace {
 
-// zlib level and filter: noise hardly deflates, and level 3 with one filter takes a third of the time of the defaults
-// for a few per cent more bytes.
+// zlib level and filter: noise is hardly compressible, and level 3 with one filter takes a third of the time of the
+// defaults for a few per cent more bytes.
 constexpr int deflate_level = 3;
 
 void append(png_structp png, png_bytep data, png_size_t n) {
@@ -22,8 +22,8 @@ void append(png_structp png, png_bytep data, png_size_t n) {
 }
 void keep(png_structp) {}
 
-[[noreturn]] void fail(png_structp png, png_const_charp say) {
-    *static_cast<std::string*>(png_get_error_ptr(png)) = say;
+[[noreturn]] void fail(png_structp png, png_const_charp message) {
+    *static_cast<std::string*>(png_get_error_ptr(png)) = message;
     longjmp(png_jmpbuf(png), 1);
 }
 void ignore(png_structp, png_const_charp) {}

@@ -1,4 +1,4 @@
-// encode_png() read back by libpng: size, pixels, provenance in Latin-1 and beyond it, no date.
+// encode_png() read back by libpng: size, pixels, provenance in Latin-1 and other text, no date.
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -42,7 +42,7 @@ Decoded decode(const std::vector<unsigned char>& bytes) {
     return d;
 }
 
-TEST(Png, CarriesThePixelsAndTheProvenanceAndNoDate) {
+TEST(Png, HasPixelsAndProvenanceButNoDate) {
     Picture p{3, 2, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 255}};
     Decoded d = decode(encode_png(p, {{"experiment", "gallery.toml"}, {"title", "ω and ρ"}}));
     EXPECT_EQ(d.width, 3);

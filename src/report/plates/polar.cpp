@@ -1,5 +1,5 @@
-// Rings at a round step, 1, 2, 2.5, 3, 4 or 5 times a power of ten, 44 pixels apart or more; rays every 30 degrees from
-// n. A curve is a polyline with a point every quarter of a degree. Densities in 1/sr.
+// Rings at a round step, 1, 2, 2.5, 3, 4 or 5 times a power of ten, at least 44 pixels apart; rays every 30 degrees
+// from n. A curve is a polyline with a point every quarter of a degree. Densities in 1/sr.
 #include "report/plates/polar.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Frame {
     }
 };
 
-// The rim names the angles: n at 0, and where they fall on a ray, R and the direction it mirrors.
+// The edge shows the angles: n at 0, and, if they are on a ray, R and the direction it mirrors.
 std::string angle_name(int deg, int tilt_deg, bool roomy) {
     if (deg == 0) return "n";
     std::string text = fmt::format("{}{}°", deg < 0 ? "−" : "", std::abs(deg));
@@ -110,36 +110,35 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     if (plot.legend_w > 0) draw_legend(canvas, plot);
 }
 
-// ---- The arm is made in double at a point with the material of the shape whose exponent is the experiment's, and one
-// from outside is asked there; its peak is the largest of 1801 angles. An arm that aims at lights is asked at the
-// pixel, of a few thousand, with R nearest to the tilt and a light nearest to R's plane; its peak is that of 1024
-// draws.
+// ---- The density is evaluated in double at a point with the material of the shape whose exponent is the experiment's;
+// its peak is the largest of 1801 angles. An arm that aims at lights is evaluated at a pixel, selected among a few
+// thousand, whose R is nearest to the tilt and whose light is nearest to R's plane; its peak is that of 1024 draws.
 
 namespace {
 
-// The surface that the density is shown for: that of the shape whose exponent is the experiment's.
-ShadingPoint<double> site_of(const Experiment& e, double s, double tilt) {
+// Returns the surface for which the density is shown: that of the shape whose exponent is the experiment's.
+ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
     const Shape* shape = e.shape_of_s();
     Material material = shape ? shape->material : Material{};
     material.s = s;
     const Surface surface = surface_of(material, s);
-    ShadingPoint<double> site{};
-    site.wo = {-math::sin(tilt), 0, math::cos(tilt)};
-    site.s = surface.s;
-    site.alpha = surface.alpha;
-    site.diffuse = luminance(surface.rho_d);
-    site.lobe = surface.rho_s;
-    return site;
+    ShadingPoint<double> shading_point{};
+    shading_point.wo = {-math::sin(tilt), 0, math::cos(tilt)};
+    shading_point.s = surface.s;
+    shading_point.alpha = surface.alpha;
+    shading_point.diffuse = luminance(surface.rho_d);
+    shading_point.lobe = surface.rho_s;
+    return shading_point;
 }
 
-// An arm without one density (several techniques, each with its own) is left at 0.
+// A sampler without a single density (several techniques, each with its own) gives 0.
 template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
 
-/// `angle` radians from n, in the plane of incidence.
+/// Returns the direction `angle` radians from n, in the plane of incidence.
 Vec3d in_incidence(double angle) { return {math::sin(angle), 0, math::cos(angle)}; }
 
-/// How far a pixel's picture is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite
-/// where no light shines on it or R is n.
+/// Returns how far a pixel is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite if
+/// no light reaches it or R is n.
 double off_the_plane(const OpenPixel& pixel, double tilt) {
     const Vec3d r = pixel.mirror();
     const double out = math::hypot(r.x, r.y);
@@ -153,7 +152,8 @@ double off_the_plane(const OpenPixel& pixel, double tilt) {
     return least;
 }
 
-/// Of a few thousand pixels that see the shape whose exponent is the experiment's, or any where none has one.
+/// Selects among a few thousand pixels that see the shape whose exponent is the experiment's, or any shape if there is
+/// none.
 std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double tilt) {
     const Scene scene = Scene(e).with_s(s);
     const Shape* shape = e.shape_of_s();
@@ -173,7 +173,7 @@ std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double
     return best;
 }
 
-/// A density that is asked for one direction after the other.
+/// A density evaluated for one direction after the other.
 auto one_by_one(std::function<double(const Vec3d&)> pdf) {
     return [pdf = std::move(pdf)](std::span<const Vec3d> wi, std::span<double> out) {
         for (std::size_t i = 0; i < wi.size(); ++i) out[i] = pdf(wi[i]);
@@ -190,14 +190,14 @@ bool aims_at_lights_alone(const std::string& sampler) {
 Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
     : ask_(one_by_one([](const Vec3d&) { return 0.0; })), tilt_(tilt) {
     if (aims_at_lights_alone(sampler)) {
-        ask_at_a_pixel(e, sampler, s);
+        query_at_a_pixel(e, sampler, s);
         return;
     }
-    ShadingPoint<double> site = site_of(e, s, tilt);
+    ShadingPoint<double> shading_point = point_of(e, s, tilt);
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
         if constexpr (has_pdf<A<double>>) {
             if (sampler != A<double>::name) return;
-            ask_ = one_by_one([arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
+            ask_ = one_by_one([arm = A<double>(shading_point), wo = shading_point.wo](const Vec3d& wi) {
                 double p = arm.pdf(wo, wi).v;
                 return std::isfinite(p) ? p : 0.0;
             });
@@ -207,8 +207,9 @@ Density::Density(const Experiment& e, const std::string& sampler, double s, doub
 }
 
 Density::Density(const Experiment& e, const ExternalSampler& outside, double s, double tilt) : tilt_(tilt) {
-    const ShadingPoint<double> site = site_of(e, s, tilt);
-    ask_ = [&outside, wo = site.wo, on = OutsideSurface{site.s, site.alpha, site.diffuse, site.lobe}](
+    const ShadingPoint<double> shading_point = point_of(e, s, tilt);
+    ask_ = [&outside, wo = shading_point.wo,
+               on = ExternalSurface{shading_point.s, shading_point.alpha, shading_point.diffuse, shading_point.lobe}](
                std::span<const Vec3d> wi, std::span<double> out) {
         outside.density(wo, on, wi, out);
         for (double& p : out) p = p > 0 && std::isfinite(p) ? p : 0.0;
@@ -223,11 +224,11 @@ void Density::find_peak() {
     for (const double p : at(plane)) peak_ = std::max(peak_, p);
 }
 
-void Density::ask_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
+void Density::query_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
     const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, s, tilt_);
     if (!pixel) return;
     const Vec3d r = pixel->mirror();
-    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // towards R from n
+    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // from n towards R
     tilt_ = math::atan2(out, r.z);
     where_ = fmt::format("pixel ({}, {})", pixel->i(), pixel->j());
     ask_ = one_by_one([=](const Vec3d& wi) {

@@ -1,4 +1,4 @@
-// The rose's densities are those of the surface that the experiment's runs are drawn on.
+// The densities of the plate `rose` are those of the surface that the experiment's runs are drawn on.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace crescent::plates {
 namespace {
 
-/// The integral of a density over the hemisphere, by the midpoint rule in cos and phi.
+/// Returns the integral of a density over the hemisphere, by the midpoint rule in cos and phi.
 double integral(const Density& density) {
     constexpr int rows = 300, columns = 300;
     double sum = 0;
@@ -22,17 +22,17 @@ double integral(const Density& density) {
     return sum * 2 * pi / (rows * columns);
 }
 
-TEST(Density, OfEveryArmThatNeedsNoLightIsThereOnASurfaceWithoutAlpha) {
+TEST(Density, ExistsOnASurfaceWithoutAlpha) {
     const Experiment e = test::small_scene();
     for (const char* arm : {"uniform", "cosine", "phong", "mixture"})
         EXPECT_NEAR(integral(Density(e, arm, e.s(), 0.2)), 1, 0.02) << arm;
-    for (const char* arm : {"blinn", "ggx-d", "ggx-vndf"}) {  // some of what they draw falls under the horizon
+    for (const char* arm : {"blinn", "ggx-d", "ggx-vndf"}) {  // some of their draws are below the horizon
         EXPECT_GT(integral(Density(e, arm, e.s(), 0.2)), 0.8) << arm;
         EXPECT_LT(integral(Density(e, arm, e.s(), 0.2)), 1.001) << arm;
     }
 }
 
-TEST(Density, OfAnArmThatAimsAtLightsIsThatOfAPixelOnWhichOneShines) {
+TEST(Density, LightArmsAreEvaluatedAtALitPixel) {
     Experiment e = test::small_scene();
     for (const char* arm : {"light-area", "light-solid-angle"}) {
         const Density density(e, arm, e.s(), 0.5);
@@ -49,7 +49,7 @@ TEST(Density, OfAnArmThatAimsAtLightsIsThatOfAPixelOnWhichOneShines) {
     EXPECT_EQ(Density(e, "light-area", e.s(), 0.5).peak(), 0);
 }
 
-TEST(Density, IsOfTheShapeWhoseExponentIsTheExperiments) {
+TEST(Density, UsesTheShapeOfTheExperimentsExponent) {
     Experiment e = test::small_scene();
     Shape other = e.shapes[0];
     other.name = "other";

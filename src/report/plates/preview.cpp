@@ -1,5 +1,5 @@
-// A first look at an experiment: the reference between rulers of pixels, regions outlined, crops dashed, and every box
-// as it is typed in the file, [x0, y0, x1, y1] from the bottom-left, both ends inside.
+// The preview of an experiment: the reference with pixel rulers, regions outlined, crops dashed, and every box as it is
+// written in the file, [x0, y0, x1, y1] from the bottom-left, both ends inclusive.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ std::vector<Marked> marked(const Experiment& e) {
     return out;
 }
 
-/// White on black, which shows on any photograph and in any theme.
+/// White on black, which is visible on any photograph and in any theme.
 void dashed(Sheet& sheet, const Rect& r) {
     const std::vector<Canvas::Point> around = {
         {r.x, r.y}, {r.right(), r.y}, {r.right(), r.bottom()}, {r.x, r.bottom()}, {r.x, r.y}};
@@ -47,7 +47,7 @@ void dashed(Sheet& sheet, const Rect& r) {
     sheet.canvas.polyline(around, {1, 1, 1}, 2, 6);
 }
 
-/// Numbers under the picture and beside it, and faint lines through it.
+/// Draws numbers under the picture and next to it, and faint lines through it.
 void rulers(Sheet& sheet, const Rect& picture, const View& v) {
     const double step = std::max(1.0, round_up(std::max(v.width, v.height) / 10.0));
     const Colour grid{1, 1, 1, 0.16};
@@ -72,7 +72,7 @@ void outline(Sheet& sheet, const Rect& r, const Marked& m) {
     outline_over(sheet.canvas, r, m.colour);
 }
 
-/// A crop by the number that it has on the picture.
+/// Lists crops by the number that they have on the picture.
 void list_boxes(Sheet& sheet, const std::vector<Marked>& all, double y) {
     const Text inside = with(with(with_px(small_text, 14), Align::centre), Vertical::middle);
     Rect line{facts_slot.x, y + 14, facts_slot.w, 24};
@@ -106,7 +106,7 @@ PlatePlan preview_plan(const Experiment& e) {
 
 void paint_preview(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
-    instrument_header(sheet, "PREVIEW", "pixels from the bottom-left", "", false);
+    backend_header(sheet, "PREVIEW", "pixels from the bottom-left", "", false);
     const View v = view(sheet.in.reference(e.s()));
     const std::vector<Marked> boxes = marked(e);
     Rect slot{picture_slot.x + ruler_w, picture_slot.y, picture_slot.w - ruler_w, picture_slot.h - ruler_h};

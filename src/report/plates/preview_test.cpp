@@ -1,4 +1,4 @@
-// The preview: every box of the experiment is listed as it is typed, marked where it lies, and nothing runs off the
+// The preview: every box of the experiment is listed as it is written, marked at its place, and nothing exceeds the
 // sheet.
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ PlatePlan with_crop(const std::string& name, const Box& crop) {
     return plan;
 }
 
-TEST(Preview, ListsEveryRegionAndEveryCropOnceAsTheyAreTyped) {
+TEST(Preview, ListsEveryRegionAndCropOnceAsWritten) {
     World world(96, 54);
     world.e.plates = {with_crop("a", {3, 4, 20, 21}), with_crop("b", {3, 4, 20, 21}), with_crop("c", {30, 7, 90, 50})};
     const Drawn d = drawn(world);
@@ -47,7 +47,7 @@ TEST(Preview, ListsEveryRegionAndEveryCropOnceAsTheyAreTyped) {
     EXPECT_EQ(count_of(d, "[30, 7, 90, 50]"), 1);
 }
 
-TEST(Preview, StaysOnItsSheetForImagesOfAnyShapeAndSaysHowManyBoxesItLists) {
+TEST(Preview, StaysOnItsSheetForImagesOfAnyShape) {
     for (const auto& [w, h] : {std::pair{1, 1}, {96, 54}, {7, 300}, {3000, 40}}) {
         World world(w, h);
         for (int i = 0; i < 20; ++i)

@@ -1,5 +1,5 @@
-// Reducing, a pixel is shared between at most two cells across and two down by the area it has in each, row after row,
-// before the tone mapper or turbo; enlarging, a row is written once and copied.
+// When reducing, a pixel is shared between at most two cells across and two down by the area it has in each, row after
+// row, before the tone mapper or turbo; when enlarging, a row is written once and copied.
 #include "report/plates/raster.h"
 
 #include <fmt/format.h>
@@ -21,10 +21,10 @@ template <class F> View view_of(const F* f) {
 
 std::size_t at(const View& v, int x, int y) { return std::size_t(y) * std::size_t(v.width) + std::size_t(x); }
 
-// Which output cells an input cell [i, i+1) of `in` covers when `in` cells become `out`, and with what share of a cell.
+// The output cells that an input cell [i, i+1) of `in` covers when `in` cells become `out`, and the share of each cell.
 struct Share {
     int first;
-    double part0, part1;  // of cells `first` and `first + 1`; reducing, it meets no third
+    double part0, part1;  // of cells `first` and `first + 1`; when reducing, it meets no third
 };
 std::vector<Share> shares(int in, int out) {
     constexpr double slack = 1e-9;
@@ -32,7 +32,7 @@ std::vector<Share> shares(int in, int out) {
     double scale = double(out) / in;
     for (int i = 0; i < in; ++i) {
         double from = i * scale, to = (i + 1) * scale;
-        // The slack keeps a cell that ends on an edge, up to rounding, from spilling over it.
+        // The slack prevents a cell that ends on an edge, up to rounding, from covering the next one.
         int first = std::min(static_cast<int>(from + slack), out - 1);
         double spill = to - (first + 1);
         bool spills = spill > slack && first + 1 < out;
@@ -41,7 +41,8 @@ std::vector<Share> shares(int in, int out) {
     return s;
 }
 
-// Area averages of `box`, C values per pixel, row by row from the top, so that memory grows with the output only.
+// Computes area averages of `box`, C values per pixel, row by row from the top, so that memory grows only with the
+// output.
 template <int C, class Read, class Write> void reduce(const Box& box, const Fit& f, Read read, Write write) {
     using Cell = std::array<double, C>;
     std::vector<Share> sx = shares(f.in_w, f.out_w), sy = shares(f.in_h, f.out_h);

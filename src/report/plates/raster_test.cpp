@@ -1,5 +1,5 @@
-// Blocks against photograph() of single pixels and of averages worked out by hand: whole-number enlargement, rows
-// top-down, areas in linear light, constants at any ratio, one NaN at any size; and what fit() and inside() give.
+// Blocks against photograph() of single pixels and of averages computed by hand: whole-number enlargement, rows
+// top-down, areas in linear light, constants at any ratio, one NaN at any size; and the results of fit() and inside().
 #include "report/plates/raster.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Srgb8 pixel(const Block& b, int x, int y) {
     return {p[0], p[1], p[2]};
 }
 
-TEST(Fit, EnlargesByWholeNumbersAndReducesToTheSlot) {
+TEST(Fit, EnlargesByIntegersAndReducesToTheSlot) {
     EXPECT_EQ(fit(100, 50, 350, 400).times, 3);
     EXPECT_EQ(fit(100, 50, 100, 50).times, 1);
     EXPECT_FALSE(fit(100, 50, 100, 50).reduced);

@@ -1,4 +1,4 @@
-// reference: the film the meters compare with, its regions outlined and named.
+// reference: the film the metrics compare with, its regions outlined and named.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ void draw_reference(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
     View v = view(sheet.in.reference(s));
-    instrument_header(sheet, "REFERENCE",
+    backend_header(sheet, "REFERENCE",
         "not a sampling arm" + (any_tells_s(e) || e.exponent ? " / s=" + number(s) : std::string()),
         reference_stream(e), false);
     if (v.width > 0) {

@@ -1,6 +1,5 @@
-// rose: the densities themselves, in 1/sr, each over the hemisphere of n as a dome through turbo, and under it in the
-// plane of incidence as a polar plot. Nothing is sampled: the numbers are the arms' own pdf, those of arms from outside
-// as they answer for it.
+// rose: the densities in 1/sr, each over the hemisphere of n as a dome in turbo colours, and under it in the plane of
+// incidence as a polar plot. Nothing is sampled: the numbers are the samplers' own pdf.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +17,8 @@ namespace crescent::plates {
 namespace {
 
 using Direction = Vec3d;
-// R stands this far from n, in the xz plane: enough to tell R from n, far enough from the horizon to show the lobe.
+// R has this angle from n, in the xz plane: enough to distinguish R from n, far enough from the horizon to show the
+// lobe.
 constexpr double tilt_deg = 30;
 // At the right of each half, for the colour bar and the legend.
 constexpr double scale_room = 128;
@@ -39,7 +39,7 @@ Direction from_angles(double theta, double phi) {
     return {math::sin(theta) * math::cos(phi), math::sin(theta) * math::sin(phi), math::cos(theta)};
 }
 
-// The dome's pixels: what lies on the sphere towards the viewer and above the surface.
+// Returns the dome's pixels: the part of the sphere towards the viewer and above the surface.
 Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
     Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
     std::vector<Direction> seen;
@@ -124,8 +124,8 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
     colour_bar(sheet, bar, part.peak, false);
 }
 
-/// Null where the arm is built in, or nobody is there to be asked.
-const ExternalSampler* from_outside(const Sheet& sheet, const std::string& arm) {
+/// Returns null if the sampler is built in, or if there is none to evaluate.
+const ExternalSampler* from_external(const Sheet& sheet, const std::string& arm) {
     return sheet.in.outside ? sheet.in.outside(arm) : nullptr;
 }
 
@@ -137,13 +137,13 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
     }
     std::vector<Part> parts;
     for (const RunKey& k : keys) {
-        const ExternalSampler* own = from_outside(sheet, k.arm);
+        const ExternalSampler* own = from_external(sheet, k.arm);
         parts.push_back({k, own ? Density(e, *own, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
     }
     return parts;
 }
 
-// Title, density and peak; returns the y under them. In a narrow column the peak has a line of its own.
+// Draws title, density and peak; returns the y under them. In a narrow column the peak has a line of its own.
 double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, const Rect& col, bool narrow) {
     const Experiment& e = sheet.experiment();
     const Part& part = parts[i];
@@ -163,18 +163,18 @@ double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, c
     return line.y + (narrow ? 56 : 31);
 }
 
-/// The largest in the plane of incidence, or anywhere where an arm draws nothing in that plane.
+/// Returns the largest density in the plane of incidence, or anywhere if the sampler returns no sample in that plane.
 double peak_in_plane(const Part& part) {
     double peak = 0;
     for (int i = -900; i <= 900; ++i) peak = std::max(peak, part.p.in_plane(i * 0.1 * radians_per_degree));
     return peak > 0 ? peak : part.peak;
 }
 
-/// Why there is nothing to show of an arm.
+/// Returns why no density is shown for an arm.
 std::string why_no_density(const Sheet& sheet, const std::string& arm) {
     const Experiment& e = sheet.experiment();
     const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
-    const ExternalSampler* own = from_outside(sheet, arm);
+    const ExternalSampler* own = from_external(sheet, arm);
     return arm_name(arm, e) +
         (own && own->has_density() ? " says that its density is 0 in the plane of incidence"
                 : own              ? " is a library without crescent_sampler_pdf: its density is not known"
@@ -216,11 +216,11 @@ void draw_rose(Sheet& sheet) {
     std::vector<Part> parts = parts_of(sheet, tilt);
     std::vector<RunKey> keys;
     for (const Part& p : parts) keys.push_back(p.key);
-    instrument_header(sheet, "PDF ROSE",
+    backend_header(sheet, "PDF ROSE",
         "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
         "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i);
-    if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured
+    if (sheet.in.backend == "CPU") sheet.notes.clear();  // nothing was measured
     for (const std::string& note : {fmt::format("R stands {}° from n", number(tilt_deg)),
              std::string(
                  "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),

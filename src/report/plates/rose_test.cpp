@@ -1,4 +1,4 @@
-// The plate `rose`: the peaks that it states, of arms of the list and of those from outside.
+// The plate `rose`: the peaks that it states, for built-in and external samplers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,14 +22,14 @@ TEST(Rose, StatesThePeaksOfTheDensities) {
     EXPECT_TRUE(has(settings, "= 16.5 × cosine"));
 }
 
-/// cos / pi from outside, or a sampler that is not asked for its density.
-struct CosineFromOutside : ExternalSampler {
+/// cos / pi as an external sampler, or a sampler that cannot return its density.
+struct ExternalCosine : ExternalSampler {
     bool asked = true;
     std::string name() const override { return "cosine"; }
     int numbers() const override { return 2; }
-    void draw(const OutsideBatch&, const OutsideDraws&) const override {}
+    void draw(const ExternalBatch&, const ExternalDraws&) const override {}
     bool has_density() const override { return asked; }
-    void density(Vec3d, const OutsideSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
+    void density(Vec3d, const ExternalSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
         for (std::size_t i = 0; i < wi.size(); ++i) out[i] = std::max(wi[i].z, 0.0) / pi;
     }
 };
@@ -40,7 +40,7 @@ TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
     PlatePlan plan;
     plan.kind = PlateKind::rose;
     plan.runs = {{"mine", 0, 0}};
-    CosineFromOutside mine;
+    ExternalCosine mine;
     PlateInputs in = world.inputs();
     in.outside = [&](const std::string& arm) { return arm == "mine" ? &mine : nullptr; };
     const auto says = [&](const char* text) {

@@ -1,5 +1,5 @@
-// Words are measured before they get their place: the header's right part, a caption in two lines or smaller in three,
-// notes in one line or two. A name tag takes the first free of five places about its outline. Lengths in pixels.
+// Words are measured before they are placed: the header's right part, a caption in two lines or smaller in three, notes
+// in one line or two. A name tag takes the first free of five places around its outline. Lengths in pixels.
 #include "report/plates/sheet.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace crescent::plates {
 
-// ---- Names, axes and formulas are those of SamplerInfo for the arm's sampler, formulas set by base/formula.h. {fmt}
+// ---- Names, axes and formulas are those of SamplerInfo for the arm's sampler, formulas set by output/formula.h; {fmt}
 // prints numbers, which are then given a true minus and powers of ten as superscripts.
 
 namespace {
@@ -28,7 +28,7 @@ std::string formula_of(const std::string& arm, const Experiment& e, const cresce
     return info->techniques > 1 ? line : "p(ω) = " + line;
 }
 
-// The distinct values in order of appearance, joined by " | ".
+// Returns the distinct values in order of appearance, joined by " | ".
 template <class F> std::string distinct(const std::vector<RunKey>& runs, F text) {
     std::vector<std::string> seen;
     for (const RunKey& r : runs) {
@@ -40,7 +40,7 @@ template <class F> std::string distinct(const std::vector<RunKey>& runs, F text)
 
 std::string not_finite_word(double v) { return std::isnan(v) ? "not a number" : v > 0 ? "∞" : "−∞"; }
 
-// A number as printf leaves it, with a true minus and its power of ten set as one.
+// Sets a printf number with a true minus and its power of ten as a superscript.
 std::string typeset(std::string text) {
     if (auto e = text.find('e'); e != std::string::npos) {
         int power = std::stoi(text.substr(e + 1));
@@ -119,7 +119,7 @@ std::string number(double v, int digits) {
 std::string figure(double v, int digits) {
     if (!std::isfinite(v)) return not_finite_word(v);
     if (v == 0) return "0";
-    const double unit = math::pow(10.0, digits - 1);  // from here on all the digits stand before the point
+    const double unit = math::pow(10.0, digits - 1);  // from here on all digits are before the point
     if (std::abs(v) >= unit - 0.05 && std::abs(v) < 1e7) return typeset(fmt::format("{:.0f}", v));
     std::string text = typeset(fmt::format("{:#.{}g}", v, digits));
     if (text.back() == '.') text.pop_back();
@@ -169,10 +169,10 @@ void photograph_header(Sheet& sheet, const std::string& what, const std::string&
         stream);
 }
 
-void instrument_header(
+void backend_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
-    header(sheet, instrument_accent,
-        tinted("INSTRUMENT " + name, instrument_accent, sheet.canvas.theme()) + " / " + what, stream);
+    header(sheet, backend_accent, tinted("INSTRUMENT " + name, backend_accent, sheet.canvas.theme()) + " / " + what,
+        stream);
     if (of_films)
         for (const ReferenceQuality& r : sheet.in.metrics.references)
             if (r.error_share > most_error_share) {
@@ -180,7 +180,7 @@ void instrument_header(
                     "reference not good enough in " + escaped(r.region) + ": errors there are too large");
                 break;
             }
-    const std::string& on = sheet.in.instrument;
+    const std::string& on = sheet.in.backend;
     if (!on.empty())
         sheet.notes.push_back(
             (of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
@@ -209,15 +209,15 @@ void finish(Sheet& sheet) {
 
     Rect foot = footer_band;
     if (sheet.not_finite > 0) {
-        std::string say = fmt::format(
+        std::string message = fmt::format(
             "{} pixel{} not a number, shown in magenta", count(sheet.not_finite), sheet.not_finite == 1 ? "" : "s");
         Text how = with(with(with(small_text, alert), Align::right), Weight::semibold);
-        double w = sheet.canvas.measure(say, how).w + 2;
-        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, say, how);
+        double w = sheet.canvas.measure(message, how).w + 2;
+        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, message, how);
         foot.w -= w + gap;
     }
     std::string notes = joined(sheet.notes, "  ·  ");
-    for (const double px : {17.0, small_text.px}) {  // the larger where it fits: footers are read across a room
+    for (const double px : {17.0, small_text.px}) {  // the larger size if it fits: footers are read from a distance
         const Text how = with_px(small_text, px);
         if (sheet.canvas.measure(notes, how).w > foot.w) continue;
         sheet.canvas.text(foot, notes, how);

@@ -1,4 +1,4 @@
-// What all plates share: the sheet with its header, caption and footer, and the film of a run.
+// Shared by all plates: the sheet with its header, caption and footer, and the film of a run.
 #pragma once
 
 #include <numbers>
@@ -28,9 +28,9 @@ inline constexpr Colour rule{0.235, 0.247, 0.267};
 inline constexpr Colour bright{0.953, 0.953, 0.941};
 inline constexpr Colour muted{0.682, 0.702, 0.729};
 inline constexpr Colour photograph_accent{0.957, 0.733, 0.373};
-inline constexpr Colour instrument_accent{0.431, 0.792, 0.867};
+inline constexpr Colour backend_accent{0.431, 0.792, 0.867};
 inline constexpr Colour alert{1.0, 0.43, 1.0};
-/// For arms in the order of the experiment, told apart by lightness as well as by hue; the first, the baseline, is
+/// For arms in the order of the experiment, distinguished by lightness as well as by hue; the first, the baseline, is
 /// grey.
 inline constexpr Colour series[] = {{0.80, 0.80, 0.80}, {0.431, 0.792, 0.867}, {0.957, 0.733, 0.373},
     {0.929, 0.502, 0.494}, {0.616, 0.827, 0.506}, {0.769, 0.651, 0.925}};
@@ -44,10 +44,10 @@ struct Themed {
 };
 inline constexpr Themed light_theme[] = {{ground, {0.988, 0.988, 0.984}}, {panel, {0.941, 0.945, 0.949}},
     {rule, {0.804, 0.816, 0.831}}, {bright, {0.098, 0.106, 0.118}}, {muted, {0.345, 0.369, 0.400}},
-    {photograph_accent, {0.604, 0.357, 0.000}}, {instrument_accent, {0.000, 0.408, 0.498}},
-    {alert, {0.741, 0.000, 0.741}}, {series[0], {0.392, 0.392, 0.392}}, {series[3], {0.710, 0.161, 0.176}},
-    {series[4], {0.184, 0.455, 0.118}}, {series[5], {0.439, 0.290, 0.690}}};
-/// A colour of this file as a theme shows it, its opacity kept; another stays as it is.
+    {photograph_accent, {0.604, 0.357, 0.000}}, {backend_accent, {0.000, 0.408, 0.498}}, {alert, {0.741, 0.000, 0.741}},
+    {series[0], {0.392, 0.392, 0.392}}, {series[3], {0.710, 0.161, 0.176}}, {series[4], {0.184, 0.455, 0.118}},
+    {series[5], {0.439, 0.290, 0.690}}};
+/// Returns a colour of this file as a theme shows it, with its opacity; other colours are unchanged.
 constexpr Colour themed(const Colour& c, Theme theme) {
     if (theme == Theme::light)
         for (const Themed& t : light_theme)
@@ -83,46 +83,47 @@ constexpr Text with(Text t, Weight w) { return t.weight = w, t; }
 constexpr Text with_lines(Text t, int lines) { return t.lines = lines, t; }
 constexpr Text with_px(Text t, double px) { return t.px = px, t; }
 
-/// The band cut into `n` equal columns.
+/// Returns column i of the band, cut into `n` equal columns.
 inline Rect column(const Rect& band, std::size_t n, std::size_t i) {
     double w = (band.w - gap * double(n - 1)) / double(n);
     return {band.x + double(i) * (w + gap), band.y, w, band.h};
 }
 
-// ---- The words and numbers that stand on plates, all read from the experiment: arm names, densities, labels.
-// Everything returned is Pango markup.
+// ---- The words and numbers on plates, all read from the experiment: arm names, densities, labels; all returned text
+// is Pango markup.
 
-/// A run of the plan with the experiment's own s and seed filled in.
+/// Returns a run of the plan with the experiment's own s and seed filled in.
 RunKey key_of(const PlateRun& run, const Experiment& e);
 std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e);
 
-/// The label that a built-in arm has ("light-area (NEE)"); an arm under another name than its sampler keeps it.
+/// Returns the label of a built-in sampler ("light-area (NEE)"); an arm with another name keeps it.
 std::string arm_name(const std::string& arm, const Experiment& e);
-/// The word of arms/all.h that the arm uses, "" where the experiment has no such arm.
+/// Returns the name of samplers/all.h that the arm uses, "" if the experiment has no such arm.
 std::string sampler_of(const std::string& arm, const Experiment& e);
-/// "n" or "R", what the arm's density is centred on; "" where that is not one of them.
+/// Returns "n" or "R", the centre of the arm's density; "" if it is neither.
 std::string axis_of(const std::string& arm, const Experiment& e);
-/// "p(ω) = (s+1)/(2π) (ω·R)<sup>s</sup>"; of an arm that combines two, their weights.
+/// Returns "p(ω) = (s+1)/(2π) (ω·R)<sup>s</sup>"; for an arm that combines two, their weights.
 std::string density_formula(const std::string& arm, const Experiment& e);
-/// The same density after `s` has been put in.
+/// Returns the same density with the value of `s`.
 std::string density_formula_at(const std::string& arm, double s, const Experiment& e);
 
-/// "phong N=256 s=32", or with several runs "uniform | cosine | phong N=64 s=32": what they share is said once,
-/// and s where it says something of a run. Of an arm that joins two techniques N counts pairs.
+/// Returns "phong N=256 s=32", or for several runs "uniform | cosine | phong N=64 s=32": common parts appear once, and
+/// s only if it identifies a run. For an arm that combines two techniques N counts pairs.
 std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n = true);
 
-/// How the reference was computed: "by quadrature, no samples" or its sample counts and seed.
+/// Returns how the reference was computed: "by quadrature, no samples" or its sample counts and seed.
 std::string reference_words(const Experiment& e);
 
-/// At most `digits` significant digits, a true minus, ∞ and "not a number" in words; powers of ten set as such.
+/// Formats at most `digits` significant digits, with a true minus, ∞ and "not a number" in words; powers of ten as
+/// superscripts.
 std::string number(double v, int digits = 4);
-/// Exactly `digits` significant digits, trailing zeros kept, so that columns of a table align; 0 is "0", and what has
-/// more digits before the point keeps them up to 10^7.
+/// Formats exactly `digits` significant digits, trailing zeros kept, so that columns of a table align; 0 is "0", and
+/// larger numbers keep all digits before the point up to 10^7.
 std::string figure(double v, int digits = 4);
-/// 12345678 -> "12 345 678" with thin spaces.
+/// Formats 12345678 as "12 345 678" with thin spaces.
 std::string count(std::uint64_t v);
 
-/// The parts with `between` between them.
+/// Joins the parts with `between`.
 std::string joined(const std::vector<std::string>& parts, std::string_view between);
 
 inline constexpr const char* radiance_unit = "W·sr<sup>−1</sup>·m<sup>−2</sup>";
@@ -132,78 +133,78 @@ struct Sheet {
     const PlatePlan& plan;
     const PlateInputs& in;
     Canvas canvas;
-    std::uint64_t not_finite = 0;    // pixels shown that are not numbers
+    std::uint64_t not_finite = 0;    // pixels shown that are NaN
     std::vector<std::string> notes;  // for the footer, markup
     std::vector<Rect> tags;          // name tags of regions so far
 
     Sheet(const PlatePlan& p, const PlateInputs& i, Medium medium = Medium::pixels)
         : plan(p), in(i), canvas(sheet_width, sheet_height, ground, 1, i.theme, medium) {}
-    /// What the plate shows runs of.
+    /// The experiment whose runs the plate shows.
     const Experiment& experiment() const { return in.experiment; }
 };
 
-/// "Khronos PBR Neutral / PHOTO-ONLY / `what`", and `stream` ("seed 7") at the right: no measured number stands on a
-/// photograph.
+/// Writes "Khronos PBR Neutral / PHOTO-ONLY / `what`", and `stream` ("seed 7") at the right: a photograph has no
+/// measured number on it.
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream);
-/// "INSTRUMENT `name` / `what`"; names the instrument in the footer. `of_films`: what it shows was read off films,
-/// which any instrument may have computed; else it is the CPU's, and the films of the run are named beside it.
-void instrument_header(
+/// Writes "INSTRUMENT `name` / `what`" and names the back end in the footer. `of_films`: the plate was read from films,
+/// which any back end may have computed; else it is the CPU's, and the back end of the run's films is named too.
+void backend_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films = true);
 /// Names in the footer the arms of the plate that cannot reach all light of the scene, so that their errors stop
 /// falling.
 void note_biased_arms(Sheet& sheet);
 /// "seed 7", "one stream, seed 7" for several runs.
 std::string stream_words(const std::vector<RunKey>& runs);
-/// The reference's own seed, "" where it is not sampled.
+/// Returns the reference's own seed, "" if it is not sampled.
 std::string reference_stream(const Experiment& e);
-/// Caption and footer; last, when the notes are known.
+/// Draws caption and footer; called last, when the notes are known.
 void finish(Sheet& sheet);
 
-/// Paints `box` of a view at the centre-top of `slot` and frames it; counts what is not finite. A run without a film
-/// leaves a framed note. Returns the rectangle of the picture.
+/// Paints `box` of a view at the centre-top of `slot` and frames it; counts pixels that are not finite. A run without a
+/// film gives a framed note. Returns the rectangle of the picture.
 Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& slot);
-/// A framed empty picture that says what is missing.
+/// Paints a framed empty picture that states what is missing.
 Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& why);
 /// Paints a block centred across the slot at its top, with a hairline around it.
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
 
-/// The same colour for an arm on every plate.
+/// Returns the colour of an arm, the same on every plate.
 Colour arm_colour(const std::string& arm, const Experiment& e);
 
-/// A frame over a picture, on a halo of the sheet's ground, so that it is seen on a picture of any brightness.
+/// Draws a frame over a picture, on a halo of the sheet's ground, so that it is visible at any brightness.
 void outline_over(Canvas& canvas, const Rect& r, const Colour& ink);
 
-/// Where image box `box` lies in the picture of `shown`.
+/// Returns where image box `box` lies in the picture of `shown`.
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
 
-/// The name of an outlined region on a tag at one of its corners, on the picture and clear of earlier tags; none where
-/// there is no such place.
+/// Draws the name of an outlined region on a tag at one of its corners, on the picture and clear of earlier tags; none
+/// if there is no such place.
 void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c);
 
-/// A vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels stand to its right.
+/// Draws a vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels are to its right.
 void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);
 
-// The painters of the list, experiment/plate_kinds.h; several kinds may share one.
+// The painters of the list in experiment/experiment.h; several kinds may share one.
 #define CRESCENT_PAINTER(name, painter, ...) void draw_##painter(Sheet& sheet);
 CRESCENT_PLATES(CRESCENT_PAINTER)
 #undef CRESCENT_PAINTER
 
-/// Draws by kind onto a fresh sheet; what draw_plate and the tests of the layout share.
+/// Draws by kind onto an empty sheet; shared by draw_plate and the tests of the layout.
 void draw(Sheet& sheet);
 
-/// The same for draw_preview: what it is called and says under the picture, and the picture.
+/// The same for draw_preview: its name and its caption, and the picture.
 PlatePlan preview_plan(const Experiment& e);
 void paint_preview(Sheet& sheet);
 
-// ---- The column of facts beside a single picture: a title, its density, then names and values in two columns.
+// ---- The column of facts next to a single picture: a title, its density, then names and values in two columns.
 
 inline constexpr double facts_width = 232;
-/// Left of the facts: where a single picture stands, 960x540 as the published one.
+/// Left of the facts: the place of a single picture, 960x540 like the published one.
 inline constexpr Rect picture_slot{content_band.x, content_band.y, sheet_inner - facts_width - 24, content_band.h};
 inline constexpr Rect facts_slot{
     content_band.x + sheet_inner - facts_width, content_band.y, facts_width, content_band.h};
 
-/// A line of the facts beside a picture.
+/// A line of the facts next to a picture.
 struct Fact {
     std::string name, value;
 };

@@ -1,4 +1,4 @@
-// Labels, numbers and formulas of plates against markup written out by hand, on an experiment made up for it.
+// Labels, numbers and formulas of plates against markup written out by hand, on a synthetic experiment.
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(Words, NumbersAreSetWithTrueMinusAndPowers) {
     EXPECT_EQ(number(std::nan("")), "not a number");
 }
 
-TEST(Words, AnArmThatWasRenamedKeepsItsNameAndItsFormula) {
+TEST(Words, RenamedArmKeepsItsNameAndFormula) {
     World world(8, 8);
     world.add_arm("sharp", "phong");
     EXPECT_EQ(arm_name("phong", world.e), "phong");

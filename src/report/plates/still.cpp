@@ -1,4 +1,4 @@
-// hero and gallery: one photograph, one to one where it fits, with what it is beside it.
+// hero and gallery: one photograph, at 1:1 if it fits, with facts next to it.
 #include <fmt/format.h>
 
 #include "report/plates/sheet.h"

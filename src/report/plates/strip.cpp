@@ -1,5 +1,5 @@
-// columns, ladder, exponent, surround: runs side by side as photographs. On top each frame, reduced alike; under it the
-// same crop of each, enlarged alike; under that what makes the run different from its neighbours.
+// columns, ladder, exponent, surround: runs side by side as photographs. On top each frame, equally reduced; under it
+// the same crop of each, equally enlarged; under that the difference of the run from its neighbours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string heading(const RunKey& r, const Varies& v, const Experiment& e) {
     return joined(parts, ", ");
 }
 
-// The crop of the plan; else the first region for the highlight, the last for the surround; else nothing.
+// Returns the crop of the plan; else the first region for the highlight, the last for the surround; else nothing.
 std::optional<Box> crop_of(const Sheet& sheet) {
     const auto& regions = sheet.experiment().regions;
     if (sheet.plan.crop) return sheet.plan.crop;
@@ -40,7 +40,7 @@ std::optional<Box> crop_of(const Sheet& sheet) {
     return sheet.plan.kind == PlateKind::surround ? regions.back().box : regions.front().box;
 }
 
-// Where everything goes, the same in every cell. Up to six runs stand in one row; more make a grid of crops.
+// The layout, the same in every cell. Up to six runs are in one row; more make a grid of crops.
 struct Layout {
     std::size_t columns = 1, rows = 1;
     bool frames = true, crops = false;

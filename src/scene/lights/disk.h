@@ -1,4 +1,4 @@
-// disk: a disk that shines from the side its normal points to, or from both.
+// disk: a disk that emits from the side its normal points to, or from both.
 #pragma once
 
 #include "scene/lights/light_kind.h"
@@ -19,12 +19,12 @@ struct Disk {
             parameter::flag("two_sided", &Disk::two_sided, "Emits from both sides.")};
     }
 
-    /// What it puts before the lights behind it.
+    /// Returns the body with which it hides the lights behind it.
     shapes::Disk body() const { return {center, normal, radius}; }
     bool shines_on(Vec3d x) const { return shines_flat(center - x, normal, radius, two_sided); }
-    /// In whose directions it is seen from x.
+    /// Returns the figure whose directions it covers as seen from x.
     Figure seen_from(Vec3d) const { return body(); }
-    /// The largest area that it shows, over pi, m^2.
+    /// Returns its largest projected area over pi, m^2.
     double disk_area() const { return sqr(radius); }
 };
 

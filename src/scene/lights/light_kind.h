@@ -1,5 +1,5 @@
-// What the kinds of light share: how one is seen from a surface point, in double precision for the references and, for
-// all but disks, as arms and kernels have it. (Disks have forms of their own there, arms/sampler.h.)
+// Shared by the kinds of light: how a surface point sees one, in double precision for the references and, except for
+// disks, as samplers and kernels have it. (Disks have forms of their own there, samplers/sampler.h.)
 #pragma once
 
 #include <array>
@@ -11,17 +11,18 @@
 
 namespace crescent::inline scene {
 
-/// A flat figure that is seen in the directions of a light.
+/// A flat figure that covers the directions of a light.
 using Figure = std::variant<shapes::Disk, shapes::Quad>;
 
-/// An emitting side of a flat light faces the point that d leads to its centre from. One whose plane passes through the
-/// point, within 1e-6 of how far its own points are, gives it nothing.
+/// Returns whether an emitting side of a flat light faces the point; d leads from the point to its centre. A light
+/// whose plane passes through the point, within 1e-6 of the distance of its own points, contributes nothing.
 inline bool shines_flat(Vec3d d, Vec3d normal, double radius, bool two_sided) {
     const double along = dot(d, normal);
     return std::fabs(along) > 1e-6 * (std::sqrt(dot(d, d)) + radius) && (two_sided || along < 0);
 }
 
-/// A light as a surface point sees it, in the point's local frame. What the vectors and numbers are is each kind's own.
+/// A light as a surface point sees it, in the point's local frame. The meaning of the vectors and numbers depends on
+/// the kind.
 template <class F> struct LocalLight {
     std::size_t kind = 0;  // index in LightKinds
     F power{};             // its share in the choice among lights
@@ -35,7 +36,7 @@ struct LightNumbers {
     std::array<double, 7> number{};
 };
 
-/// A direction towards a light and its density in 1/sr; 0 where the light gives the point nothing.
+/// A direction towards a light and its density in 1/sr; 0 if the light does not reach the point.
 template <class F> struct Aimed {
     Vec3<F> wi;
     F pdf;

@@ -1,10 +1,10 @@
-// rectangle: a rectangle that shines along edge_u x edge_v, or from both sides.
+// rectangle: a rectangle that emits along edge_u x edge_v, or from both sides.
 //   By solid angle: Urena, Fajardo & King 2013, "An Area-Preserving Parametrization for Spherical Rectangles", CGF
 //   32(4). With the point at the origin, the rectangle [x0, x1] x [y0, y1] at height z0 and
-//     b0 = -y0 / sqrt(z0^2 + y0^2),  b1 = y1 / sqrt(z0^2 + y1^2),  D(x) = asin(b0 h) + asin(b1 h),  h = x / sqrt(z0^2 +
-//     x^2),
-//   D(x) - D(x0) is the solid angle of what lies before x (their eq. (3), its angles as differences to pi/2, of which
-//   nothing cancels): u1 gives D and so x, u2 gives y; p = 1 / (D(x1) - D(x0)). Under 1e-4 sr floats are too coarse for
+//     b0 = -y0 / sqrt(z0^2 + y0^2),  b1 = y1 / sqrt(z0^2 + y1^2),  D(x) = asin(b0 h) + asin(b1 h),
+//     h = x / sqrt(z0^2 + x^2),
+//   D(x) - D(x0) is the solid angle of the part before x (their eq. (3), its angles as differences to pi/2, which do
+//   not cancel): u1 gives D and so x, u2 gives y; p = 1 / (D(x1) - D(x0)). Below 1e-4 sr floats are too coarse for
 //   that, and points are uniform on the rectangle, as they are by area: p = |y|^3 / (area |z0|).
 #pragma once
 
@@ -46,8 +46,8 @@ struct Rectangle {
     Figure seen_from(Vec3d) const { return body(); }
     double disk_area() const { return std::sqrt(dot(edge_u, edge_u) * dot(edge_v, edge_v)) / pi; }
 
-    /// a: to the centre, m; b, c: the edges, unit. PrimarySample: half the edges' lengths; the solid angle, 0 where it
-    /// is under 1e-4 sr; D(x0); b0; b0 + b1; 1 where it shines on x.
+    /// a: to the centre, m; b, c: the edges, unit. The numbers: half the edges' lengths; the solid angle, 0 if below
+    /// 1e-4 sr; D(x0); b0; b0 + b1; 1 if it shines on x.
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const double u = std::sqrt(dot(edge_u, edge_u)), v = std::sqrt(dot(edge_v, edge_v));
         const Vec3d d = body().middle() - x, b = edge_u * (1 / u), c = edge_v * (1 / v);
@@ -62,7 +62,7 @@ struct Rectangle {
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[6] > number<F>(0); }
 
-    /// w meets its plane at (height / v) w; no division is needed to see whether that lies in it.
+    /// w meets its plane at (height / v) w; testing whether that point is inside needs no division.
     template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {
         const Vec3<F> n = cross(l.b, l.c);
         const F height = dot(l.a, n), v = dot(w, n);

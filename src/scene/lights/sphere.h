@@ -1,4 +1,4 @@
-// sphere: a ball that shines outwards, alike from all of its surface. A point in it gets nothing from it.
+// sphere: a ball that emits outwards, uniformly over its surface. A point inside it receives nothing from it.
 //   Seen from x it fills the cone about c with sin = R / |c|: by solid angle, directions are uniform in that cone,
 //     p = 1 / (2 pi (1 - cos)), 1 - cos = sin^2 / (1 + cos)       Shirley, Wang & Zimmerman 1996, "Monte Carlo
 //     Techniques for Direct Lighting Calculations", section 3.2;
@@ -20,12 +20,12 @@ struct Sphere {
             parameter::length("radius", &Sphere::radius, "Radius.")};
     }
 
-    /// One to judge arms under, as every kind has one: the surface at 0, n = +z, m.
+    /// An example for testing samplers, which every kind has: the surface at 0, n = +z, m.
     static constexpr Sphere example() { return {{-0.61, 0.51, 1.39}, 0.45}; }
 
     shapes::Sphere body() const { return {center, radius}; }
     bool shines_on(Vec3d x) const { return dot(center - x, center - x) > sqr(radius * (1 + 1e-6)); }
-    /// The disk that x's tangents touch.
+    /// Returns the disk bounded by the tangents from x.
     Figure seen_from(Vec3d x) const {
         const Vec3d d = center - x;
         const double d2 = dot(d, d), rest = 1 - sqr(radius) / d2;  // cos^2 of the cone
@@ -33,9 +33,9 @@ struct Sphere {
     }
     double disk_area() const { return sqr(radius); }
 
-    /// a: to the centre, m. PrimarySample: the radius; of the cone 1 - sin, 1 - cos; 1 where it shines on x; the
-    /// distances to the centre and to the nearest point, which of a large ball is not their difference in single
-    /// precision.
+    /// a: to the centre, m. The numbers: the radius; 1 - sin and 1 - cos of the cone; 1 if it shines on x; the
+    /// distances to the centre and to the nearest point (for a large ball their difference is inexact in single
+    /// precision).
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const Vec3d d = center - x;
         const double far = std::sqrt(dot(d, d)), gap = std::max(far - radius, 0.0);
@@ -44,7 +44,7 @@ struct Sphere {
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[3] > number<F>(0); }
 
-    /// Where w meets it: a distance, the nearest point's where it misses.
+    /// Where w meets it: a distance; that of the nearest point if w misses.
     template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {
         const F along = dot(l.a, w);
         const Vec3<F> off = l.a - w * along;
@@ -52,7 +52,7 @@ struct Sphere {
         t = l.number[5] * (l.number[4] + l.number[0]) / (along + sqrt(larger(rest, number<F>(0))));
         return (rest >= number<F>(0)) & (along > number<F>(0)) & shines(l);
     }
-    /// Of a ball that holds it, about a.
+    /// Returns the squared radius of a ball around a that contains it.
     template <class F> static F radius2(const LocalLight<F>& l) { return sqr(l.number[0]); }
 
     template <class F> static Aimed<F> by_angle(const LocalLight<F>& l, Vec2<F> u) {
@@ -68,12 +68,12 @@ struct Sphere {
         return select(meets(l, w, t), angle_density(l), number<F>(0));
     }
 
-    /// Height z = 1 - u (1 - sin) on the sphere over its centre, towards x.
+    /// Height z = 1 - u (1 - sin) on the sphere above its centre, towards x.
     template <class F> static Aimed<F> by_area(const LocalLight<F>& l, Vec2<F> u) {
         const F one = number<F>(1), drop = u.x * l.number[1], z = one - drop;
         const F r = sqrt(drop * (number<F>(2) - drop));
         const SinCos<F> phi = sincos_turns(u.y);
-        const Vec3<F> axis = l.a * (one / l.number[4]);  // the point lies r drop behind the nearest one
+        const Vec3<F> axis = l.a * (one / l.number[4]);  // the point lies r drop behind the nearest point
         const Vec3<F> y = frame_about(axis).to_world(
             {l.number[0] * r * phi.cos, l.number[0] * r * phi.sin, l.number[5] + l.number[0] * drop});
         const F t2 = dot(y, y), t = sqrt(t2);

@@ -1,5 +1,5 @@
-// The one list of lobes. A new one is one file beside this one and one word here; the list feeds the experiment files,
-// the kernels, the reference, the verdicts, the report and the manual.
+// The list of lobes. To add one, add a file in this folder and a word here; the list determines the experiment files,
+// the kernels, the reference, the checks, the report and the manual.
 #pragma once
 
 #include "scene/lobes/beckmann.h"
@@ -20,7 +20,7 @@ template <class Call, template <class> class... L> constexpr void for_each_lobe(
     (f.template operator()<L>(), ...);
 }
 
-/// Calls f.template operator()<L>() for the lobe of this kind; for none, nothing.
+/// Calls f.template operator()<L>() for the lobe of this kind; does nothing for none.
 template <class Call> constexpr void with_lobe(LobeKind kind, Call&& f) {
     const auto among = [&]<template <class> class... L>(LobeList<L...>) {
         int k = 0;
@@ -29,7 +29,7 @@ template <class Call> constexpr void with_lobe(LobeKind kind, Call&& f) {
     among(Lobes{});
 }
 
-/// A built-in lobe, 1/sr; 0 for none.
+/// Returns the value of a built-in lobe, 1/sr; 0 for none.
 template <class F> F lobe_value(LobeKind kind, F s, F alpha, Vec3<F> wo, Vec3<F> wi) {
     F out = number<F>(0);
     with_lobe(kind, [&]<template <class> class L>() { out = L<F>(s, alpha)(wo, wi); });

@@ -23,7 +23,7 @@ template <class F> struct Beckmann {
     /// erf(a) = 1 - P(1 / (1 + 0.3275911 a)) exp(-a^2): Abramowitz & Stegun 1964, 7.1.26.
     F G1(Vec3<F> w) const {
         const F sin = larger(sqrt(w.x * w.x + w.y * w.y), number<F>(1e-30));
-        const F a = smaller(w.z / (alpha * sin), number<F>(10));  // exp(-100) is nothing
+        const F a = smaller(w.z / (alpha * sin), number<F>(10));  // exp(-100) is negligible
         const F t = number<F>(1) / (number<F>(1) + number<F>(0.3275911) * a);
         const F high = number<F>(1.421413741) + t * (number<F>(-1.453152027) + t * number<F>(1.061405429));
         const F P = t * (number<F>(0.254829592) + t * (number<F>(-0.284496736) + t * high));
@@ -40,7 +40,8 @@ template <class F> struct BeckmannLobe {
         .formula = R"(\frac{D(h)\,G_1(\omega_o)\,G_1(\omega_i)}{4(n\cdot\omega_o)(n\cdot\omega_i)})",
         .parameter = LobeParameter::alpha,
         .own_arm = "beckmann-d",
-        .judged_from = 1e-3};  // at 3e-4 and 89 degrees its integral is known to 6e-4, not to the 7e-5 that is stated
+        .checked_from = 1e-3};  // at alpha 3e-4 and 89 degrees its integral is known to 6e-4 only, not to the 7e-5
+                                // stated
     Beckmann<F> beckmann;
     BeckmannLobe(F, F alpha) : beckmann{alpha} {}
     [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {  // (20)
@@ -49,7 +50,7 @@ template <class F> struct BeckmannLobe {
     }
 
     static double exponent(double, double alpha) { return 2 / sqr(alpha); }
-    /// The half vector turns by half of what wi turns by at least: exp(-49) at the reach.
+    /// The half vector turns by at least half the angle of wi: exp(-49) at the reach.
     static LobeWidth width(double, double alpha) { return {2 * alpha, std::min(pi, 14 * alpha)}; }
 
     struct Normals {

@@ -27,7 +27,7 @@ template <class F> struct BlinnPhongLobe {
     }
 
     static double exponent(double s, double) { return s; }
-    /// The half vector turns by half of what wi turns by at least.
+    /// The half vector turns by at least half the angle of wi.
     static LobeWidth width(double s, double) {
         const double width = 2 / std::sqrt(s);
         return {width, std::min(pi, 9 * width)};

@@ -41,7 +41,7 @@ template <class F> struct GgxLobe {
     }
 
     static double exponent(double, double alpha) { return 2 / sqr(alpha); }
-    /// Its tail falls off as a power and ends nowhere.
+    /// Its tail is a power law and has no end.
     static LobeWidth width(double, double alpha) { return {2 * alpha, pi}; }
 
     struct Normals {

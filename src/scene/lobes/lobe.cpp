@@ -1,4 +1,4 @@
-// The table is made from the types of lobes/all.h at first use. A lobe's kind is its place in that list.
+// The table is made from the types of lobes/all.h at first use. A lobe's kind is its index in that list.
 #include "scene/lobes/lobe.h"
 
 #include "base/errors.h"

@@ -1,5 +1,5 @@
-// What a lobe is: f = rho_d / pi + rho_s * lobe, Fresnel apart. A number in 1/sr without the cosine, in the local frame
-// (n = +z), of a surface's s and alpha.
+// A lobe: f = rho_d / pi + rho_s * lobe, without Fresnel. A number in 1/sr without the cosine, in the local frame (n =
+// +z), depending on a surface's s and alpha.
 #pragma once
 
 #include <string>
@@ -12,50 +12,49 @@
 
 namespace crescent::inline lobes {
 
-// ---- What a lobe says of itself, beside its value: the names, formulas and widths from which the schema, the
-// reference, verdicts and report are made. A lobe's file states it as `static constexpr LobeDoc manual`; see
-// lobes/all.h.
+// ---- The documentation of a lobe: the names, formulas and widths from which the schema, the reference, checks and
+// report are made; a lobe's file defines it as a `LobeDoc`, see lobes/all.h.
 
-/// Which of a surface's two numbers shapes a lobe: the exponent s, or the roughness alpha.
+/// The number of a surface that shapes a lobe: the exponent s, or the roughness alpha.
 enum class LobeParameter { s, alpha };
 
 struct LobeDoc {
     std::string_view label = "";    // in verdicts and in the report
     std::string_view summary = "";  // one line, for `crescent list brdfs`
-    std::string_view formula = "";  // in 1/sr without rho_s: TeX as base/formula.h reads it
+    std::string_view formula = "";  // in 1/sr without rho_s: TeX as output/formula.h reads it
     LobeParameter parameter = LobeParameter::s;
-    bool about_mirror = false;      // it peaks about R; else it is about the half vector, a streak at grazing w_o
-    std::string_view own_arm = "";  // the arm of arms/all.h that draws from it
-    double judged_from = 0;         // the least alpha that verdicts are given at; 0: any
+    bool about_mirror = false;      // it peaks about R; else about the half vector, a streak at grazing w_o
+    std::string_view own_arm = "";  // the sampler of samplers/all.h that draws from it
+    double checked_from = 0;        // the smallest alpha that is checked; 0: any
 };
 
-/// Where a lobe's height lies, as angles from its peak in the plane across that of incidence, rad.
+/// How far a lobe extends, as angles from its peak in the plane across that of incidence, rad.
 struct LobeWidth {
-    double width = 1;  // it keeps its height within
-    double reach = 0;  // nothing of it is left beyond
+    double width = 1;  // it keeps its height within this angle
+    double reach = 0;  // it is negligible beyond
 };
 
-/// A place in the list of lobes; none: Lambert alone.
+/// An index in the list of lobes; none: only Lambert.
 enum class LobeKind : int { none = -1 };
 
-/// A built-in lobe. Its s and alpha are those of its surface, though it may read but one of them.
+/// A built-in lobe. Its s and alpha are those of its surface, though it may read only one of them.
 struct LobeInfo : LobeDoc {
-    std::string_view name;  // the word for it in files
+    std::string_view name;  // its name in files
     LobeKind kind = LobeKind::none;
-    double (*exponent)(double s, double alpha) = nullptr;  // of the cosine power that is as wide
+    double (*exponent)(double s, double alpha) = nullptr;  // of the cosine power of the same width
     LobeWidth (*width)(double s, double alpha) = nullptr;
 };
 
-/// The lobes in the order of the list in all.h.
+/// Returns the lobes in the order of the list in all.h.
 const std::vector<LobeInfo>& lobe_infos();
-/// The words that a shape may use for its lobe.
+/// Returns the names that a shape may use for its lobe.
 std::vector<std::string> lobe_names();
 /// `kind` is not none.
 const LobeInfo& lobe_info(LobeKind kind);
-/// A lobe by its word, which names a built-in one; "" is none.
+/// Returns the lobe with a name, which must be a built-in one; "" is none.
 LobeKind lobe_named(std::string_view name);
 
-/// rho_s = 0: nothing but Lambert.
+/// rho_s = 0: only Lambert.
 template <class F> struct NoLobe {
     static constexpr std::string_view name = "lambert";
     static constexpr bool present = false;
@@ -63,7 +62,7 @@ template <class F> struct NoLobe {
     F operator()(Vec3<F>, Vec3<F>) const { return number<F>(0); }
 };
 
-/// f where wo and wi are above the horizon, else 0: half vectors mean nothing below it.
+/// Returns f if wo and wi are above the horizon, else 0: half vectors are meaningless below it.
 template <class F> CRESCENT_INLINE F both_above(Vec3<F> wo, Vec3<F> wi, F f) {
     return select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), f, number<F>(0));
 }

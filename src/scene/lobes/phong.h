@@ -1,4 +1,4 @@
-// phong: a cosine power about the mirror direction R, normalised where all of it is above the horizon.
+// phong: a cosine power about the mirror direction R, normalised for the case that all of it is above the horizon.
 //   (s+2)/(2 pi) (wi.R)_+^s          Lafortune & Willems 1994, "Using the modified Phong BRDF"
 #pragma once
 
@@ -32,7 +32,7 @@ template <class F> struct PhongLobe {
     }
 
     /// Polar about R at tilt theta. The cosine n.w = a + b cos(phi), a = cos(al) cos(theta), b = sin(al) sin(theta),
-    /// integrates over phi in closed form, cut where it turns negative; what is left is one integral over al.
+    /// integrates over phi in closed form, cut where it turns negative; one integral over al remains.
     template <class Integrate> static double albedo(double s, double, double cos_o, Integrate&& integrate) {
         const double sin_o = std::sqrt(1 - cos_o * cos_o);
         const auto ring = [&](double al) {
@@ -45,7 +45,7 @@ template <class F> struct PhongLobe {
             }
             return math::pow(cos, s) * sin * band;
         };
-        const double horizon = math::asin(cos_o);                     // al where the lobe first dips under the horizon
+        const double horizon = math::asin(cos_o);                     // al where the lobe first crosses the horizon
         const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
         const double cut = std::min(horizon, wide);
         return (s + 2) / (2 * pi) * (integrate(ring, 0.0, cut) + integrate(ring, cut, wide));

@@ -1,5 +1,5 @@
-// The one list of the kinds of shape. A new one is a file beside this one and a word here; the list feeds the
-// experiment files, the manual, the renders, the shadows, the kernels and the report. docs/extending.md has the steps.
+// The list of the kinds of shape. To add one, add a file in this folder and a word here; the list determines the
+// experiment files, the manual, the renders, the shadows, the kernels and the report. See docs/extending.md.
 #pragma once
 
 #include "scene/shapes/box.h"
@@ -13,11 +13,11 @@ namespace crescent::inline scene {
 
 using Shapes = KindList<shapes::Sphere, shapes::Box, shapes::Quad, shapes::Panel, shapes::Plane, shapes::Disk>;
 
-/// A shape that is convex stands before lights by itself; another one is made of bodies() that are.
+/// A convex shape is a body itself; any other shape consists of bodies() that are.
 template <class K>
 concept Body = requires(const K body, Sight sight) { body.hidden(sight); };
 
-/// Of a list of kinds, those that are bodies.
+/// The kinds of a list that are bodies.
 template <class Found, class... Kind> struct BodiesOf {
     using List = Found;
 };

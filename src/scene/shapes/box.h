@@ -10,7 +10,7 @@
 
 namespace crescent::shapes {
 
-/// t range of a slab; a component of 0 is nudged so that no 0/0 arises.
+/// t range of a slab; a component of 0 is changed slightly so that no 0/0 arises.
 template <class F> void clip_slab(F lo, F hi, F o, F d, F& near, F& far) {
     const F safe = select(abs(d) > number<F>(1e-20), d, number<F>(1e-20));
     const F t0 = (lo - o) / safe, t1 = (hi - o) / safe;

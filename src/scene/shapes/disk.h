@@ -43,7 +43,8 @@ struct Disk {
         return azimuths_of_ellipse(center - x, radius * own.t, radius * own.b, frame);
     }
 
-    /// Large: a is the point of the edge nearest to the origin, c the way there from the centre, unit, radius below 0.
+    /// Large: a is the point of the edge nearest to the origin, c the unit direction there from the centre, radius
+    /// below 0.
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d a = center - origin;
         const double offset = dot(normal, a);

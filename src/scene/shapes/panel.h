@@ -1,4 +1,4 @@
-// panel: a recess. A ray goes in through the opening, a parallelogram, and meets the back or one of the four sides.
+// panel: a recess. A ray enters through the opening, a parallelogram, and meets the back or one of the four sides.
 #pragma once
 
 #include "scene/shapes/quad.h"
@@ -36,11 +36,11 @@ struct Panel {
         side(corner, edge_v);
         side(corner + edge_v, edge_u);
         side(corner + edge_u, edge_v);
-        best.order = opening * (1 - 1e-9);  // before the surface it is let into
+        best.order = opening * (1 - 1e-9);  // before the surface that contains it
         return best;
     }
 
-    /// What stands before a light: the back and the four sides.
+    /// Returns the bodies that hide a light: the back and the four sides.
     std::array<Quad, 5> bodies() const {
         const Vec3d down = -depth * normalize(cross(edge_u, edge_v));
         return {Quad{corner + down, edge_u, edge_v}, {corner, edge_u, down}, {corner, edge_v, down},

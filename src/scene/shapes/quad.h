@@ -8,7 +8,7 @@
 
 namespace crescent::shapes {
 
-/// Two edges that span nothing.
+/// Returns an error if two edges span no area.
 inline std::optional<Mistake> mistake_of_edges(Vec3d u, Vec3d v) {
     constexpr double parallel = 1e-6;  // sine of the angle under which two directions count as one
     const double size_u = std::sqrt(dot(u, u)), size_v = std::sqrt(dot(v, v));
@@ -56,8 +56,8 @@ struct Quad {
     }
     Azimuths azimuths(Vec3d x, const Frame<double>& frame) const { return azimuths_of_corners(corners(), x, frame); }
 
-    /// Large: a point p of its plane has the shares x = a.x + b.p and y = a.y + c.p of the edges, from the corner that
-    /// the origin's own are nearest to; the radius is 1. Else a, b and c are corner and edges.
+    /// Large: a point p of its plane has the coordinates x = a.x + b.p and y = a.y + c.p along the edges, from the
+    /// corner whose coordinates are nearest to the origin's; the radius is 1. Else a, b and c are corner and edges.
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d a = corner - origin, n = cross(edge_u, edge_v);
         if (dot(edge_u, edge_u) < sqr(large_body) && dot(edge_v, edge_v) < sqr(large_body))

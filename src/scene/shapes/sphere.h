@@ -21,7 +21,7 @@ struct Sphere {
     Intersection intersect(Vec3d x, Vec3d d) const {
         const Vec3d o = x - center;
         const double a = dot(d, d), b = dot(o, d), oo = dot(o, o), c = oo - radius * radius;
-        const Vec3d off = o - (b / a) * d;  // of a small one far away b^2 and a c have all their digits in common
+        const Vec3d off = o - (b / a) * d;  // for a small sphere far away b^2 and a c agree in all digits
         const double discriminant = oo > 1e6 * sqr(radius) ? a * (sqr(radius) - dot(off, off)) : b * b - a * c;
         if (discriminant < 0) return {};
         const double root = std::sqrt(discriminant);
@@ -31,8 +31,8 @@ struct Sphere {
     }
 
     /// The way passes within r of the centre. With p the point of a ray's own polar plane, at q / (d.c) of the way
-    /// between both crossings, the sphere is met between the ends where the ray lies in the cone (d.c)^2 >= |d|^2 q and
-    /// p does, or where an end is inside.
+    /// between both crossings, the sphere is met between the ends if the ray lies in the cone (d.c)^2 >= |d|^2 q and p
+    /// is between the ends, or if an end is inside.
     std::array<Interval, 2> hidden(const Sight& s) const {
         const Vec3d c = center - s.x;
         const double q = dot(c, c) - radius * radius;
@@ -58,7 +58,7 @@ struct Sphere {
     Azimuths azimuths(Vec3d x, const Frame<double>& frame) const { return azimuths_of_ball(center - x, radius, frame); }
 
     /// Large or far: a is its point nearest to the origin, b its normal there, offset its curvature 1 / r. Else a is
-    /// the centre, and the curvature is not asked for.
+    /// the centre, and the curvature is unused.
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d c = center - origin;
         const double far = std::sqrt(dot(c, c));
@@ -77,16 +77,17 @@ struct Sphere {
     }
 
 private:
-    /// With v from a to o and k = 1 / r the ray meets it where k t^2 + 2 (n.d + k v.d) t + k v^2 + 2 n.v = 0. Neither
-    /// r^2 nor the distance to the centre is in it, and the discriminant is made of what lies across the ray, as Haines
-    /// et al. 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, chapter 7, do for distance.
+    /// With v from a to o and k = 1 / r the ray meets it where k t^2 + 2 (n.d + k v.d) t + k v^2 + 2 n.v = 0. It
+    /// contains neither r^2 nor the distance to the centre, and the discriminant is computed from the components across
+    /// the ray, as in Haines et al. 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems,
+    /// chapter 7.
     template <class F> static MaskOf<F> blocks_far(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F zero = number<F>(0), two = number<F>(2), k = body.offset;
         const Vec3<F> v = o - body.a, across = v - d * dot(v, d);
         const F nd = dot(body.b, d), b = nd + k * dot(v, d);
         const F disc = sqr(nd) - k * (two * dot(body.b, across) + k * dot(across, across));
         const F root = sqrt(larger(disc, zero));
-        const F sum = select(b > zero, -(b + root), root - b);  // no two that cancel
+        const F sum = select(b > zero, -(b + root), root - b);  // avoids cancellation
         const F near = (k * dot(v, v) + two * dot(body.b, v)) / select(sum == zero, number<F>(1e-30), sum);
         return (disc > zero) & (within(near, lo, hi) | within(sum * body.radius, lo, hi));
     }

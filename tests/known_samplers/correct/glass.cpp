@@ -1,4 +1,4 @@
-// Rough glass by the equations of Walter et al. 2007 that renderers.h names beside each function, visible normals after
+// Rough glass by the equations of Walter et al. 2007 that renderers.h names for each function, visible normals after
 // Heitz 2018; pdf and f in 1/sr. Across the boundary f of radiance and the weight of smooth glass are divided by the
 // square of eta_from(wo), f of importance is not.
 #include <algorithm>
@@ -99,7 +99,7 @@ Draw RoughGlass::sample(Vec3d o, const PrimarySample& u) const {
 Traits RoughGlass::traits() const {
     Traits t;
     t.numbers = 3;
-    t.wo = Traits::Asked::both;
+    t.wo = Traits::WoDomain::both;
     t.eta = Vec3d{eta, eta, eta};
     t.importance = importance;
     return t;

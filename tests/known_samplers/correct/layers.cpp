@@ -1,6 +1,6 @@
 // Layers in three channels: a smooth coat, a delta part, over Lambert; a rough lobe with Schlick's Fresnel over
-// Lambert. The rough lobe is drawn by its visible normals, anisotropic only in name: Heitz 2018; Schlick 1994, "An
-// Inexpensive BRDF Model for Physically-based Rendering".
+// Lambert. The rough lobe is drawn by its visible normals, with equal alphas: Heitz 2018; Schlick 1994, "An Inexpensive
+// BRDF Model for Physically-based Rendering".
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

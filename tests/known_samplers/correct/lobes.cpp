@@ -17,14 +17,14 @@ Vec3d about(Vec3d axis, double cos, double turns) {
 
 namespace {
 
-/// c(u): cosine to the axis, p(c): density per solid angle; both of one lobe about `axis`.
+/// c(u): cosine to the axis, p(c): density per solid angle; both for one lobe about `axis`.
 struct Lobe {
     Vec3d axis;
     std::function<double(double u)> cos;
     std::function<double(double cos)> density;
 };
 
-/// Draws under the horizon draw nothing where `clipped`; then the density there is 0 and the rest is not renormalised.
+/// Draws below the horizon return no sample if `clipped`; then the density there is 0 and the rest is not renormalised.
 SyntheticSampler of_lobe(std::string family, std::string parameters, Lobe lobe, bool clipped = false) {
     SyntheticSampler r{std::move(family), std::move(parameters), {}, {}, {}};
     const auto pdf = [lobe, clipped](
@@ -41,7 +41,8 @@ Lobe power(Vec3d axis, double s) {
     return {axis, [s](double u) { return math::pow(u, 1 / (s + 1)); },
         [s](double c) { return c > 0 ? (s + 1) / (2 * pi) * math::pow(std::min(c, 1.0), s) : 0.0; }};
 }
-/// Uniform in solid angle from cos `low` to cos `high`. The rim itself is granted a rounding: it belongs to the draws.
+/// Uniform in solid angle from cos `low` to cos `high`. The edge itself has a rounding tolerance, because draws reach
+/// it.
 Lobe band(Vec3d axis, double low, double high) {
     return {axis, [low, high](double u) { return high + (low - high) * u; },
         [low, high](double c) { return c >= low - 1e-14 && c <= high + 1e-14 ? 1 / (2 * pi * (high - low)) : 0.0; }};
@@ -91,7 +92,7 @@ SyntheticSampler phase(Rng& d) {
     return of_lobe("Henyey-Greenstein", fmt::format("g {:.3f}, axis z {:.3f}", g, axis.z), greenstein(axis, g));
 }
 
-/// A rectangle of light from a point beside it, by area: p = r^2 / (A cos), 0 beside it.
+/// A rectangular light from a point, by area: p = r^2 / (A cos), 0 outside.
 SyntheticSampler rectangle(Rng& d) {
     const Vec3d normal = d.direction(-1, 1), centre = d.direction(-0.3, 1) * d.log(0.3, 3);
     const Frame<double> f = frame_about(normal);
@@ -116,7 +117,7 @@ SyntheticSampler rectangle(Rng& d) {
     return r;
 }
 
-/// Lobes chosen by u.x, which is stretched for use again.
+/// Lobes selected by u.x, which is stretched for reuse.
 SyntheticSampler mixture_of(std::string family, std::string parameters, std::vector<std::pair<double, Lobe>> parts) {
     double sum = 0;
     for (const auto& part : parts) sum += part.first;
@@ -140,13 +141,13 @@ SyntheticSampler mixture_of(std::string family, std::string parameters, std::vec
 
 SyntheticSampler fishers(Rng& d) {
     std::vector<std::pair<double, Lobe>> parts;
-    std::string told;
+    std::string describe;
     for (int i = 0, n = d.whole(1, 4); i < n; ++i) {
         const double k = d.log(1, 1e4), share = d.uniform(0.1, 1);
         parts.emplace_back(share, fisher(d.direction(-1, 1), k));
-        told += fmt::format("{}kappa {:.4g}", i ? ", " : "", k);
+        describe += fmt::format("{}kappa {:.4g}", i ? ", " : "", k);
     }
-    return mixture_of("von Mises-Fisher", told, std::move(parts));
+    return mixture_of("von Mises-Fisher", describe, std::move(parts));
 }
 SyntheticSampler cones(Rng& d) {
     std::vector<std::pair<double, Lobe>> parts = {{0.3, band({0, 0, 1}, 0, 1)}};

@@ -68,22 +68,22 @@ template <class F> struct Beckmann2 {
 
 template <class F> Vec3<F> reflected(Vec3<F> o, Vec3<F> h) { return h * (2 * dot(o, h)) - o; }
 
-template <class F> SyntheticSampler visible(std::string family, F ax, F ay, bool says_weight) {
+template <class F> SyntheticSampler visible(std::string family, F ax, F ay, bool returns_weight) {
     const Ggx2<F> g{ax, ay};
     SyntheticSampler r{std::move(family), fmt::format("alpha {:.4g} / {:.4g}", ax, ay), {}, {}, {}};
     r.pdf = [g](Vec3d wo, Vec3d wi) { return static_cast<double>(g.visible_pdf(as<F>(wo), as<F>(wi))); };
     r.f = [g](Vec3d wo, Vec3d wi) { return static_cast<double>(g.f(as<F>(wo), as<F>(wi))); };
-    r.sample = [g, says_weight](Vec3d wo, Vec2d u) {
+    r.sample = [g, returns_weight](Vec3d wo, Vec2d u) {
         const Vec3<F> o = as<F>(wo), h = g.visible_normal(o, static_cast<F>(u.x), static_cast<F>(u.y)),
                       i = reflected(o, h);
         Draw d{widen(i), static_cast<double>(g.visible_pdf(o, i)), {}, {}};
-        if (says_weight && d.pdf > 0 && i.z > 0) d.weight = static_cast<double>(g.G2(o, i) / g.G1(o));
+        if (returns_weight && d.pdf > 0 && i.z > 0) d.weight = static_cast<double>(g.G2(o, i) / g.G1(o));
         return d;
     };
     return r;
 }
 
-/// Normals by D(h) h.z; a normal that turns away from wo draws nothing.
+/// Normals by D(h) h.z; a normal on the far side from wo returns no sample.
 template <class M> SyntheticSampler by_normals(std::string family, M m, std::function<double(Vec3d, Vec3d)> f) {
     SyntheticSampler r{std::move(family), fmt::format("alpha {:.4g} / {:.4g}", m.ax, m.ay), {}, {}, std::move(f)};
     const auto pdf = [m](Vec3d wo, Vec3d wi) {

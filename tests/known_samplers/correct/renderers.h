@@ -1,5 +1,5 @@
-// Samplers as renderers have them, in double and from their sources: rough glass, a smooth coat, layers in colour,
-// skies.
+// Samplers in the forms used by renderers, in double and from their sources: rough glass, a smooth coat, layers in
+// colour, skies.
 #pragma once
 
 #include "tests/known_samplers/correct/right.h"
@@ -7,12 +7,12 @@
 namespace crescent {
 
 /// Rough dielectric boundary, GGX with separable G: Walter et al. 2007, "Microfacet Models for Refraction through Rough
-/// Surfaces"; visible normals after Heitz 2018. Three random numbers: the third chooses reflection by Fresnel, or by
+/// Surfaces"; visible normals after Heitz 2018. Three random numbers: the third selects reflection by Fresnel, or by
 /// `reflect`.
 struct RoughGlass {
     double alpha = 0.3, eta = 1.5;  // eta: index below over above
     bool visible = true, importance = false;
-    std::function<double(double fresnel)> reflect{};  // the probability that the draw uses; Fresnel where there is none
+    std::function<double(double fresnel)> reflect{};  // the probability that the draw uses; Fresnel if empty
 
     double eta_from(Vec3d o) const { return o.z > 0 ? eta : 1 / eta; }
     bool across(Vec3d o, Vec3d i) const { return o.z * i.z < 0; }
@@ -33,7 +33,7 @@ private:
 };
 SyntheticSampler recipe_of(const RoughGlass& glass);
 
-/// A coat that mirrors `mirrored` of the light, a delta part chosen by the third number with probability q, over
+/// A coat that mirrors `mirrored` of the light, a delta part selected by the third number with probability q, over
 /// Lambert in three channels.
 struct SmoothCoat {
     double mirrored = 0.2, q = 0.3;
@@ -45,10 +45,10 @@ struct SmoothCoat {
 };
 SyntheticSampler recipe_of(const SmoothCoat& coat);
 
-/// A smooth boundary between two media: delta parts alone, reflection and refraction by Fresnel.
+/// A smooth boundary between two media: only delta parts, reflection and refraction by Fresnel.
 SyntheticSampler smooth_glass(double eta);
 
-/// A GGX lobe with Schlick's Fresnel in three channels over Lambert, the lobe chosen by the third number.
+/// A GGX lobe with Schlick's Fresnel in three channels over Lambert, the lobe selected by the third number.
 struct Layers {
     double alpha = 0.3, choice = 0.5;
     Vec3d base{0.5, 0.3, 0.1}, normal_reflectance{0.04, 0.05, 0.06};
@@ -81,7 +81,7 @@ struct Sky {
     Draw at(const Spot& s) const;
 };
 SyntheticSampler recipe_of(std::shared_ptr<const Sky> sky);
-/// Texels of noise, and a sun of a few that holds `sun` of the light.
+/// Texels of noise, and a sun of a few texels that has `sun` of the light.
 std::shared_ptr<const Sky> sky_with_sun(Rng& d, int rows, int columns, double sun, bool by_alias);
 
 /// A sky whose p is bilinear between cells x cells points, in single precision, with a sun `sun` times as bright.

@@ -49,7 +49,7 @@ Vec3d Rng::direction(double least_cos, double most_cos) {
     return about({0, 0, 1}, cos, uniform(0, 1));
 }
 
-std::shared_ptr<const SamplerAdapter> subject_of(SyntheticSampler recipe) {
+std::shared_ptr<const SamplerAdapter> make_adapter(SyntheticSampler recipe) {
     return std::make_shared<FromRecipe>(std::move(recipe));
 }
 
@@ -64,14 +64,14 @@ SyntheticSampler right_sampler(std::uint64_t index, std::uint32_t seed) {
     return all[index % all.size()](dice);
 }
 
-CheckCase right_trial(std::uint64_t index, std::uint32_t seed) {
+CheckCase correct_case(std::uint64_t index, std::uint32_t seed) {
     Rng dice = dice_of(index, seed + 0x51u);
     const double theta = dice.whole(0, 7) == 0 ? 0 : dice.whole(0, 3) ? dice.uniform(0.5, 80) : dice.uniform(80, 89);
-    const std::shared_ptr<const SamplerAdapter> subject = subject_of(right_sampler(index, seed));
-    const Traits::Asked asked = subject->traits().wo;
-    if (asked == Traits::Asked::none) return make_user_case(subject, 0, 0);
-    const bool below = asked == Traits::Asked::both && index / 2 % 2 == 1;
-    return make_user_case(subject, below ? 180 - theta : theta, theta == 0 ? 0 : dice.uniform(0, 360));
+    const std::shared_ptr<const SamplerAdapter> adapter = make_adapter(right_sampler(index, seed));
+    const Traits::WoDomain asked = adapter->traits().wo;
+    if (asked == Traits::WoDomain::none) return make_user_case(adapter, 0, 0);
+    const bool below = asked == Traits::WoDomain::both && index / 2 % 2 == 1;
+    return make_user_case(adapter, below ? 180 - theta : theta, theta == 0 ? 0 : dice.uniform(0, 360));
 }
 
 }  // namespace crescent

@@ -1,5 +1,5 @@
-// Right samplers at random parameters: a bench that calls one of them wrong is itself wrong. Each is written in double
-// from its source, with sample and pdf apart, as users write theirs; `crescent check --right N` judges N of them.
+// Correct samplers at random parameters, for measuring false positives of the check. Each is written in double from its
+// source, with separate sample and pdf, as users write theirs; `crescent check --right N` checks N of them.
 #pragma once
 
 #include <functional>
@@ -12,13 +12,13 @@
 
 namespace crescent {
 
-/// sample, pdf and f of one sampler; f is left out where the density has no BRDF that it is made for.
+/// sample, pdf and f of one sampler; f is empty if no BRDF belongs to the density.
 struct SyntheticSampler {
     std::string family, parameters;
     std::function<Draw(Vec3d wo, const PrimarySample& u)> sample;
     std::function<double(Vec3d wo, Vec3d wi)> pdf, f;
     Traits traits{};
-    std::function<Vec3d(Vec3d wo, Vec3d wi)> f_channels{};  // in place of f, where there are three channels
+    std::function<Vec3d(Vec3d wo, Vec3d wi)> f_channels{};  // in place of f, for three channels
 };
 
 /// Parameters drawn at random: a pure function of the seed, the same on every machine.
@@ -39,7 +39,7 @@ private:
     std::mt19937_64 bits_;
 };
 
-/// The direction at `cos` from an axis, `turns` about it.
+/// Returns the direction at `cos` from an axis, rotated by `turns` about it.
 Vec3d about(Vec3d axis, double cos, double turns);
 
 using SamplerFamily = SyntheticSampler (*)(Rng&);
@@ -50,12 +50,12 @@ std::vector<SamplerFamily> table_families();       // cells, texels and bilinear
 /// Anisotropic GGX with visible normals at given roughness.
 SyntheticSampler ggx_visible_at(double alpha_x, double alpha_y);
 
-/// A recipe as a subject.
-std::shared_ptr<const SamplerAdapter> subject_of(SyntheticSampler recipe);
+/// Returns a synthetic sampler as an adapter.
+std::shared_ptr<const SamplerAdapter> make_adapter(SyntheticSampler recipe);
 
-/// Sampler `index` of the law: its families take turns, its parameters follow from seed and index.
+/// Returns sampler `index` of the study: the families alternate, and parameters follow from seed and index.
 SyntheticSampler right_sampler(std::uint64_t index, std::uint32_t seed);
-/// The same at the w_o that goes with it: from the normal to 89 deg.
-CheckCase right_trial(std::uint64_t index, std::uint32_t seed);
+/// The same at its w_o: from the normal to 89 deg.
+CheckCase correct_case(std::uint64_t index, std::uint32_t seed);
 
 }  // namespace crescent

@@ -1,6 +1,6 @@
 // Skies: an environment light's texels, drawn by the sums of rows and columns (Pharr & Humphreys 2004) or by an alias
-// table (Vose 1991, "A Linear Algorithm for Generating Random Numbers with a Given Distribution"), a texel evenly
-// in theta and phi. They have no w_o.
+// table (Vose 1991, "A Linear Algorithm for Generating Random Numbers with a Given Distribution"), a texel uniform in
+// theta and phi. They have no w_o.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -80,7 +80,7 @@ Sky::Spot Sky::spot(Vec2d u) const {
 
 Draw Sky::at(const Spot& s) const {
     const double theta = pi * (s.i + s.x) / rows, phi = 2 * pi * (s.j + s.y) / columns, sin = math::sin(theta);
-    if (!(sin > 0)) return {{0, 0, 1}, 0};  // a pole, where p has no bound
+    if (!(sin > 0)) return {{0, 0, 1}, 0};  // a pole, where p is unbounded
     return {math::spherical(sin, math::cos(theta), phi),
         mass[static_cast<std::size_t>(s.i * columns + s.j)] * rows * columns / (2 * pi * pi * sin)};
 }
@@ -98,7 +98,7 @@ double Sky::pdf(Vec3d w) const {
 SyntheticSampler recipe_of(std::shared_ptr<const Sky> sky) {
     SyntheticSampler r{sky->by_alias ? "sky by alias table" : "sky by CDF",
         fmt::format("{} x {}", sky->columns, sky->rows), {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.sample = [sky](Vec3d, const PrimarySample& u) { return sky->sample(u); };
     r.pdf = [sky](Vec3d, Vec3d wi) { return sky->pdf(wi); };
     return r;

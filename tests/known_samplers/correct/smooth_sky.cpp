@@ -1,8 +1,8 @@
 // A sky as renderers interpolate it: p bilinear between points of a map in theta and phi, drawn by hierarchical warping
 // (Clarberg, Jarosz, Akenine-Moller & Jensen 2005, "Wavelet Importance Sampling") down to a cell and then by the
-// inverse of its two linear densities, all in single precision. Where a cell's sides are nearly alike that inverse is a
-// difference of nearly equal numbers, and most of its digits are lost; across a cell's edge the warp bends. It is
-// right.
+// inverse of its two linear densities, all in single precision. If a cell's sides are nearly equal, that inverse is a
+// difference of nearly equal numbers and loses most of its digits; across a cell's edge the warp has a kink. The
+// sampler is correct.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace crescent {
 namespace {
 
 struct SmoothSky {
-    int cells;                               // each way, a power of two; points are one more
+    int cells;                               // per direction, a power of two; points are one more
     std::vector<float> points;               // by row; p in the unit square
     std::vector<std::vector<float>> levels;  // masses of cells, of four cells, of sixteen, ...
 
@@ -41,18 +41,18 @@ struct SmoothSky {
         }
     }
     float at(int i, int j) const { return points[static_cast<std::size_t>(i * (cells + 1) + j)]; }
-    /// The mass of a cell one level finer than k.
+    /// Returns the mass of a cell one level finer than k.
     float below(int k, int i, int j) const {
         return levels[static_cast<std::size_t>(k) - 1][static_cast<std::size_t>(i * (cells >> (k - 1)) + j)];
     }
 
-    /// True: the second of two; u is stretched to be used again.
+    /// Returns true for the second of two; u is stretched for reuse.
     static bool second(float& u, float first, float other) {
         u *= first + other;
         if (u < first) return u /= first, false;
         return u = std::min((u - first) / other, 0x1.fffffep-1f), true;
     }
-    /// Of a density that goes linearly from a to b.
+    /// Inverts a density that is linear from a to b.
     static float linear(float a, float b, float u) {
         if (!(std::fabs(a - b) > 1e-4f * (a + b))) return u;
         return (a - std::sqrt(a * a + u * (b * b - a * a))) / (a - b);
@@ -107,7 +107,7 @@ SyntheticSampler smooth_sky(int cells, double sun) {
     const auto sky = std::make_shared<const SmoothSky>(cells, std::move(values));
     SyntheticSampler r{
         "smooth sky in single precision", fmt::format("{} x {}, sun {:g}", cells, cells, sun), {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.sample = [sky](Vec3d, const PrimarySample& u) { return sky->sample(u); };
     r.pdf = [sky](Vec3d, Vec3d wi) { return sky->pdf(wi); };
     return r;

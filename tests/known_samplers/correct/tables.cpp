@@ -12,8 +12,8 @@ namespace crescent {
 
 namespace {
 
-/// A discrete density over rows x columns, drawn by its sums: row by u.x, column by u.y, the rests stretched for use
-/// again.
+/// A discrete density over rows x columns, drawn by its sums: row by u.x, column by u.y, the remainders stretched for
+/// reuse.
 struct Table {
     int rows, columns;
     std::vector<double> mass;            // by row; sums to 1
@@ -54,7 +54,7 @@ double turns_of(Vec3d w) {
 Vec3d about_up(double cos, double turns) { return math::spherical(cos, 2 * pi * turns); }
 int cell(double v, int count) { return std::clamp(static_cast<int>(v * count), 0, count - 1); }
 
-/// Weights with a factor of `contrast` between cells, and at times a sun of a few cells.
+/// Weights with a factor of `contrast` between cells, and sometimes a sun of a few cells.
 std::vector<double> weights(Rng& d, int rows, int columns, double contrast, bool sun) {
     std::vector<double> out;
     for (int i = 0; i < rows * columns; ++i) out.push_back(d.log(1, contrast));
@@ -83,7 +83,7 @@ SyntheticSampler cells(Rng& d) {
     return r;
 }
 
-/// A map in theta x phi, each texel even in solid angle.
+/// A map in theta x phi, each texel uniform in solid angle.
 SyntheticSampler even_texels(Rng& d) {
     const int rows = d.whole(4, 64), columns = 2 * rows;
     std::vector<double> w = weights(d, rows, columns, d.log(1.5, 100), d.whole(0, 1) == 0);
@@ -105,7 +105,7 @@ SyntheticSampler even_texels(Rng& d) {
     return r;
 }
 
-/// The same, even in theta and phi: p = T / (2 pi^2 sin theta), as pbrt-v3's InfiniteAreaLight; 0 at the poles
+/// The same, uniform in theta and phi: p = T / (2 pi^2 sin theta), as pbrt-v3's InfiniteAreaLight; 0 at the poles
 /// themselves.
 SyntheticSampler texels(Rng& d) {
     const int rows = d.whole(4, 24), columns = 2 * rows;
@@ -137,7 +137,7 @@ double linear(double a, double b, double u) {
     return std::clamp(t / (a + std::sqrt(std::max(a * a + (b - a) * t, 0.0))), 0.0, 1.0);
 }
 
-/// p bilinear in cos theta x phi between points, periodic in phi; a cell by its mass, then a straight line along each
+/// p bilinear in cos theta x phi between points, periodic in phi; a cell by its mass, then a linear density along each
 /// side.
 SyntheticSampler bilinear(Rng& d) {
     const int rows = d.whole(2, 16), columns = d.whole(4, 32);

@@ -1,5 +1,5 @@
-// Faults of surfaces under a smooth boundary: Fresnel, the passes through a coat, the chooser between coat and base,
-// and the shadowing of a rough lobe. Each is right with one factor in the wrong place.
+// Faults of surfaces under a smooth boundary: Fresnel, the passes through a coat, the selection between coat and base,
+// and the shadowing of a rough lobe. Each has one factor in the wrong place.
 #include <algorithm>
 #include <cmath>
 
@@ -19,9 +19,9 @@ using Faults = std::vector<PlantedFault>;
 void plant(Faults& out, const std::string& name, std::string breaks, SyntheticSampler recipe) {
     PlantedFault fault{name, std::move(breaks), {}, cause_of(name)};
     std::vector<std::pair<double, double>> at = {{20, 40}, {45, 130}, {75, 310}};
-    if (recipe.traits.wo == Traits::Asked::both) at = {{45, 130}, {75, 310}, {135, 130}};
-    const auto subject = subject_of(std::move(recipe));
-    for (const auto& [theta, azimuth] : at) fault.trials.push_back(make_user_case(subject, theta, azimuth));
+    if (recipe.traits.wo == Traits::WoDomain::both) at = {{45, 130}, {75, 310}, {135, 130}};
+    const auto adapter = make_adapter(std::move(recipe));
+    for (const auto& [theta, azimuth] : at) fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
     out.push_back(std::move(fault));
 }
 
@@ -48,7 +48,7 @@ SyntheticSampler lacquer(const Share& weight, const Share& f) {
     return r;
 }
 
-/// A mirroring coat, chosen by its Fresnel at w_o, over Lambert that is seen through it.
+/// A mirroring coat, selected by its Fresnel at w_o, over Lambert seen through it.
 SyntheticSampler coat(const Share& chooser, const Share& f) {
     constexpr double base = 0.6;
     SyntheticSampler r{"coat", "", {}, {}, {}};

@@ -1,4 +1,4 @@
-// Which planted faults have a cause that can be named, by a word of it.
+// The planted faults whose cause can be named, with a word of it.
 #include <map>
 
 #include "tests/known_samplers/faulty/planted.h"

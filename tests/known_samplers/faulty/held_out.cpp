@@ -1,5 +1,5 @@
-// Faults that no factor was looked for with: samplers of other families, with causes that were written down before a
-// diagnosis was asked for them. What share of them is named rightly is measured, and nothing is set by it.
+// Held-out faults: samplers of other families, with causes written down before the diagnosis was run on them. They
+// measure how often the cause is named correctly; nothing is tuned on them.
 #include <algorithm>
 #include <cmath>
 
@@ -69,7 +69,7 @@ template <class S> SyntheticSampler recipe(const char* family, S s) {
     return r;
 }
 
-/// Sheen over Lambert in three channels, drawn by cosine; the weight comes with the draw.
+/// Sheen over Lambert in three channels, drawn by cosine; the weight is returned with the draw.
 SyntheticSampler sheen() {
     SyntheticSampler r{"sheen", "", {}, {}, {}};
     r.traits.numbers = 2;
@@ -91,7 +91,7 @@ SyntheticSampler sheen() {
     return r;
 }
 
-/// Rough glass without a visible-normal draw, of another index than the other faults have.
+/// Rough glass without visible-normal sampling, with another index than the other faults.
 RoughGlass other_glass() {
     RoughGlass g{0.2, 1.8};
     g.visible = false;
@@ -100,7 +100,7 @@ RoughGlass other_glass() {
 
 using FaultInjection = std::function<double(Vec3d o, Vec3d i, double p)>;
 
-/// p everywhere, with a draw and asked for.
+/// Changes p both with a draw and for queries.
 SyntheticSampler with_pdf(SyntheticSampler r, FaultInjection bend) {
     r.pdf = [pdf = r.pdf, bend](Vec3d o, Vec3d i) { return bend(o, i, pdf(o, i)); };
     r.sample = [sample = r.sample, bend](Vec3d o, const PrimarySample& u) {
@@ -242,12 +242,12 @@ std::vector<PlantedFault> held_out_faults() {
     std::vector<PlantedFault> out;
     for (const Planted& p : all) {
         PlantedFault fault{p.name, p.recipe.family, {}, p.cause};
-        const bool both = p.recipe.traits.wo == Traits::Asked::both;
-        const auto subject = subject_of(p.recipe);
+        const bool both = p.recipe.traits.wo == Traits::WoDomain::both;
+        const auto adapter = make_adapter(p.recipe);
         for (const auto& [theta, azimuth] : both
                 ? std::vector<std::pair<double, double>>{{20, 40}, {65, 200}, {150, 310}}
                 : std::vector<std::pair<double, double>>{{20, 40}, {50, 110}, {70, 200}})
-            fault.trials.push_back(make_user_case(subject, theta, azimuth));
+            fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
         out.push_back(std::move(fault));
     }
     return out;

@@ -1,8 +1,8 @@
 // Faults of samplers of several lobes, of lights and of shadowing. Their causes were written down, with thirty-four
-// others over the pipe, before a diagnosis was asked for them, and not by the author of the diagnosis. Of these here
-// two had their cause named then (the cosine twice in a mixture of two, the chooser left out), and s+2 for s+1 in one
-// lobe was told as the chooser's probability; what the others lacked was mended after that, so that they measure
-// nothing that has not been looked at.
+// others over the pipe, before the diagnosis was run on them, and not by its author. Initially two of these had their
+// cause named (the cosine twice in a mixture of two, the selection probability omitted), and s+2 for s+1 in one lobe
+// was reported as the selection probability; the diagnosis was extended for the others afterwards, so they no longer
+// measure unseen faults.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ namespace crescent {
 namespace {
 
 struct Lobe {
-    std::function<Vec3d(Vec3d o, const PrimarySample& u)> draw;  // {} where nothing is drawn
+    std::function<Vec3d(Vec3d o, const PrimarySample& u)> draw;  // {} if nothing is drawn
     std::function<double(Vec3d o, Vec3d i)> pdf;
 };
 
@@ -89,11 +89,11 @@ Lobe with_pdf(Lobe l, FaultInjection by) {
 struct Mixture {
     std::vector<Lobe> lobes;
     std::vector<double> drawn, claimed;
-    bool third = true;    // the third number chooses, else the first
-    bool stretch = true;  // the first, which has chosen, is used for the part of its interval that it has gone
+    bool third = true;    // the third number selects, else the first
+    bool stretch = true;  // the first number, after selecting, is rescaled to its part of the interval
 };
 
-/// A mixture, p bent as a whole.
+/// A mixture, with p changed as a whole.
 SyntheticSampler recipe_of(const Mixture& m, const FaultInjection& by = [](Vec3d, Vec3d) { return 1.0; }) {
     SyntheticSampler r{"mixture", "", {}, {}, {}};
     r.traits.numbers = m.third ? 3 : 2;
@@ -115,7 +115,7 @@ SyntheticSampler recipe_of(const Mixture& m, const FaultInjection& by = [](Vec3d
 }
 SyntheticSampler alone(const Lobe& l) { return recipe_of(Mixture{{l}, {1}, {1}, false, false}); }
 SyntheticSampler of_light(SyntheticSampler r) {
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     return r;
 }
 
@@ -232,9 +232,9 @@ std::vector<PlantedFault> held_out_lobe_faults() {
     std::vector<PlantedFault> out;
     for (const Planted& p : all) {
         PlantedFault fault{p.name, p.recipe.family, {}, p.cause};
-        const auto subject = subject_of(p.recipe);
+        const auto adapter = make_adapter(p.recipe);
         for (const auto& [theta, azimuth] : {std::pair{20.0, 40.0}, {50.0, 110.0}, {70.0, 200.0}})
-            fault.trials.push_back(make_user_case(subject, theta, azimuth));
+            fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
         out.push_back(std::move(fault));
     }
     return out;

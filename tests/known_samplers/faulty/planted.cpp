@@ -1,5 +1,5 @@
-// A row a fault: its arm, the lobe and light it is tried on, and the FaultInjection (wrap.h) of u, draw, pdf, f or MIS
-// weight. Each is tried at the w_o of the grid that are 0, 45 and 75 degrees from n. Densities in 1/sr.
+// One row per fault: its sampler, the lobe and light of its case, and the FaultInjection (wrap.h) of u, draw, pdf, f or
+// MIS weight. Each is tested at the w_o of the grid that are 0, 45 and 75 degrees from n. Densities in 1/sr.
 #include "tests/known_samplers/faulty/planted.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace crescent {
 
 namespace {
 
-/// A fault on `arm`: what it is tried on, and how it is bent there.
+/// A fault of `arm`: its case, and the change there.
 struct Plan {
     std::string name, arm;
     LobeKind lobe;
@@ -27,7 +27,7 @@ struct Plan {
 double power_cos(Vec3d a, Vec3d b, double s) { return math::pow(std::max(dot(a, b), 0.0), s); }
 Vec3d about_normal(double cos, double turns) { return math::spherical(cos, 2 * pi * turns); }
 Vec3d about(Vec3d axis, double cos, double turns) { return frame_about(axis).to_world(about_normal(cos, turns)); }
-/// In a tenth of the sphere about a direction that is no axis of anything.
+/// Returns whether w is in a tenth of the sphere about a direction that is not an axis.
 bool in_patch(Vec3d w) { return dot(w, tilt(40, 70)) > 0.8; }
 double rounded(double v) { return static_cast<double>(static_cast<float>(v)); }
 
@@ -41,7 +41,7 @@ FaultInjection scaled_pdf(double by) {
 }
 using S = const SurfaceSetup&;
 
-/// Of the pdf of Phong's and the cosine lobe.
+/// Faults of the pdf of Phong's and the cosine lobe.
 void lobe_density_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"s+2 for s+1 in the pdf", "phong", phong, false, "fill", 32,
@@ -63,7 +63,7 @@ void lobe_density_faults(std::vector<Plan>& out) {
                    }});
     out.push_back({"horizon samples dropped from N", "phong", phong, false, "fill", 8, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
-                           for (int k = 0; k < 64 && d.wi.z <= 0; ++k) {  // again until it is above
+                           for (int k = 0; k < 64 && d.wi.z <= 0; ++k) {  // repeated until it is above
                                u = {std::fmod(u.x * 97.13 + 0.31, 1.0), std::fmod(u.y * 89.7 + 0.73, 1.0)};
                                d.wi = about(mirror(wo), math::pow(u.x, 1 / (s + 1)), u.y);
                            }
@@ -76,7 +76,7 @@ void lobe_density_faults(std::vector<Plan>& out) {
         [](S) { return with_pdf([](const Pair& a, double) { return a.wi.z > 0 ? 1 / pi : 0.0; }); }});
 }
 
-/// Of densities made from those of half vectors.
+/// Faults of densities made from those of half vectors.
 void halfway_density_faults(std::vector<Plan>& out) {
     out.push_back({"missing 4(w.h)", "blinn", lobe_named("blinn-phong"), false, "fill", 32, [](S) {
                        return with_pdf([](const Pair& a, double p) {
@@ -105,7 +105,7 @@ void halfway_density_faults(std::vector<Plan>& out) {
          }});
 }
 
-/// Of densities over an area, about another axis, or off by little.
+/// Faults of densities over an area, about another axis, or with a small error.
 void other_density_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"area measure for solid angle", "light-area", LobeKind::none, true, "disk", 32,
@@ -131,15 +131,15 @@ void other_density_faults(std::vector<Plan>& out) {
 
 CaseLighting two_disks() { return case_setup(LobeKind::none, true, "two disks", 32).light; }
 
-/// The density of A where it aims at disk k alone, chosen with certainty.
+/// The density of A if it aims only at disk k.
 template <template <class> class A> double towards(LocalDisk<double> disk, const Pair& at) {
     disk.power = 1;
-    ShadingPoint<double> site{};
-    site.disks = &disk, site.disk_count = 1;
-    return A<double>(site).pdf(at.wo, at.wi).v;
+    ShadingPoint<double> shading_point{};
+    shading_point.disks = &disk, shading_point.disk_count = 1;
+    return A<double>(shading_point).pdf(at.wo, at.wi).v;
 }
 
-/// Faults of arms that choose between lights. The list's first of two disks stands behind the second in part.
+/// Faults of samplers that select between lights. The list's first of two disks is partly behind the second.
 void several_light_faults(std::vector<Plan>& out) {
     const auto lambert = [&](const std::string& name, const std::string& arm,
                              std::function<double(const std::vector<LocalDisk<double>>&, const Pair&, double)> pdf) {
@@ -164,7 +164,7 @@ void several_light_faults(std::vector<Plan>& out) {
     });
 }
 
-/// Of what u is turned into.
+/// Faults of the map from u.
 void uniform_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"phi over half a turn", "phong", phong, false, "fill", 32,
@@ -191,7 +191,7 @@ void uniform_faults(std::vector<Plan>& out) {
                    }});
 }
 
-/// Of the directions that come out.
+/// Faults of the returned directions.
 void direction_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"never reaches grazing", "cosine", LobeKind::none, true, "fill", 32, [](S) {
@@ -203,14 +203,14 @@ void direction_faults(std::vector<Plan>& out) {
     out.push_back({"float cancellation at the pole", "phong", phong, false, "fill", 1e5, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
                            const double cos =
-                               rounded(math::pow(u.x, 1 / (s + 1)));  // sin from a cosine that float has rounded
+                               rounded(math::pow(u.x, 1 / (s + 1)));  // sin from a cosine rounded to float
                            d.wi = about(mirror(wo), cos, u.y);
                        });
                    }});
     out.push_back(
         {"pole artefact in the basis at n = -z", "light-area", LobeKind::none, true, "overhead disk", 32, [](S) {
              return with_draw([](Vec3d, Vec2d u, Draw& d) {
-                 // A basis built for n.z > -1: at -z both tangents fall together and the disk becomes a line.
+                 // A basis built for n.z > -1: at -z both tangents coincide and the disk becomes a line.
                  const double r = 0.6 * std::sqrt(u.x);
                  const Vec3d y = Vec3d{0.1, -0.05, 2} + Vec3d{1, 0, 0} * (r * math::cos(2 * pi * u.y)) +
                      Vec3d{1, 0, 0} * (r * math::sin(2 * pi * u.y));
@@ -279,13 +279,13 @@ std::vector<PlantedFault> arm_faults(bool full) {
         PlantedFault fault{p.name, p.arm, {}};
         const CaseSetup on = case_setup(p.lobe, p.lambert, p.light, p.sharpness);
         for (const auto& [theta, azimuth] : wo_grid(full)) {
-            if (theta != 0 && theta != 45 && theta != 75) continue;  // what shows at three of them shows at sixteen
+            if (theta != 0 && theta != 45 && theta != 75) continue;  // three of the sixteen are enough
             std::shared_ptr<const SamplerAdapter> right;
             for_each_sampler(Samplers{}, [&]<template <class> class A>() {
                 if (A<float>::name == p.arm)
                     right = std::make_shared<BuiltIn<A>>(on.surface, tilt(theta, azimuth), on.light);
             });
-            fault.trials.push_back(
+            fault.check_cases.push_back(
                 make_case_on(on, theta, azimuth, p.arm, std::make_shared<FaultySampler>(right, p.bend(on.surface))));
         }
         out.push_back(std::move(fault));

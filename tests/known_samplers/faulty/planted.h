@@ -1,5 +1,5 @@
-// Planted faults: each wraps a right arm in a few lines that break it in one way that samplers are broken in. The bench
-// must catch every one of them; `crescent check --planted` prints which verdict does.
+// Planted faults: each wraps a correct sampler in a few lines with one typical fault. The check must detect every one
+// of them; `crescent check --planted` prints which verdict does.
 #pragma once
 
 #include <memory>
@@ -12,22 +12,23 @@ namespace crescent {
 
 struct PlantedFault {
     std::string name;    // a few words
-    std::string breaks;  // the arm it breaks
-    std::vector<CheckCase> trials;
-    std::string cause{};  // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
-    std::string verdict{};  // the one that asks for it; "" where several do
+    std::string breaks;  // the sampler it changes
+    std::vector<CheckCase> check_cases;
+    std::string cause{};    // a word of the factor that explains it; "" if the diagnosis knows none
+    std::string verdict{};  // the verdict expected to fail first; "" if there are several
 };
 
 std::vector<PlantedFault> planted_faults(bool full);
-/// Those of the list's arms, which are the first of them; their causes are not filled in.
+/// Returns the faults of built-in samplers, which come first; their causes are not filled in.
 std::vector<PlantedFault> arm_faults(bool full);
-/// Those of samplers as renderers have them, which are among the planted faults.
+/// Returns the faults of samplers in the forms used by renderers, which are among the planted faults.
 std::vector<PlantedFault> renderer_faults();
-/// Those of surfaces under a smooth boundary, which are among the planted faults too.
+/// Returns the faults of surfaces under a smooth boundary, which are among the planted faults too.
 std::vector<PlantedFault> boundary_faults();
-/// Faults of other families, kept apart: by them it is measured how often a cause is named rightly.
+/// Returns held-out faults of other families, which measure how often a cause is named correctly.
 std::vector<PlantedFault> held_out_faults();
-/// Those of several lobes, of lights and of shadowing, apart: what they lacked a name for was mended.
+/// Returns held-out faults of several lobes, of lights and of shadowing; the diagnosis was extended for them
+/// afterwards.
 std::vector<PlantedFault> held_out_lobe_faults();
 std::string cause_of(const std::string& fault);
 std::string verdict_of(const std::string& fault);

@@ -1,5 +1,5 @@
-// Faults of samplers as renderers have them: glass, coats, colour, skies, states. Each is a right one of
-// tests/known_samplers/correct with one thing bent.
+// Faults of samplers in the forms used by renderers: glass, coats, colour, skies, states. Each is a correct sampler of
+// tests/known_samplers/correct with one change.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,20 +16,20 @@ namespace {
 
 using Faults = std::vector<PlantedFault>;
 
-/// At three w_o above, at two below where the sampler takes both sides, at none for a sky.
+/// At three w_o above, at two below if the sampler supports both sides, at none for a sky.
 void plant(Faults& out, const std::string& name, std::string breaks, SyntheticSampler recipe, bool state = false) {
     PlantedFault fault{name, std::move(breaks), {}, cause_of(name)};
-    const Traits::Asked asked = recipe.traits.wo;
-    const std::shared_ptr<const SamplerAdapter> subject = subject_of(std::move(recipe));
+    const Traits::WoDomain asked = recipe.traits.wo;
+    const std::shared_ptr<const SamplerAdapter> adapter = make_adapter(std::move(recipe));
     std::vector<std::pair<double, double>> at = {{0, 0}, {45, 130}, {75, 310}};
-    if (asked == Traits::Asked::both) at = {{45, 130}, {75, 310}, {135, 130}, {110, 310}};
-    if (asked == Traits::Asked::none) at = {{0, 0}};
+    if (asked == Traits::WoDomain::both) at = {{45, 130}, {75, 310}, {135, 130}, {110, 310}};
+    if (asked == Traits::WoDomain::none) at = {{0, 0}};
     if (state) at.resize(1);
-    for (const auto& [theta, azimuth] : at) fault.trials.push_back(make_user_case(subject, theta, azimuth));
+    for (const auto& [theta, azimuth] : at) fault.check_cases.push_back(make_user_case(adapter, theta, azimuth));
     out.push_back(std::move(fault));
 }
 
-/// p and with it what each draw says of p, bent alike.
+/// Changes p, and the p returned with each draw, in the same way.
 void bend_pdf(SyntheticSampler& r, std::function<double(Vec3d, Vec3d, double)> bend) {
     r.pdf = [pdf = r.pdf, bend](Vec3d wo, Vec3d wi) { return bend(wo, wi, pdf(wo, wi)); };
     r.sample = [sample = r.sample, bend](Vec3d wo, const PrimarySample& u) {
@@ -89,17 +89,17 @@ void glass_faults(Faults& out) {
 /// D for D n.m, on both sides of the surface.
 void half_vector_faults(Faults& out) {
     const RoughGlass g{0.3, 1.5};
-    for (const bool told : {true, false}) {
+    for (const bool describe : {true, false}) {
         SyntheticSampler r = recipe_of(g);
         bend_pdf(r, [g](Vec3d o, Vec3d i, double p) { return p > 0 ? p / g.half(o, i).z : 0; });
-        if (!told) r.traits.eta = {};
+        if (!describe) r.traits.eta = {};
         plant(out,
-            told ? "n.m left out of the pdf of glass" : "n.m left out of the pdf of glass whose index is not told",
+            describe ? "n.m left out of the pdf of glass" : "n.m left out of the pdf of glass whose index is not told",
             "glass", r);
     }
 }
 
-/// Of what chooses reflection or refraction, and of w_o below.
+/// Faults of the selection of reflection or refraction, and of w_o below.
 void choosing_faults(Faults& out) {
     const RoughGlass g{0.3, 1.5};
     const char* name = "glass";

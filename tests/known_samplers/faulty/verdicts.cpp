@@ -1,4 +1,4 @@
-// The verdict that asks for each planted fault: what a reader of the report should see wrong first. Faults that are
+// The verdict expected for each planted fault: the first failure that a reader of the report sees. Faults that are
 // found in several ways have none.
 #include <algorithm>
 #include <map>

@@ -1,5 +1,4 @@
-// A right arm with one thing bent: how u goes in, what comes out, what pdf(w) says, what f says, how the pair is
-// weighed.
+// A correct sampler with one change: of u, of a draw, of pdf(w), of f, or of the weight of a pair.
 #pragma once
 
 #include <functional>
@@ -10,10 +9,10 @@ namespace crescent {
 
 struct FaultInjection {
     std::function<Vec2d(Vec2d)> u{};                       // before the draw
-    std::function<Vec3d(Vec3d wo)> wo{};                   // what the draw believes w_o to be
+    std::function<Vec3d(Vec3d wo)> wo{};                   // the w_o used by the draw
     std::function<void(Vec3d wo, Vec2d u, Draw&)> draw{};  // after it
-    std::function<double(const Pair&, double p)> pdf{};    // both with the draw and asked for
-    std::function<double(const Pair&, double p)> asked{};  // asked for alone
+    std::function<double(const Pair&, double p)> pdf{};    // both with the draw and for queries
+    std::function<double(const Pair&, double p)> asked{};  // for queries only
     std::function<double(const Pair&, double f)> f{};
     std::function<double(int technique, const Pair&, double w)> mis{};
 };
@@ -52,7 +51,7 @@ public:
         for (std::size_t i = 0; bend_.f && i < out.size(); ++i) out[i] = bend_.f(at[i], out[i]);
     }
     bool has_true_f() const override { return true; }
-    void true_f(std::span<const Pair> at, std::span<double> out) const override { right_->f(at, out); }
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override { right_->f(at, out); }
 
 private:
     void bend_pdf(std::span<const Pair> at, std::span<double> out) const {

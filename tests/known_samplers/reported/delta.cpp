@@ -1,5 +1,5 @@
-// Delta parts go where a smooth boundary or a thin wall sends them, carry no
-// more than arrives, and lead back.
+// Delta parts have the directions of a smooth boundary or a thin wall, carry at most the incoming energy, and are
+// reciprocal.
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +24,7 @@ SyntheticSampler changed(SyntheticSampler r, const Change& change) {
 }
 bool reflected(Vec3d o, const Draw& d) { return d.wi.z * o.z > 0; }
 
-/// Smooth glass of 1.5 that is changed in what it transmits.
+/// Smooth glass of 1.5 with a change in its transmission.
 SyntheticSampler glass_through(const Change& change) {
     return changed(smooth_glass(1.5), [change](Vec3d o, Draw& d) {
         if (!reflected(o, d)) change(o, d);
@@ -39,8 +39,7 @@ SyntheticSampler without_index(SyntheticSampler r) {
     return r;
 }
 
-/// Smooth glass that reflects nothing, refracted by the index `drawn` where 1.5
-/// is stated.
+/// Smooth glass that reflects nothing, refracted by the index `drawn` while 1.5 is stated.
 SyntheticSampler refracted_by(double drawn) {
     SyntheticSampler r = smooth_glass(1.5);
     r.sample = [=](Vec3d o, const PrimarySample&) {
@@ -54,15 +53,14 @@ SyntheticSampler refracted_by(double drawn) {
     return r;
 }
 
-/// Smooth glass of three indices, one a channel: a third of what is not
-/// reflected is of each, and weighs in its channel alone, by `scale`. Along the
-/// normal the three go one way.
+/// Smooth glass of three indices, one per channel: a third of the transmitted draws belongs to each, with weight only
+/// in its channel, times `scale`. Along the normal the three directions coincide.
 SyntheticSampler dispersive_glass(double scale) {
     constexpr double eta[] = {1.45, 1.5, 1.6}, mirrored = 0.1;
     SyntheticSampler r{"dispersive glass", "", {}, {}, {}};
     r.traits.numbers = 4;
     r.traits.channels = 3;
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = Traits::WoDomain::both;
     r.traits.delta = true;
     r.traits.eta = Vec3d{eta[0], eta[1], eta[2]};
     r.pdf = [](Vec3d, Vec3d) { return 0.0; };
@@ -86,12 +84,11 @@ SyntheticSampler dispersive_glass(double scale) {
     return r;
 }
 
-/// Half goes straight through with `open` of its light, half is reflected by
-/// Lambert of 0.5.
+/// Half goes straight through with `open` of its light, half is reflected by Lambert of 0.5.
 SyntheticSampler mask(double open) {
     SyntheticSampler r{"mask", "", {}, {}, {}};
     r.traits.numbers = 3;
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = Traits::WoDomain::both;
     r.traits.delta = true;
     r.pdf = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 * std::fabs(i.z) / pi : 0; };
     r.f = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 / pi : 0; };
@@ -108,7 +105,7 @@ SyntheticSampler mask(double open) {
     return r;
 }
 
-/// A mirror; where it is not `whole` it turns y round for half of all w_o.
+/// A mirror; if not `whole`, it flips y for half of all w_o.
 SyntheticSampler mirror(bool whole) {
     SyntheticSampler r{"mirror", "", {}, {}, {}};
     r.traits.delta = true;
@@ -121,8 +118,7 @@ SyntheticSampler mirror(bool whole) {
     return r;
 }
 
-/// Smooth glass that tints what it transmits; `alike` from above and from
-/// below.
+/// Smooth glass that tints the transmitted light; `alike` from above and from below.
 SyntheticSampler tinted(bool alike) {
     SyntheticSampler r = changed(smooth_glass(1.5), [alike](Vec3d o, Draw& d) {
         const double w = *d.weight;
@@ -135,7 +131,7 @@ SyntheticSampler tinted(bool alike) {
     return r;
 }
 
-/// A tenth of glass is holes, which let `through` of their light pass.
+/// A tenth of the glass is holes that transmit `through` of their light.
 SyntheticSampler holes(double through) {
     SyntheticSampler r = smooth_glass(1.5);
     const int chooser = r.traits.numbers++;

@@ -1,4 +1,4 @@
-// Lobes that are mixed, seldom drawn, or cut; cones, tables and windows, of which the density jumps.
+// Lobes that are mixed, rarely drawn, or cut; cones, tables and windows with discontinuous densities.
 #include <algorithm>
 #include <cmath>
 
@@ -22,8 +22,8 @@ double power_density(Vec3d axis, Vec3d i, double s) {
     return (s + 1) / (2 * pi) * math::exp(s * math::log(std::max(dot(i, axis), 1e-300)));
 }
 
-/// The cosine, drawn with `drawn`, beside cos^5 about n turned to x, drawn else; pdf(w) has `claimed` of the cosine.
-/// The third number chooses, or the first, which is then stretched.
+/// The cosine, drawn with probability `drawn`, and cos^5 about n rotated to x, drawn otherwise; pdf(w) has `claimed` of
+/// the cosine. The third number selects, or the first, which is then stretched.
 SyntheticSampler mixture(double drawn, double claimed, bool of_two_numbers) {
     SyntheticSampler r = recipe("mixture", of_two_numbers ? 2 : 3);
     const Vec3d axis = tilt(20, 0);
@@ -40,8 +40,8 @@ SyntheticSampler mixture(double drawn, double claimed, bool of_two_numbers) {
     return r;
 }
 
-/// Lambert and a lobe cos^50 about the mirror direction, which the first number chooses with probability `choice`; p
-/// has a half of it.
+/// Lambert and a lobe cos^50 about the mirror direction, which the first number selects with probability `choice`; p
+/// assumes one half.
 SyntheticSampler two_lobes(double choice) {
     SyntheticSampler r = recipe("two lobes");
     const auto mirrored = [](Vec3d wo) { return Vec3d{-wo.x, -wo.y, wo.z}; };
@@ -58,7 +58,7 @@ SyntheticSampler two_lobes(double choice) {
     return r;
 }
 
-/// A share of cosine, drawn as seldom; f of albedo 0.5.
+/// A share of cosine, drawn with that probability; f of albedo 0.5.
 SyntheticSampler seldom(double share) {
     SyntheticSampler r = recipe("seldom", 3);
     r.pdf = [share](Vec3d, Vec3d i) { return share * std::max(i.z, 0.0) / pi; };
@@ -77,7 +77,7 @@ SyntheticSampler black(SyntheticSampler r) {
     r.pdf = [](Vec3d, Vec3d) { return 0.0; };
     return r;
 }
-/// One draw in 1500 goes where a clamp sends it.
+/// One draw in 1500 goes to a clamped direction.
 SyntheticSampler atom() {
     SyntheticSampler r = seldom(1);
     r.sample = [](Vec3d, const PrimarySample& u) {
@@ -87,8 +87,8 @@ SyntheticSampler atom() {
     return r;
 }
 
-/// One number chooses among `count` cones, whose axes are drawn over the upper half; p is the sum over those that hold
-/// w, times `claimed`.
+/// One number selects among `count` cones, whose axes are random over the upper half; p is the sum over those that
+/// contain w, times `claimed`.
 SyntheticSampler cones(int count, double half_angle, double claimed = 1) {
     std::vector<Vec3d> axes;
     Rng dice(static_cast<std::uint64_t>(count));
@@ -107,7 +107,7 @@ SyntheticSampler cones(int count, double half_angle, double claimed = 1) {
     return r;
 }
 
-/// A band of cos theta that is even in it.
+/// A band of cos theta with constant density.
 SyntheticSampler band(double low, double high) {
     SyntheticSampler r = recipe("band");
     r.pdf = [=](Vec3d, Vec3d wi) { return wi.z >= low && wi.z <= high ? 1 / (2 * pi * (high - low)) : 0; };
@@ -138,8 +138,8 @@ SyntheticSampler cells() {
     return r;
 }
 
-/// A window of 24 x 24 cells at distance 1, cell (i, k) chosen with (1 + (7 i + 5 k) mod 11), a point of it by area;
-/// `beside`: what p has on a patch of the plane outside of it, where nothing is drawn.
+/// A window of 24 x 24 cells at distance 1, cell (i, k) selected with (1 + (7 i + 5 k) mod 11), a point of it by area;
+/// `beside`: p on a patch of the plane outside of it, where nothing is drawn.
 SyntheticSampler window(double beside = 0) {
     constexpr int side = 24;
     constexpr double width = 2.6, height = 2.2;
@@ -149,7 +149,7 @@ SyntheticSampler window(double beside = 0) {
     cdf.back() = 1;
     const Vec3d to = tilt(20, 40), t = normalize(cross(to, {1, 0, 0})), b = cross(to, t);
     SyntheticSampler r = recipe("window");
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.pdf = [=](Vec3d, Vec3d w) {
         const double z = dot(w, to);
         if (!(z > 0)) return 0.0;
@@ -185,7 +185,7 @@ SyntheticSampler pole() {
     return r;
 }
 
-/// A sky of 512 x 256 texels by an alias table; `off`: each texel's alias is that of its neighbour.
+/// A sky of 512 x 256 texels by an alias table; `off`: each texel uses the alias of its neighbour.
 SyntheticSampler alias_sky(bool off) {
     Rng dice(3);
     Sky sky = *sky_with_sun(dice, 256, 512, 0.02, true);
@@ -216,7 +216,7 @@ std::vector<KnownSampler> lobe_samplers() {
     list.right("64 cones", cones(64, 0.01));
     list.right("100 cones that overlap", cones(100, 0.05));
     list.wrong("64 cones that integrate to 1.005", "", cones(64, 0.01, 1.005));
-    list.missed("64 cones that integrate to 1.001", cones(64, 0.01, 1.001));  // of 1.0024 it would be found
+    list.missed("64 cones that integrate to 1.001", cones(64, 0.01, 1.001));  // an integral of 1.0024 would be found
     list.right("cone", band(0.8, 1));
     list.right("thin band", band(math::cos(0.735), math::cos(0.70)));
     list.right("cells", cells(), {0});

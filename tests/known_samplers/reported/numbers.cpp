@@ -1,4 +1,4 @@
-// Values that cannot be used, states that draws depend on, and random numbers of the sampler's own.
+// Unusable values, states that draws depend on, and random numbers of the sampler's own.
 #include <cmath>
 
 #include "check/sources/cases.h"
@@ -31,7 +31,7 @@ SyntheticSampler changed(std::function<void(const PrimarySample&, Draw&)> change
     return r;
 }
 
-/// Answers with its previous draw.
+/// Returns its previous draw.
 class Delayed : public SamplerAdapter {
 public:
     std::string name() const override { return "delayed"; }
@@ -50,7 +50,7 @@ private:
     mutable Draw last_ = cosine_draw(0.5, 0.5);
 };
 
-/// The last bits of a block come from other instructions, as NumPy has it.
+/// The last bits of a block depend on vector instructions, as in NumPy.
 class Packed : public SamplerAdapter {
 public:
     std::string name() const override { return "packed"; }
@@ -66,7 +66,7 @@ public:
     bool serial() const override { return true; }
 };
 
-/// A coat that draws numbers of its own, and says so or does not.
+/// A coat that draws random numbers of its own; `says`: whether it declares this.
 SyntheticSampler own_numbers(bool says) {
     SyntheticSampler r = recipe_of(SmoothCoat{});
     r.traits.own_random = says;

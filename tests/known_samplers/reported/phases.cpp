@@ -13,7 +13,7 @@ namespace crescent {
 namespace {
 
 /// Henyey & Greenstein 1941; drawn with g = `drawn`, p and f with `claimed`.
-SyntheticSampler phase(double drawn, double claimed, double scale, Traits::Asked wo = Traits::Asked::both) {
+SyntheticSampler phase(double drawn, double claimed, double scale, Traits::WoDomain wo = Traits::WoDomain::both) {
     SyntheticSampler r{"phase", "", {}, {}, {}};
     r.traits.wo = wo;
     const auto p = [](double g, Vec3d o, Vec3d i) {
@@ -32,7 +32,7 @@ SyntheticSampler phase(double drawn, double claimed, double scale, Traits::Asked
     return r;
 }
 
-/// Lambert above and below the surface, each half drawn half the time.
+/// Lambert above and below the surface, each drawn with probability one half.
 SyntheticSampler paper(double above, double below) {
     SyntheticSampler r{"paper", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d i) { return 0.5 * std::fabs(i.z) / pi; };
@@ -44,12 +44,12 @@ SyntheticSampler paper(double above, double below) {
     return r;
 }
 
-/// Rough glass that answers for w_o above alone and states no index.
+/// Rough glass that supports only w_o above and states no index.
 SyntheticSampler glass_from_above(double eta, bool importance) {
     RoughGlass g{0.3, eta};
     g.importance = importance;
     SyntheticSampler r = recipe_of(g);
-    r.traits.wo = Traits::Asked::upper;
+    r.traits.wo = Traits::WoDomain::upper;
     r.traits.eta = {};
     return r;
 }
@@ -58,8 +58,7 @@ SyntheticSampler scaled_f(SyntheticSampler r, double below) {
     return r;
 }
 
-/// Lambert about a normal that is tilted by 25 deg towards x, black where w_o
-/// lies behind it.
+/// Lambert about a normal that is tilted by 25 deg towards x, black if w_o is behind it.
 SyntheticSampler tilted_lambert(bool draws) {
     const Vec3d n = tilt(25, 0);
     SyntheticSampler r{"tilted", "", {}, {}, {}};
@@ -76,7 +75,7 @@ SyntheticSampler tilted_lambert(bool draws) {
 /// cos / pi above for w_o above, nothing for w_o below.
 SyntheticSampler one_sided() {
     SyntheticSampler r{"one side", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = Traits::WoDomain::both;
     r.pdf = [](Vec3d o, Vec3d i) { return o.z > 0 ? std::max(i.z, 0.0) / pi : 0; };
     r.sample = [](Vec3d o, const PrimarySample& u) {
         const Vec3d wi = about({0, 0, 1}, std::sqrt(1 - u[0]), u[1]);
@@ -90,12 +89,12 @@ SyntheticSampler one_sided() {
 std::vector<KnownSampler> phase_functions() {
     KnownList list;
     for (double g : {0.3, 0.75, -0.5}) list.right("phase function, g = " + std::to_string(g), phase(g, g, 1), {0, 150});
-    list.right("phase function of w_o above alone", phase(0.75, 0.75, 1, Traits::Asked::upper), {60, 85});
+    list.right("phase function of w_o above alone", phase(0.75, 0.75, 1, Traits::WoDomain::upper), {60, 85});
     list.wrong("phase function of the other sign", "density", phase(0.6, -0.6, 1), {60});
     list.wrong("phase function that creates energy", "physics", phase(0.6, 0.6, 1.05), {60});
-    list.wrong("the same of w_o above alone", "physics", phase(0.6, 0.6, 1.05, Traits::Asked::upper), {60});
+    list.wrong("the same of w_o above alone", "physics", phase(0.6, 0.6, 1.05, Traits::WoDomain::upper), {60});
     list.right("paper", paper(0.4, 0.4), {30, 150});
-    list.missed("paper that creates energy below", paper(0.1, 5));  // nobody states whether eta^2 scales f there
+    list.missed("paper that creates energy below", paper(0.1, 5));  // it is not stated whether eta^2 scales f there
     for (double eta : {1.5, 1 / 1.5})
         for (bool importance : {false, true})
             list.not_wrong("rough glass from above", glass_from_above(eta, importance), {0, 60});

@@ -1,7 +1,5 @@
-// Samplers that compute in single precision, where that shows: half vectors by
-// their cosine, which rounds to 1 over the middle of a sharp lobe and moves in
-// steps around it; cumulative sums in float; values of f that have few digits
-// left.
+// Samplers that compute in single precision, with visible effects: half vectors by their cosine, which rounds to 1 in
+// the middle of a sharp lobe and has steps around it; cumulative sums in float; values of f with few digits left.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -23,13 +21,11 @@ struct V {
 V narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 float inner(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// GGX by D cos, all in float: the half vector by its cosine, its sine by
-/// sqrt(1 - cos^2).
+/// GGX by D cos, all in float: the half vector by its cosine, its sine by sqrt(1 - cos^2).
 struct FloatGgx {
     float alpha;
-    float drawn_alpha;   // right where it is alpha
-    float mirrored = 0;  // a share of the draws that goes to the mirror direction;
-                         // right where it is 0
+    float drawn_alpha;   // correct if it equals alpha
+    float mirrored = 0;  // a share of the draws that goes to the mirror direction; correct if 0
 
     Draw sample(Vec3d wo, const PrimarySample& u) const {
         const V o = narrow(wo);
@@ -62,8 +58,7 @@ SyntheticSampler of_ggx(const FloatGgx& ggx) {
     return r;
 }
 
-/// An even sphere whose draws crowd below by `tilt` (1 + tilt cos theta over 4
-/// pi), which pdf does not have.
+/// A uniform sphere whose draws are denser below by `tilt` (1 + tilt cos theta over 4 pi), which the pdf omits.
 SyntheticSampler tilted_sphere(float tilt) {
     SyntheticSampler r{"a sphere in float", "", {}, {}, {}};
     r.sample = [tilt](Vec3d, const PrimarySample& u) {
@@ -73,7 +68,7 @@ SyntheticSampler tilted_sphere(float tilt) {
         return Draw{{sin * std::cos(phi), sin * std::sin(phi), z}, 0.25 / pi};
     };
     r.pdf = [](Vec3d, Vec3d) { return 0.25 / pi; };
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     return r;
 }
 
@@ -132,19 +127,17 @@ private:
     float mean_ = 1;
 };
 
-/// lines: every texel of a row is drawn along its middle, whatever the first
-/// number is.
+/// lines: every texel of a row is drawn along its middle, for any first number.
 SyntheticSampler float_sky(std::size_t width, std::size_t height, bool lines = false) {
     const auto sky = std::make_shared<const FloatSky>(width, height, lines);
     SyntheticSampler r{"a sky in float", "", {}, {}, {}};
     r.sample = [sky](Vec3d, const PrimarySample& u) { return sky->sample(u); };
     r.pdf = [sky](Vec3d, Vec3d w) { return sky->pdf(w); };
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     return r;
 }
 
-/// A lobe cos^s about n of which floats round the cosine, and its sine by
-/// sqrt(1 - cos^2).
+/// A lobe cos^s about n whose cosine is rounded to float, with its sine by sqrt(1 - cos^2).
 SyntheticSampler float_lobe(float s) {
     const auto p = [s](double cos) { return cos > 0 ? (s + 1) / (2 * pi) * math::pow(cos, double(s)) : 0.0; };
     SyntheticSampler r{"Phong lobe in floats", std::to_string(s), {}, {}, {}};
@@ -157,7 +150,7 @@ SyntheticSampler float_lobe(float s) {
     return r;
 }
 
-/// f falls to 1e-43 and further, weights with it.
+/// f falls to 1e-43 and below, and so do weights.
 SyntheticSampler velvet() {
     SyntheticSampler r{"a velvet", "", {}, {}, {}};
     const auto f = [](Vec3d wi) { return static_cast<double>(static_cast<float>(0.1 * std::exp(-100 * (1 - wi.z)))); };
@@ -187,7 +180,8 @@ SyntheticSampler with_own_numbers(SyntheticSampler r) {
 
 std::vector<KnownSampler> single_precision_samplers() {
     KnownList list;
-    // Sharp ones have their half vectors on rings, at the cosines that float has: 3e-4 apart next to the axis.
+    // Sharp lobes have their half vectors on rings, at the cosines that float can represent: 3e-4 apart next to the
+    // axis.
     for (float alpha : {0.002f, 0.003f, 0.005f, 0.01f, 0.02f, 0.03f, 0.1f})
         list.right("GGX in float, alpha = " + std::to_string(alpha), of_ggx({alpha, alpha}), {0, 30, 60});
     list.wrong("GGX in float drawn 10 % too wide", "density", of_ggx({0.01f, 0.011f}), {0, 60});

@@ -1,4 +1,4 @@
-// Faults in a small part of what is drawn, and right samplers that look like them.
+// Faults in a small part of the draws, and correct samplers that look like them.
 #include <cmath>
 
 #include "check/sources/builtin.h"
@@ -29,7 +29,7 @@ SyntheticSampler with_numbers(SyntheticSampler r, std::function<void(PrimarySamp
     };
     return r;
 }
-/// Every weight is 10 % more than what is reflected.
+/// Every weight is 10 % more than the reflected light.
 SyntheticSampler bright_weights() {
     SyntheticSampler r = cosine();
     r.sample = [sample = r.sample](Vec3d wo, const PrimarySample& u) {
@@ -40,11 +40,10 @@ SyntheticSampler bright_weights() {
     return r;
 }
 
-/// Even over the sphere; one draw in 1500 goes to a disk of 0.27 degrees that p, which integrates to one, does not
-/// know.
+/// Uniform over the sphere; one draw in 1500 goes to a disk of 0.27 degrees that p, which integrates to one, omits.
 SyntheticSampler hidden_sun(bool own_numbers) {
     SyntheticSampler r{"even, with a sun", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.traits.own_random = own_numbers;
     r.pdf = [](Vec3d, Vec3d) { return 1 / (4 * pi); };
     r.sample = [](Vec3d, const PrimarySample& u) {
@@ -66,7 +65,7 @@ SyntheticSampler bands(double share) {
         return share * height[k] / all / (2 * pi);
     };
     SyntheticSampler r{"bands", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::none;
+    r.traits.wo = Traits::WoDomain::none;
     r.pdf = [p](Vec3d, Vec3d wi) { return p(wi.z); };
     r.sample = [p, all](Vec3d, const PrimarySample& u) {
         double left = u[0] * all;
@@ -79,7 +78,7 @@ SyntheticSampler bands(double share) {
     return r;
 }
 
-/// p reaches below 0.6 and nothing is drawn there: a part of the light is left out.
+/// p covers the range below 0.6 and nothing is drawn there, so part of the light is missing.
 SyntheticSampler left_out() {
     SyntheticSampler r{"cosine above 0.6", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d wi) { return wi.z <= 0 ? 0 : wi.z > 0.6 ? wi.z / (0.64 * pi) : 0.2 * wi.z / pi; };
@@ -91,7 +90,7 @@ SyntheticSampler left_out() {
     return r;
 }
 
-/// Weights of three values, of which the largest comes once in 200 draws: the steps between them are no tail.
+/// Weights of three values, of which the largest occurs once in 200 draws: the steps between them are not a heavy tail.
 SyntheticSampler three_weights() {
     SyntheticSampler r{"three weights", "", {}, {}, {}};
     r.pdf = [](Vec3d, Vec3d wi) { return wi.z > 0 ? 1 / (2 * pi) : 0.0; };

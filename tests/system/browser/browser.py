@@ -1,4 +1,4 @@
-"""A browser without a window, offline, that keeps what the page logs and what it asks the network for."""
+"""A headless browser, offline, that records the page's log and its network requests."""
 import json
 import time
 
@@ -22,13 +22,13 @@ def chromium(width=1280, height=900, flags=()):
 
 
 def size(driver, width, height):
-    """Of the page, not of the window, which has a smallest width."""
+    """Sets the size of the page, not of the window, which has a smallest width."""
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
 
 
 def media(driver, kind="", **features):
-    """What the reader prefers: media(driver, prefers_color_scheme="dark"); kind: "print". The rest is as by default."""
+    """Sets the user's preferences: media(driver, prefers_color_scheme="dark"); kind: "print". The rest is default."""
     features = {"prefers-color-scheme": "light", "prefers-reduced-motion": "no-preference", "forced-colors": "none",
                 **{name.replace("_", "-"): value for name, value in features.items()}}
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
@@ -36,7 +36,7 @@ def media(driver, kind="", **features):
 
 
 def wait(driver, script, seconds=120):
-    """Until `return SCRIPT` is true; what it was at last."""
+    """Waits until `return SCRIPT` is true; returns its last value."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         value = driver.execute_script("return " + script)
@@ -57,12 +57,12 @@ def open_page(driver, page, address="", seconds=120, until=FINISHED):
 
 
 def keys(driver, *words):
-    """To whatever has the focus."""
+    """Sends keys to the focused element."""
     driver.switch_to.active_element.send_keys(*words)
 
 
 def tab_to(driver, css, most=150):
-    """By the tabulator alone, from where the focus is; how many strokes it took."""
+    """Moves the focus with only the tab key; returns the number of strokes."""
     for count in range(most):
         if driver.execute_script("return document.activeElement.matches(arguments[0])", css):
             return count
@@ -71,7 +71,7 @@ def tab_to(driver, css, most=150):
 
 
 def axe(driver, source):
-    """What axe-core finds on the page as it stands."""
+    """Returns what axe-core finds on the page in its current state."""
     driver.execute_script(source)
     return driver.execute_async_script(
         "axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'],"
@@ -85,7 +85,7 @@ def console(driver):
 
 
 def requests(driver):
-    """Addresses that were asked for, files and what the page holds itself apart."""
+    """Returns the requested addresses, without files and data of the page itself."""
     asked = []
     for entry in driver.get_log("performance"):
         message = json.loads(entry["message"])["message"]
@@ -101,6 +101,6 @@ def text(driver, css):
 
 
 def shown(driver):
-    """Hashes of the films that stand under the pictures."""
+    """Returns the hashes of the films under the pictures."""
     return driver.execute_script(
         "return [...document.querySelectorAll('[data-hash]')].map((e) => e.textContent).sort()")

@@ -1,10 +1,10 @@
-// The films of an experiment as the page makes them, tile by tile and put together: one line a film, as film_hashes prints
-// them. Bundled for node and for browsers alike.
-import { Door, pixelsOf } from "../../../apps/web/door";
+// The films of an experiment as the page makes them, tile by tile and assembled: one line per film, as film_hashes
+// prints them. Bundled for node and for browsers.
+import { Api, pixelsOf } from "../../../apps/web/api";
 import { Described } from "../../../apps/web/model";
 
 export function hashes(module: WebAssembly.Module, file: string, text: string): string[] {
-  const worker = new Door(module), page = new Door(module), opening = { file, text, set: [], published: "" };
+  const worker = new Api(module), page = new Api(module), opening = { file, text, set: [], published: "" };
   worker.ask("open", opening);
   const d = page.ask<Described>("open", opening), lines: string[] = [];
   const side = 48; // none of the program's own
@@ -20,8 +20,8 @@ export function hashes(module: WebAssembly.Module, file: string, text: string): 
       lines.push(`${file} ${arm.name} n=${n} ${page.say("hash_of", undefined, 0)}`);
     }
   });
-  for (let said = worker.say("prepare_reference"); said.includes("more"); said = worker.say("go_on"));
-  for (let said = page.say("film_room", undefined, -1); said.includes("more"); said = page.say("go_on"));
+  for (let response = worker.say("prepare_reference"); response.includes("more"); response = worker.say("go_on"));
+  for (let response = page.say("film_buffer", undefined, -1); response.includes("more"); response = page.say("go_on"));
   for (let y0 = 0; y0 < d.height; y0 += side) {
     const box = { x0: 0, y0, x1: d.width, y1: Math.min(y0 + side, d.height) };
     page.give(worker.bytes("reference_tile", 20 * pixelsOf(box), 0, y0, d.width, box.y1));

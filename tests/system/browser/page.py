@@ -1,6 +1,6 @@
 """The page in Chromium, from a file, offline: page.py GROUP PAGE BUNDLE NATIVE EXPERIMENT... . NATIVE has the program's
-hashes. GROUP: numbers, what the page computes and keeps, or readers, who can use it; one browser for each, so that both
-can run at once. ONLY names groups to run alone, SHOTS a folder for pictures of what they look at."""
+hashes. GROUP: numbers (what the page computes and keeps) or readers (accessibility); one browser for each, so that
+both can run at once. ONLY selects tests, SHOTS is a folder for screenshots of them."""
 import base64
 import gzip
 import json
@@ -30,7 +30,7 @@ small = "#experiment=three-glosses&n=4"
 
 
 def same_bits(driver):
-    """Every arm, three scenes, every rung, and the references: the program's hashes in Chromium."""
+    """Every arm, three scenes, every sample count, and the references: the program's hashes in Chromium."""
     native = set(pathlib.Path(native_path).read_text().split("\n"))
     driver.get("about:blank")
     driver.execute_script(pathlib.Path(bundle).read_text())
@@ -48,19 +48,19 @@ def same_bits(driver):
 
 
 def opens_and_measures(driver):
-    """The gallery to N = 64, with the note's figures beside; a slider's move gives new pixels."""
+    """The gallery to N = 64, with the article's values; a slider's move gives new pixels."""
     took = browser.open_page(driver, page)
     told = driver.execute_script("return {...document.documentElement.dataset}")
     print(f"  first picture after {told['first']} ms, three arms at N = 64 after {told['films']} ms, "
-          f"with the reference and all meters {took} ms, {told['workers']} workers")
+          f"with the reference and all metrics {took} ms, {told['workers']} workers")
     assert int(told["workers"]) >= 1
     assert "published" in browser.text(driver, "#pictures")
     beside = [e.text for e in driver.find_elements(By.CSS_SELECTOR, ".hash")]
     assert len(beside) == 3 and all(line.endswith(": the same bits") for line in beside), beside
     assert len(driver.find_elements(By.CSS_SELECTOR, "#pictures canvas")) == 4
-    rungs = driver.execute_script(
+    counts = driver.execute_script(
         "return [...document.querySelectorAll('#charts figure')].map((s) => s.querySelectorAll('circle').length)")
-    assert rungs and all(count == 9 for count in rungs), f"three arms at three rungs are charted, not {rungs}"
+    assert counts and all(count == 9 for count in counts), f"three arms at three sample counts are charted, not {counts}"
     driver.execute_script(
         "document.getElementById('controls').open = true;"
         "const at = document.querySelector('[data-path=\"sphere.s\"] input[type=range]');"
@@ -71,7 +71,7 @@ def opens_and_measures(driver):
 
 
 def address_is_data(driver):
-    """Nonsense in the address gives defaults and lines that say so."""
+    """Invalid parts of the address give defaults and messages."""
     browser.open_page(driver, page, "#experiment=%3Cscript%3E&arms=evil,phong&n=7&view=x"
                       "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9&part=q&answer=sparkle:evil"
                       "&answer=firefly:l&answer=four-times:99&answer=sparkle:1,1,960,9&unknown=1&n=4&set=n=[3]"
@@ -90,7 +90,7 @@ def address_is_data(driver):
 
 
 def address_keeps_all(driver):
-    """What was set in an answered lesson stands in its address and comes back from there; so does every part."""
+    """The settings of an answered lesson are in its address and are restored from there; so is every part."""
     browser.open_page(driver, page, "#experiment=three-glosses&arms=cosine&n=4&lesson=firefly&answer=firefly:1/p&zz=1",
                       until=f"document.getElementById('reveal') && {browser.FINISHED}")
     address = driver.execute_script("return location.hash")
@@ -101,7 +101,7 @@ def address_keeps_all(driver):
 
 
 def faults_are_sentences(driver):
-    """A scene that does not fit into memory gives a sentence, and the page goes on from there."""
+    """A scene that does not fit into memory gives a message, and the page continues."""
     browser.open_page(driver, page, small + "&set=image.width=16384&set=image.height=16384",
                       until="document.getElementById('wrong').textContent")
     said = browser.text(driver, "#wrong")
@@ -113,7 +113,7 @@ def faults_are_sentences(driver):
 
 
 def number_of(run, name):
-    """What metrics.json has of a number that the page shows."""
+    """Returns the value in metrics.json of a number that the page shows."""
     if name in ("fireflies", "under the horizon", "mean Y"):
         return run[{"fireflies": "fireflies", "under the horizon": "horizon_frac", "mean Y": "y_mean"}[name]]
     kind, region = name.split(" of ")
@@ -122,7 +122,7 @@ def number_of(run, name):
 
 
 def reads_as(text, number):
-    """Whether a number is this one for its reader, who sees two digits of a tail's k and four of others."""
+    """Returns whether a number equals this one as shown: two digits of a tail's k and four of others."""
     if number is None:
         return text == "–"
     k = text.replace("−", "-").split(" ± ")
@@ -152,7 +152,7 @@ def the_link_back(driver):
         with tempfile.TemporaryDirectory() as out:
             command = shlex.split(words)[1:] + ["--seeds", "1", "--only", "metrics", "--quiet", "--out", out]
             subprocess.run([os.environ["CRESCENT"], "run", *command], cwd=os.environ["CRESCENT_SOURCE"],
-                           stdout=subprocess.DEVNULL)  # exit 1 where an assertion of the experiment fails at this N
+                           stdout=subprocess.DEVNULL)  # exit 1 if an assertion of the experiment fails at this N
             metrics = json.loads((pathlib.Path(out) / "metrics.json").read_text())
         for film in films:
             assert film in metrics["films"].values(), f"{words}: {film} is none of {metrics['films']}"
@@ -165,7 +165,7 @@ def the_link_back(driver):
 
 
 def a_lesson_is_confirmed(driver):
-    """The numbers of an answer are those of the command that stands under it."""
+    """The numbers of an answer are those of the command under it."""
     browser.open_page(driver, page, "#lesson=sparkle&answer=sparkle:380,140,420,190",
                       until="document.getElementById('reveal')")
     said = browser.text(driver, "#reveal")
@@ -173,7 +173,7 @@ def a_lesson_is_confirmed(driver):
     source = pathlib.Path(os.environ["CRESCENT_SOURCE"])
     with tempfile.TemporaryDirectory() as out:
         file = next(word for word in shlex.split(words) if word.endswith(".toml"))
-        parts = re.split(r"(?m)^(?=\[)", (source / file).read_text())  # without what no number of the lesson needs
+        parts = re.split(r"(?m)^(?=\[)", (source / file).read_text())  # without parts that the lesson does not need
         kept = [part for part in parts if not re.match(r"\[+(exponent|furnaces|plates|assertions)", part)]
         scene = pathlib.Path(out) / "scene.toml"
         scene.write_text(re.sub(r"(?m)^(published|monte_carlo|n = \[).*$", "", "".join(kept)))
@@ -189,21 +189,21 @@ def a_lesson_is_confirmed(driver):
 
 
 def kept(driver):
-    """What the page's scripts keep, in bytes and in nodes, after what nobody holds was thrown away."""
+    """Returns what the page's scripts keep, in bytes and in nodes, after garbage collection."""
     driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
     metrics = {m["name"]: m["value"] for m in driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]}
     return metrics["JSHeapUsedSize"], metrics["Nodes"]
 
 
 def two_hundred_settings(driver):
-    """Two hundred random settings, each to its end: the second hundred takes no more memory than the first, neither the
-    modules of the page and of its workers, nor the scripts, nor the document."""
+    """Two hundred random settings, each to its end: the second hundred uses no more memory than the first, in the
+    modules of the page and of its workers, in the scripts, and in the document."""
     draw = random.Random(7)
     browser.open_page(driver, page, small)
     names = ["uniform", "cosine", "phong", "mixture", "ggx-vndf", "mis-balance"]
     settings = []
     for turn in range(200):
-        fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference now and then
+        fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference from time to time
         settings.append(f"experiment=three-glosses&n=4&arms={','.join(draw.sample(names, 3))}"
                         f"&set=seed={draw.randrange(2**32)}{fill}")
     run = """
@@ -233,7 +233,8 @@ def two_hundred_settings(driver):
           f"{max(workers[1]) / 1e6:.2f}; scripts {first / 1e6:.2f} MB, then {second / 1e6:.2f}; "
           f"{nodes} nodes, then {nodes_after}")
     assert len(sizes) == 200 and max(own[1]) <= max(own[0]), f"the page's module grew: {own[0][::20]}, {own[1][::20]}"
-    # Which worker gets which tile is chance, and so is when it takes the most. 2.5 kB a setting hold no picture.
+    # Which worker gets which tile is random, and so is when it uses the most memory. 2.5 kB per setting contain no
+    # picture.
     assert max(workers[1]) <= max(workers[0]) + 2**20, f"the workers grew: {workers[0][::20]}, {workers[1][::20]}"
     assert second <= first + 2**18 and nodes_after <= 1.2 * nodes, f"the scripts kept {scripts}"
     assert settings[-1].split("arms=")[1].split("&")[0] in driver.execute_script("return location.hash")
@@ -258,7 +259,7 @@ try:
             said, asked = browser.console(driver), browser.requests(driver)
             assert said == [], f"the console has lines: {said}"
             assert asked == [], f"the page asked for {asked}"
-        except Exception as error:  # the others are still worth knowing
+        except Exception as error:  # the others are still useful
             failed += 1
             print(f"{law.__name__}: {law.__doc__}\n{type(error).__name__}: {error}", file=sys.stderr)
         print(f"{law.__name__}: {law.__doc__} {time.monotonic() - start:.1f} s")

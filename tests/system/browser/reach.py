@@ -1,4 +1,4 @@
-"""Who can use the page: by keys alone, on every screen, with other colours, on paper, heard instead of seen."""
+"""Accessibility of the page: by keyboard, on every screen size, with other colours, on paper, by a screen reader."""
 import base64
 import os
 import pathlib
@@ -10,7 +10,7 @@ from selenium.webdriver.common.keys import Keys
 import browser
 
 small = "#experiment=three-glosses&n=4"
-PLAY = {  # what each lesson leaves to play with
+PLAY = {  # the samplers that each lesson offers at its end
     "sparkle": ["sphere.s", "seed"], "four-times": ["n", "seed"], "four-times-phong": ["n", "sphere.s", "seed"],
     "firefly": ["sphere.s", "firefly_k"], "sharper": ["sphere.s"], "furnace": ["furnace-s", "furnace-n"],
     "mixture": ["sphere.s", "sphere.rho_d", "sphere.rho_s"], "seeds": ["seed"],
@@ -25,7 +25,7 @@ def tests(page, folder):
             driver.save_screenshot(str(pathlib.Path(os.environ["SHOTS"]) / f"{name}.png"))
 
     def answer(driver, lesson):
-        """From the question to what was measured; the focus stands on the page before it."""
+        """Goes from the question to the measurement; the focus is on the page before it."""
         browser.tab_to(driver, "#lessons input[name=answer], #guess")
         kind = driver.execute_script("return document.activeElement.type")
         if kind == "number":  # a box: its corners
@@ -56,13 +56,13 @@ def tests(page, folder):
         print(f"  {lesson}: {said.splitlines()[0]} ({kind.get_attribute('data-kind')})")
 
     def lessons_by_keyboard(driver):
-        """Every lesson from its question to what was measured and on to the next, by keys alone."""
+        """Every lesson from its question to its measurement and on to the next, by keyboard only."""
         browser.open_page(driver, page, small)
         browser.tab_to(driver, "[data-tab=lessons]")
         browser.keys(driver, Keys.ENTER)
         ids = [e.get_attribute("data-lesson") for e in driver.find_elements(By.CSS_SELECTOR, "[data-lesson]")]
         assert len(ids) == 12, ids
-        browser.wait(driver, "document.getElementById('status').textContent === ''")  # a number would answer a question
+        browser.wait(driver, "document.getElementById('status').textContent === ''")  # a number answers a question
         browser.tab_to(driver, "[data-lesson]")
         browser.keys(driver, Keys.ENTER)
         for lesson in ids:
@@ -78,8 +78,8 @@ def tests(page, folder):
                 browser.keys(driver, Keys.HOME)
                 browser.tab_to(driver, "#check")
                 browser.keys(driver, Keys.ENTER)
-                browser.wait(driver, "document.querySelector('#judged table')")
-                assert "--wo 0" in browser.text(driver, "#judged"), browser.text(driver, "#judged")
+                browser.wait(driver, "document.querySelector('#check-result table')")
+                assert "--wo 0" in browser.text(driver, "#check-result"), browser.text(driver, "#check-result")
                 shot(driver, "check")
             browser.tab_to(driver, "#next")
             browser.keys(driver, Keys.ENTER)
@@ -87,7 +87,7 @@ def tests(page, folder):
         assert browser.text(driver, "#lessons").count("answered") == 12
 
     def sheet_for_teachers(driver):
-        """Twelve lessons with the numbers of this page; it prints alone, and axe finds nothing on it."""
+        """Twelve lessons with the numbers of this page; it is printed alone, and axe finds nothing on it."""
         if "answer=" not in driver.current_url:
             browser.open_page(driver, page, small)
         driver.find_element(By.CSS_SELECTOR, "[data-tab=sheet]").click()
@@ -127,7 +127,7 @@ def tests(page, folder):
                     shot(driver, f"{name}-{scheme}-{width}")
 
     def rows_stand_beside_each_other(driver):
-        """Meters of arms that stand side by side have one line each, however long the words above them are."""
+        """Metrics of neighbouring arms have one line each, for any length of the words above them."""
         browser.open_page(driver, page, "#experiment=three-glosses&n=4&arms=uniform,cosine,phong")
         for width in (700, 1000, 1280, 1600, 3840):
             browser.size(driver, width, 900)
@@ -165,8 +165,7 @@ def tests(page, folder):
         assert before == driver.execute_script(picture), "noise moves unasked"
 
     def tab_order(driver):
-        """The tabulator goes through everything that can be used, in the order in which it is read, and leaves no one
-        behind; where the focus stands is seen."""
+        """The tab key reaches every control, in reading order, and none is a trap; the focus is visible."""
         browser.open_page(driver, page, small + "&pixel=80,30")
         driver.execute_script("document.getElementById('controls').open = true")
         order = driver.execute_script("""
@@ -185,7 +184,7 @@ def tests(page, folder):
         assert seen == order, f"reached {seen}"
 
     def corners_are_moved(driver, box, was):
-        """By keys and by a pointer, on the bench; no corner passes the one beyond it."""
+        """By keyboard and by pointer, on the bench; no corner passes the opposite one."""
         x0, y0, x1, y1 = was
         corner = "#pictures .reference [data-corner='mine 2 3']"
         driver.execute_script("document.querySelector(arguments[0]).focus()", corner)
@@ -204,7 +203,7 @@ def tests(page, folder):
         browser.wait(driver, f"({box}).join() === '{x0},{y0},{x0 + 1},{y0 + 1}' && {browser.FINISHED}")
 
     def regions_are_drawn(driver):
-        """A region is dragged on a picture or typed: both reach the address, the outline and the meters."""
+        """A region is dragged on a picture or entered: both reach the address, the outline and the metrics."""
         browser.open_page(driver, page, small)
         canvas = driver.find_element(By.CSS_SELECTOR, "#pictures canvas")
         hand = ActionChains(driver).move_to_element_with_offset(canvas, -60, 20)
@@ -221,7 +220,7 @@ def tests(page, folder):
         x0, y0, x1, y1 = driver.execute_script("return " + box)
         browser.tab_to(driver, "[aria-label='region mine right']")
         browser.keys(driver, Keys.CONTROL, "a")
-        browser.keys(driver, "3", Keys.TAB)  # left of its left end: it stops beside it
+        browser.keys(driver, "3", Keys.TAB)  # left of its left end: it stops next to it
         browser.wait(driver, f"({box}).join() === '{x0},{y0},{x0 + 1},{y1}' && {browser.FINISHED}")
         assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
         corners_are_moved(driver, box, (x0, y0, x0 + 1, y1))

@@ -1,4 +1,4 @@
-"""What is set: sliders, fields, and what they give."""
+"""Settings: sliders, fields, and their results."""
 import math
 
 import browser
@@ -24,8 +24,8 @@ def is_set(driver, path, value):
 
 def tests(page):
     def sliders_and_fields(driver):
-        """A slider and its field show one number, whichever was moved; three of a colour keep their hue; what is typed
-        is set to its last digit; each coordinate of a light has a slider."""
+        """A slider and its field show one number, whichever was moved; the three of a colour keep their hue; an entered
+        number is set to its last digit; each coordinate of a light has a slider."""
         browser.open_page(driver, page, small)
         driver.execute_script("document.getElementById('controls').open = true")
 
@@ -51,8 +51,9 @@ def tests(page):
         assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
 
     def what_cannot_be_is_taken_back(driver):
-        """A number that the core refuses is told, and taken back alone: what was set before stays, its field shows what
-        holds and keeps the focus. Nonsense of the address, with nothing before it, leaves the experiment as written."""
+        """A number that the core rejects is reported, and only it is reverted: earlier settings stay, its field shows
+        the current value and keeps the focus. Invalid parts of the address, with nothing before them, leave the
+        experiment as written."""
         browser.open_page(driver, page, small)
         driver.execute_script("document.getElementById('controls').open = true")
         give(driver, "rho_s of gloss", "0.3", "change")

@@ -1,4 +1,4 @@
-"""What stays as it is: settings when the reader goes back, places when numbers come, pixels before their reference."""
+"""Stability: settings when the user goes back, positions when numbers arrive, pixels before their reference."""
 from selenium.webdriver.common.by import By
 
 import browser
@@ -8,7 +8,7 @@ small = "#experiment=three-glosses&n=4"
 
 def tests(page):
     def back_and_forward(driver):
-        """Back takes back a choice, a part, a lesson; Forward does it again; the skip link changes nothing."""
+        """Back reverts a choice, a part, a lesson; Forward repeats it; the skip link changes nothing."""
         browser.open_page(driver, page, small)
         driver.execute_script("const n = document.getElementById('n'); n.value = 16;"
                               "n.dispatchEvent(new Event('change'))")
@@ -30,7 +30,7 @@ def tests(page):
         assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
 
     def a_pixel_before_its_reference(driver):
-        """A pixel is opened as soon as there is a picture; what the reference says of it comes when there is one."""
+        """A pixel can be opened once there is a picture; values of the reference are added when it is computed."""
         driver.get("about:blank")
         driver.get(page + "#n=4&arms=cosine")
         said = driver.execute_async_script("""
@@ -48,7 +48,7 @@ def tests(page):
         browser.wait(driver, "/, the reference [0-9.]+/.test(document.getElementById('pixel').textContent)")
 
     def nothing_moves(driver):
-        """Nothing below the pictures moves while numbers come, nor after the focus went there."""
+        """Nothing below the pictures moves while numbers arrive, nor after the focus went there."""
         places = ("return ['#controls', '#hemisphere', '#copy'].map((css) => Math.round("
                   "document.querySelector(css).getBoundingClientRect().top + scrollY))")
         measuring = "document.getElementById('pictures').textContent.includes('being measured')"
@@ -64,8 +64,8 @@ def tests(page):
         assert tops[0] == tops[1], f"the page scrolls on after the focus: {tops}"
 
     def changed_in_the_midst(driver):
-        """Another experiment, another map, another pixel while pictures are painted strip by strip: the last one
-        stands, and nothing is told to the console."""
+        """Another experiment, another map, another pixel while pictures are painted strip by strip: the last one is
+        shown, and nothing is printed to the console."""
         browser.open_page(driver, page, small + "&view=heat")
         driver.execute_async_script("""
             const done = arguments[0];

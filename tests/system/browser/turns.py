@@ -1,4 +1,4 @@
-"""The page where a browser refuses workers: the same work on the page's own thread, in turns (apps/web/turns.ts)."""
+"""The page in a browser that refuses workers: the same work on the page's own thread, in turns (apps/web/turns.ts)."""
 import os
 
 from selenium.webdriver.common.by import By
@@ -33,9 +33,9 @@ def without_workers(driver, page, address, until, planted=""):
 
 def tests(page):
     def slices_without_workers(driver):
-        """Where workers are refused, the program's hash stands under the picture, and no turn of the page's own thread
-        does more than ten parts may; a turn in which thirty were hidden does. Work is counted, so that no load of the
-        machine can change it."""
+        """Without workers, the program's hash is shown under the picture, and no turn of the page's own thread exceeds
+        ten parts; a turn into which thirty were inserted does. Work is counted, so that the machine's load does not
+        matter."""
         most, longest = 100_000, 1_000_000  # samples of one part, and of a turn, at a hundred million a second
         browser.open_page(driver, page, "#experiment=three-glosses&n=16")
         hashes = browser.shown(driver)

@@ -1,4 +1,4 @@
-"""The page in a second engine, WebKit: opens, computes a film with the same hash, passes one lesson.
+"""The page in a second browser engine, WebKit: opens, computes a film with the same hash, completes one lesson.
 webkit.py PAGE HASH"""
 import pathlib
 import sys
@@ -22,7 +22,7 @@ def wait(script, seconds=120):
         try:
             if value := driver.execute_script("return " + script):
                 return value
-        except WebDriverException:  # asked while one page makes way for the next
+        except WebDriverException:  # called while one page replaces another
             pass
         time.sleep(0.2)
     raise SystemExit(f"after {seconds} s still not: {script}; "

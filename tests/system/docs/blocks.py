@@ -1,12 +1,12 @@
-"""The code blocks of a Markdown page, and what the page says of each.
+"""The code blocks of a Markdown page, and their marks.
 
-A block begins with three backquotes and a language. What is read of it and around it:
+A block begins with three backquotes and a language. The marks in it and around it are:
 
-  # mine.py                     a first line that is a comment of nothing but a file's name: the block is that file
-  # exit 2                      at the end of a command of a shell block: the exit code that is right
+  # mine.py                     a first line that is only a comment with a file's name: the block is that file
+  # exit 2                      at the end of a command of a shell block: the expected exit code
   not run in the tests: needs   in the paragraph directly above or below, between two blocks of the first: the block is
                                 not run, and counted
-  ```text                       directly below another block: what that one prints; "..." stands for any lines
+  ```text                       directly below another block: its output; "..." matches any lines
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-LANGUAGES = ("sh", "python", "c", "cpp", "cmake", "toml", "json", "text")
+LANGUAGES = ("sh", "python", "c", "cpp", "cmake", "toml", "json", "yaml", "groovy", "text")
 MARK = re.compile(r"not run in the tests: needs\s+([^.;)]+)", re.IGNORECASE)
 FILE = re.compile(r"^(?:#|//) ([\w.-]+(?:/[\w.-]+)*\.\w+)$")
 
 
 class Mistake(Exception):
-    """Something on a page that is not right: where and what."""
+    """An error on a page: its place and its message."""
 
 
 @dataclass
@@ -32,10 +32,10 @@ class Block:
     line: int
     language: str
     text: str
-    needs: str = ""  #: what it is not run for the lack of, as its mark says
-    prints: Block | None = None  #: what stands directly below it as its output
-    of: Block | None = field(default=None, repr=False)  #: whose output it is
-    above: str = field(default="", repr=False)  #: the line above it that is not blank
+    needs: str = ""  #: what is missing to run it, from its mark
+    prints: Block | None = None  #: the block directly below with its output
+    of: Block | None = field(default=None, repr=False)  #: the block whose output it is
+    above: str = field(default="", repr=False)  #: the last non-blank line above it
 
     @property
     def place(self) -> str:
@@ -43,13 +43,13 @@ class Block:
 
     @property
     def file(self) -> str:
-        """The file that it is, by its first line; empty: none."""
+        """The file name in its first line; empty: none."""
         named = FILE.match(self.text.partition("\n")[0])
         return named[1] if named else ""
 
 
 def _paragraph(lines: list[str], at: int, step: int) -> str:
-    """The paragraph that ends (step -1) or begins (step 1) at a line, blank lines before it passed over."""
+    """Returns the paragraph that ends (step -1) or begins (step 1) at a line, skipping blank lines before it."""
     while 0 <= at < len(lines) and not lines[at].strip():
         at += step
     found: list[str] = []
@@ -60,7 +60,7 @@ def _paragraph(lines: list[str], at: int, step: int) -> str:
 
 
 def _follows_a_block(lines: list[str], at: int) -> bool:
-    """Whether but one paragraph, or nothing, is between a block and this line."""
+    """Returns whether at most one paragraph is between a block and this line."""
     above = [line.strip() for line in lines[:at]]
     while above and not above[-1]:
         above.pop()
@@ -88,7 +88,7 @@ def _block(page: Path, lines: list[str], opening: int, closing: int) -> Block:
     text = "".join(line[indent:] + "\n" for line in lines[opening + 1 : closing])
     out = Block(page, opening + 1, language, text)
     beside = [_paragraph(lines, closing + 1, 1)]
-    if not _follows_a_block(lines, opening):  # else what is above belongs to that block
+    if not _follows_a_block(lines, opening):  # else the text above belongs to that block
         beside.append(_paragraph(lines, opening - 1, -1))
     for paragraph in beside:
         if mark := MARK.search(paragraph):
@@ -99,7 +99,7 @@ def _block(page: Path, lines: list[str], opening: int, closing: int) -> Block:
 
 
 def blocks_of(page: Path) -> list[Block]:
-    """The blocks of a page in their order; Mistake where one is not marked as it has to be."""
+    """Returns the blocks of a page in order; Mistake if one is not marked as required."""
     lines = page.read_text(encoding="utf-8").split("\n")
     out: list[Block] = []
     at, last_end = 0, -2
@@ -120,7 +120,7 @@ def blocks_of(page: Path) -> list[Block]:
 
 
 def _in_list(lines: list[str], at: int) -> bool:
-    """Whether an indented line goes on with an item of a list."""
+    """Returns whether an indented line continues a list item."""
     for line in reversed(lines[:at]):
         if line.strip() and not line.startswith(" "):
             return bool(re.match(r"([-*]|\d+\.) ", line))
@@ -128,7 +128,7 @@ def _in_list(lines: list[str], at: int) -> bool:
 
 
 def matches(expected: str, printed: str) -> bool:
-    """Whether `printed` is what the page says: numbers to three digits, "..." any lines, nan of either sign."""
+    """Returns whether `printed` matches the page: numbers to three digits, "..." any lines, nan of either sign."""
     number = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
     parts = re.split(r"^\.\.\.$\n?", expected.strip("\n") + "\n", flags=re.MULTILINE)
     pattern, numbers = "", []

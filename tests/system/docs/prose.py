@@ -20,7 +20,7 @@ STARTS = re.compile(r"\s*$|\s*([-*|#>]|\d+\.) ?")
 
 
 def blank(match: re.Match[str]) -> str:
-    """Spaces for all but the ends of lines."""
+    """Replaces all but the ends of lines by spaces."""
     return re.sub(r"[^\n]", " ", match[0])
 
 
@@ -44,7 +44,7 @@ def prose(text: str) -> str:
 
 
 def anchors(page: Path) -> set[str]:
-    """The anchors of its headings, as GitHub makes them."""
+    """Returns the anchors of its headings, as GitHub makes them."""
     found: dict[str, int] = {}
     out = set()
     for line in FENCE.sub(blank, page.read_text(encoding="utf-8")).split("\n"):

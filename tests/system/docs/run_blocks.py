@@ -2,9 +2,9 @@
 
     run_blocks.py --source REPOSITORY --build BUILD [--work FOLDER] [PAGE...]
 
-The blocks of a page run in their order in one folder, a copy of the repository in which `build` is the release build
-and the experiments have one seed. tests/system/docs/pages/PAGE.sh first makes there what a reader of that page has. How a
-block is marked is in CONTRIBUTING.md and at the head of blocks.py. Exit 1: a block is not right.
+The blocks of a page run in order in one folder, a copy of the repository in which `build` is the release build and the
+experiments have one seed. tests/system/docs/pages/PAGE.sh first creates the files that a reader of that page has.
+CONTRIBUTING.md and the head of blocks.py describe the marks of blocks. Exit 1: a block fails.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from pathlib import Path
 from blocks import Block, Mistake, blocks_of, matches
 from runners import RUNNERS, Absent, Page, Setting
 
-#: The tests of which page, its blocks included, are a script's.
+#: Pages whose blocks are tested by a script.
 COVERED = {"docs/extending.md": "tests/system/extending.sh"}
 
 
 @dataclass
 class Count:
-    """What became of the blocks."""
+    """The outcomes of the blocks."""
 
     run: int = 0
     texts: int = 0
@@ -45,8 +45,8 @@ def pages_of(source: Path) -> list[Path]:
 
 
 def make_folder(source: Path, build: Path, folder: Path) -> None:
-    """A copy of the repository without what is built; the scripts at its top are links, since they build where they
-    are."""
+    """Makes a copy of the repository without build outputs; the scripts at its top are links, because they build where
+    they are."""
     skipped = re.compile(r"(build|out|dist)($|[-/])|\.git$|__pycache__")
     ignore = lambda at, names: {n for n in names if Path(at) == source and skipped.match(n)}  # noqa: E731
     shutil.copytree(source, folder, ignore=ignore, symlinks=True)
@@ -62,7 +62,7 @@ def make_folder(source: Path, build: Path, folder: Path) -> None:
 
 
 def check_covered(source: Path, page: Path, script: Path, blocks: list[Block]) -> None:
-    """Mistake where a block of the page is none that the script writes into a file and compiles."""
+    """Raises Mistake if a block of the page is not one that the script writes into a file and compiles."""
     listed = re.search(r"for title in ([^;]+);", script.read_text(encoding="utf-8"))
     titles = set(re.findall(r'"([^"]+)"', listed[1] if listed else ""))
     lines = page.read_text(encoding="utf-8").split("\n")

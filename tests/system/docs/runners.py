@@ -1,5 +1,5 @@
-"""How a block of each language is run, in the working folder of its page. A runner returns what the block printed, and
-raises Mistake where it is not right, or Absent where this machine lacks what it needs."""
+"""Runners for the blocks of each language, in the working folder of the page. A runner returns the output of the block,
+and raises Mistake if it is wrong, or Absent if this machine lacks what it needs."""
 
 from __future__ import annotations
 
@@ -15,35 +15,35 @@ from typing import Any
 
 from blocks import Block, Mistake
 
-#: Libraries that the package works with and does without.
+#: Optional libraries of the package.
 OPTIONAL = ("mitsuba", "drjit", "jax", "torch", "cupy", "xarray", "matplotlib")
 EXIT = re.compile(r"\s#.*?\bexit (\d+)\b")
 
 
 class Absent(Exception):
-    """What is not installed here."""
+    """A part that is not installed here."""
 
 
 @dataclass
 class Setting:
-    """What all pages are run with."""
+    """The settings of all pages."""
 
     source: Path  #: the repository
     build: Path  #: its release build
     compiler: str
-    python: str  #: an interpreter that has the module and what it needs; empty: none here
-    prefix: Path  #: where the build is installed
+    python: str  #: an interpreter that has the module and its requirements; empty: none
+    prefix: Path  #: the prefix of the installed build
 
 
 @dataclass
 class Page:
-    """One page, its folder and what its blocks leave to later ones."""
+    """One page, its folder and the definitions for later blocks."""
 
     setting: Setting
     folder: Path
     blocks: list[Block]
     worker: subprocess.Popen[str] | None = None
-    cmake: list[Block] = field(default_factory=list)  #: fragments that wait for their source
+    cmake: list[Block] = field(default_factory=list)  #: fragments without their source so far
 
     def environment(self) -> dict[str, str]:
         s = self.setting
@@ -70,7 +70,7 @@ class Page:
         )
 
     def must(self, *command: str | Path) -> str:
-        """What it prints; Mistake unless it exits with 0."""
+        """Returns the output; Mistake unless it exits with 0."""
         ended = self.call(*command)
         if ended.returncode:
             words = " ".join(map(str, command))
@@ -87,7 +87,7 @@ def _tail(text: str, lines: int = 25) -> str:
 
 
 def shell_script(block: Block) -> str:
-    """The block with line numbers kept: a command with `# exit N` has to end with N, all others with 0."""
+    """Returns the block with line numbers kept: a command with `# exit N` must end with N, all others with 0."""
     lines, start = block.text.split("\n"), 0
     for i, line in enumerate(lines):
         continued = line.rstrip().endswith("\\")
@@ -172,8 +172,8 @@ def _run_pytest(page: Page, block: Block) -> str:
 
 
 def run_toml(page: Page, block: Block) -> str:
-    """A whole experiment is looked at; a part of one is put into a small one, which is run. One with a file's name is
-    left to the commands of the page."""
+    """A whole experiment is checked; a part of one is inserted into a small one, which is run. One with a file's name
+    is run by the commands of the page."""
     try:
         part = tomllib.loads(block.text)
     except tomllib.TOMLDecodeError as e:
@@ -224,7 +224,7 @@ def run_json(page: Page, block: Block) -> str:
 
 
 def install(page: Page) -> Path:
-    """The build, installed; once for all pages."""
+    """Installs the build, once for all pages."""
     prefix = page.setting.prefix
     if not (prefix / "bin").is_dir():
         page.must("cmake", "--install", page.setting.build, "--prefix", prefix)
@@ -244,7 +244,7 @@ def configure(page: Page, folder: Path) -> str:
 
 
 def run_cmake(page: Page, block: Block) -> str:
-    """A whole project is configured; a part of one waits for the C++ below it, which its targets are made of."""
+    """A whole project is configured; a part of one is combined with the C++ below it, of which its targets consist."""
     if "project(" not in block.text:
         page.cmake.append(block)
         return ""
@@ -255,8 +255,8 @@ def run_cmake(page: Page, block: Block) -> str:
 
 
 def run_cpp(page: Page, block: Block) -> str:
-    """With a part of a CMake project above it: its targets are built of the block and run. Else it is compiled by
-    itself, against the headers of the tree or the installed ones, and run where it has a main(). No warning is left."""
+    """If a part of a CMake project precedes it, its targets are built from the block and run. Else it is compiled
+    alone, against the headers of the tree or the installed ones, and run if it has a main(). Warnings are errors."""
     if page.cmake:
         return _run_project(page, page.cmake.pop(), block)
     file = page.folder / (block.file or f"line_{block.line}.{'c' if block.language == 'c' else 'cpp'}")
@@ -293,11 +293,29 @@ def _run_project(page: Page, fragment: Block, block: Block) -> str:
     return "".join(page.must(build / target) for target in targets)
 
 
+def run_yaml(page: Page, block: Block) -> str:
+    try:
+        import yaml
+    except ImportError:
+        raise Absent("PyYAML") from None
+    try:
+        yaml.safe_load(block.text)
+    except yaml.YAMLError as e:
+        raise Mistake(str(e)) from None
+    return ""
+
+
+def run_groovy(page: Page, block: Block) -> str:
+    raise Absent("Jenkins")
+
+
 RUNNERS = {
     "sh": run_sh,
     "python": run_python,
     "toml": run_toml,
     "json": run_json,
+    "yaml": run_yaml,
+    "groovy": run_groovy,
     "cmake": run_cmake,
     "c": run_cpp,
     "cpp": run_cpp,

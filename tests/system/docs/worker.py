@@ -1,6 +1,6 @@
-"""Runs the Python blocks of one page in one namespace: a request a line of stdin, an answer a line of stdout.
+"""Runs the Python blocks of one page in one namespace: one request per line of stdin, one response per line of stdout.
 
-A request is {"text", "page", "line", "file"}; the answer is {"printed", "error"}. Errors have the lines of the page.
+A request is {"text", "page", "line", "file"}; the response is {"printed", "error"}. Errors have the lines of the page.
 """
 
 import contextlib
@@ -27,7 +27,7 @@ def run(request: dict, names: dict) -> dict:
 
 def main() -> None:
     answers = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what libraries print is no answer
+    os.dup2(2, 1)  # library output must not become part of a response
     sys.path.insert(0, os.getcwd())
     names = {"__name__": "__main__"}
     for line in sys.stdin:

@@ -1,10 +1,10 @@
-// What scripts/extending.sh asks of something that was added by the steps of docs/extending.md.
+// Tests for tests/system/extending.sh of an addition made by the steps of docs/extending.md.
 //   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
-//                             it is other than expected, and that both say what they are
+//                             it is unexpected, and that both have a description
 //   extending --scene TOML    that with these tables added to the scene arms have the reference's mean
-//   extending --measured METER PLATE
-//                             that a check can name the meter, that metrics.json and metrics.csv have it, that the
-//                             plate is drawn, and that `check` gives every verdict of the list
+//   extending --measured METRIC PLATE
+//                             that an assertion can name the metric, that metrics.json and metrics.csv have it, that
+//                             the plate is drawn, and that `check` gives every verdict of the list
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -80,17 +80,17 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
     return film.invalid == 0 && all > 0 && std::fabs(off) < 5 * std::sqrt(variance) + error;
 }
 
-bool is_judged_as_expected(const std::string& sampler, const Grid& wo = {}) {
+bool is_checked_as_expected(const std::string& sampler, const Grid& wo = {}) {
     ProgressMonitor monitor;
-    const CheckResult j = judge(make_cases(sampler, {}, false, wo), TestSettings::quick(), monitor);
+    const CheckResult j = run_checks(make_cases(sampler, {}, false, wo), TestSettings::quick(), monitor);
     if (!j.as_expected) std::cout << verdict_table(j);
     return j.as_expected;
 }
 
-/// A film of cosine and all that is made of it.
-bool is_measured_and_drawn(const std::string& meter, const std::string& plate) {
+/// Tests the outputs of a film of cosine.
+bool is_measured_and_drawn(const std::string& metric, const std::string& plate) {
     const Experiment e = parse(std::string(scene_text) + "[plates.it]\nkind = \"" + plate +
-            "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + meter + ".all(it) > 0\"\n",
+            "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + metric + ".all(it) > 0\"\n",
         "extending", {"arms.it.sampler=\"cosine\""});
     const Scene scene(e);
     ProgressMonitor monitor;
@@ -101,24 +101,25 @@ bool is_measured_and_drawn(const std::string& meter, const std::string& plate) {
     Metrics m;
     m.runs = {measure(e, key, film, truth, shapes)};
     m.bands = bands(e, m.runs, nullptr);
-    m.assertions = judge(e, m, {}, false);
+    m.assertions = evaluate_assertions(e, m, {}, false);
     const Picture drawn = draw_plate(
         e.plates[0], {e, m, shapes, [&](const RunKey&) { return &film; }, [&](double) { return &truth; }, "CPU"});
     const std::string json = metrics_json({e, m, {}, {}, {}}), csv = metrics_csv({e, m, {}, {}, {}});
-    std::printf("%s.all = %.6g\n", meter.c_str(), m.assertions[0].measured);
-    return m.all_hold() && !drawn.rgb.empty() && json.find('"' + meter + "\": ") != std::string::npos &&
-        json.find('"' + meter + ".all\"") != std::string::npos && csv.find("," + meter + ",all,") != std::string::npos;
+    std::printf("%s.all = %.6g\n", metric.c_str(), m.assertions[0].measured);
+    return m.all_hold() && !drawn.rgb.empty() && json.find('"' + metric + "\": ") != std::string::npos &&
+        json.find('"' + metric + ".all\"") != std::string::npos &&
+        csv.find("," + metric + ",all,") != std::string::npos;
 }
 
 bool has_every_verdict() {
     ProgressMonitor monitor;
-    const CheckResult j = judge(make_cases("cosine", {}, false, {{45, 0}}), TestSettings::quick(), monitor);
+    const CheckResult j = run_checks(make_cases("cosine", {}, false, {{45, 0}}), TestSettings::quick(), monitor);
     const std::string table = verdict_table(j), json = verdict_json(j, {});
     return j.as_expected && std::ranges::all_of(verdict_names, [&](std::string_view name) {
-        const bool told = table.find(" " + std::string(name)) != std::string::npos &&
+        const bool describe = table.find(" " + std::string(name)) != std::string::npos &&
             json.find("\"name\": \"" + std::string(name) + '"') != std::string::npos;
-        if (!told) std::printf("nothing of %s in\n%s", std::string(name).c_str(), table.c_str());
-        return told;
+        if (!describe) std::printf("nothing of %s in\n%s", std::string(name).c_str(), table.c_str());
+        return describe;
     });
 }
 
@@ -133,7 +134,8 @@ int main(int argc, char** argv) try {
                 has_the_references_mean("mis-balance", "ggx", argv[2]) &&
                 has_the_references_mean("light-area", "phong", argv[2], "[0, 0, 0]") &&
                 has_the_references_mean("light-solid-angle", "phong", argv[2], "[0, 0, 0]") &&
-                is_judged_as_expected("light-area", {{45, 0}}) && is_judged_as_expected("light-solid-angle", {{45, 0}})
+                is_checked_as_expected("light-area", {{45, 0}}) &&
+                is_checked_as_expected("light-solid-angle", {{45, 0}})
             ? 0
             : 1;
     const SamplerInfo* arm = find_arm_info(argv[1]);
@@ -141,7 +143,7 @@ int main(int argc, char** argv) try {
     if (!arm) return 2;
     std::cout << arm->label << ": " << arm->summary << ", " << formula::pango(arm->formula) << '\n'
               << lobe.label << ": " << lobe.summary << ", " << formula::pango(lobe.formula) << '\n';
-    return has_the_references_mean(argv[1], argv[2]) && is_judged_as_expected(argv[1]) ? 0 : 1;
+    return has_the_references_mean(argv[1], argv[2]) && is_checked_as_expected(argv[1]) ? 0 : 1;
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';
     return 1;

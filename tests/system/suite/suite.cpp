@@ -1,5 +1,5 @@
-// A GoogleTest suite as users write theirs, whose samplers share one alpha: scripts/suite.sh runs it in one process and
-// in one process a test, as gtest_discover_tests does.
+// A GoogleTest suite as users write theirs, whose samplers share one alpha: tests/system/suite.sh runs it in one
+// process and in one process per test, as gtest_discover_tests does.
 #include <array>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// cosine, as src/arms/cosine.h: the hemisphere of n by projected solid angle.
+// cosine, as src/samplers/cosine.h: the hemisphere of n by projected solid angle.
 //   p = (n.w)/pi;  cos = sqrt(u1), phi = 2 pi u2, about n.
 #include "sampler.glsl"
 

@@ -1,4 +1,4 @@
-// ggx-vndf, as src/arms/ggx_vndf.h: a GGX normal among those that wo sees, mirrored to wi.
+// ggx-vndf, as src/samplers/ggx_vndf.h: a GGX normal among those visible from wo, mirrored to wi.
 //   p = G1(wo) D(m) / (4 wo.z).
 // Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eqs (3) and (17); the draw by a spherical
 // cap: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.
@@ -6,10 +6,10 @@
 #include "lobes/ggx.glsl"
 
 float ggx_vndf_density(vec3 wo, vec3 wi, vec3 m) {
-    return above_horizon(wo, wi, ggx_G1(wo, site.alpha) * ggx_D(m, site.alpha) / (4.0 * max(wo.z, 1e-12)));
+    return above_horizon(wo, wi, ggx_G1(wo, shading_point.alpha) * ggx_D(m, shading_point.alpha) / (4.0 * max(wo.z, 1e-12)));
 }
 Drawn sample_ggx_vndf(vec3 wo, vec2 u) {
-    float a = site.alpha;
+    float a = shading_point.alpha;
     vec3 stretched = unit(vec3(a * wo.xy, wo.z));
     float rise = (1.0 - u.x) * (1.0 + stretched.z);  // z + stretched.z on the cap
     float z = rise - stretched.z;

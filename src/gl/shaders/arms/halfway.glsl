@@ -1,6 +1,6 @@
-// What the half-vector arms share, as src/arms/halfway.h: m is drawn about n, wi is wo mirrored in m, and
-//   dw_i = 4 (wo.m) dw_m,  hence  p(wi) = p_m(m) / (4 (wo.m)).        Walter et al. 2007, eq. (14)
-// Where wi falls under the horizon nothing is drawn: the sample weighs 0 and counts.
+// Shared by the half-vector samplers, as src/samplers/halfway.h: m is drawn about n, wi is wo mirrored in m, and
+//   dw_i = 4 (wo.m) dw_m,  so    p(wi) = p_m(m) / (4 (wo.m)).        Walter et al. 2007, eq. (14)
+// If wi is below the horizon nothing is drawn: the sample has weight 0 and counts.
 #include "sampler.glsl"
 
 float half_jacobian(float wo_m) { return 4.0 * max(wo_m, 1e-12); }

@@ -1,12 +1,12 @@
-// light-area, as src/arms/light_area.h: next-event estimation (NEE), a disk light by area, the disk chosen by its power
-// Y(L) pi r^2.
+// light-area, as src/samplers/light_area.h: next-event estimation (NEE), a disk light by area, the disk chosen by its
+// power Y(L) pi r^2.
 //   y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2);  p_A = 1/(pi r^2);  p = p_A |y - x|^2 / cos(light).
-// Other kinds of light: lights.glsl. It reaches nothing but the lights.
+// Other kinds of light: lights.glsl. It reaches only the lights.
 #include "sampler.glsl"
 
 float disk_density(LocalDisk d, float r2, float cos_light) { return (1.0 / pi) / sqr(d.radius) * r2 / cos_light; }
 
-// The density with which the lights but for one draw wi.
+// Returns the density with which the lights except one draw wi.
 float density_of_other_lights(vec3 wi, int but) {
     float sum = 0.0;
     for (int k = 0; k < DISKS; ++k) {
@@ -54,7 +54,7 @@ Drawn sample_light_area(vec3 wo, vec2 u) {
         }
         below = above;
     }
-    // Lights may stand one behind another: every one that wi meets could have drawn it.
+    // Lights may lie one behind another: every one that wi meets could have drawn it.
     if (DISKS + OTHERS > 1 && drawn.pdf > 0.0) drawn.pdf += density_of_other_lights(drawn.wi, aimed_disk);
     aimed_met = drawn.pdf > 0.0;
     return drawn;

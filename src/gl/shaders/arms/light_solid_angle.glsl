@@ -1,5 +1,5 @@
-// light-solid-angle, as src/arms/light_solid_angle.h: NEE, a disk light by solid angle: uniform over the smallest cap
-// of directions about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
+// light-solid-angle, as src/samplers/light_solid_angle.h: NEE, a disk light by solid angle: uniform over the smallest
+// cap of directions about the disk's spherical ellipse that contains it. The disk is chosen by its power Y(L) pi r^2.
 //   p = 1 / (2 pi (1 - cos b)),  cos = 1 - u1 (1 - cos b), phi = 2 pi u2, about the ellipse's centre a.
 // Guillen et al. 2017, "Area-Preserving Parameterizations for Spherical Ellipses", section 3.
 #include "sampler.glsl"
@@ -7,7 +7,7 @@
 struct Cap {
     vec3 axis;
     float height;   // 1 - cos b
-    float density;  // 1/sr; 0 where x is behind a one-sided disk
+    float density;  // 1/sr; 0 if x is behind a one-sided disk
     vec3 y, off;    // where the axis meets the disk's plane, from x and from the disk's centre
 };
 
@@ -25,7 +25,7 @@ Cap cap_of(LocalDisk d) {
     return Cap(y * (1.0 / sqrt(y2)), height, faces(d) ? (0.5 / pi) / height : 0.0, y, off);
 }
 
-// A direction is drawn as its difference e to the axis, of which nothing is lost however small the cap is.
+// A direction is drawn as its difference e from the axis, which keeps its precision for a cap of any size.
 Drawn towards(LocalDisk d, Cap cap, vec2 u) {
     float drop = u.x * cap.height;  // 1 - cos
     float sin = sqrt(drop * (2.0 - drop));
@@ -38,7 +38,7 @@ Drawn towards(LocalDisk d, Cap cap, vec2 u) {
     return Drawn(wi, cap.density);
 }
 
-// The density with which the lights but for one draw wi.
+// Returns the density with which the lights except one draw wi.
 float density_by_others(vec3 wi, int but) {
     float sum = 0.0, below = 0.0;
     for (int k = 0; k < DISKS; ++k) {
@@ -80,7 +80,7 @@ Drawn sample_light_solid_angle(vec3 wo, vec2 u) {
         }
         below = above;
     }
-    // Caps may overlap: every light whose directions hold wi could have drawn it.
+    // Caps may overlap: every light whose directions contain wi could have drawn it.
     if (DISKS + OTHERS > 1 && drawn.pdf > 0.0) drawn.pdf += density_by_others(drawn.wi, aimed_disk);
     return drawn;
 }

@@ -1,5 +1,5 @@
-// Two-sample multiple importance sampling, as src/arms/mis.h: one direction from the BRDF's mixture, one from the
-// lights (by area), each weighed by what the other technique would have done there. N counts pairs.
+// Two-sample multiple importance sampling, as src/samplers/mis.h: one direction from the BRDF's mixture, one from the
+// lights (by area), each weighted by the densities of both techniques. N counts pairs.
 //   X = w_1 f L cos / p_1 + w_2 f L cos / p_2,  w_1 + w_2 = 1 wherever p_1 + p_2 > 0.
 // Veach & Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering": one sample from each.
 #include "arms/light_area.glsl"

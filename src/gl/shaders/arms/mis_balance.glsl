@@ -1,4 +1,4 @@
-// mis-balance, as src/arms/mis_balance.h: BRDF mixture and light by area, two samples, balance heuristic.
+// mis-balance, as src/samplers/mis.h: BRDF mixture and light by area, two samples, balance heuristic.
 //   w_i = p_i / (p_1 + p_2)      Veach & Guibas 1995, eq. (11) with one sample from each.
 #include "arms/mis.glsl"
 

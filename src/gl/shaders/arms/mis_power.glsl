@@ -1,4 +1,4 @@
-// mis-power, as src/arms/mis_power.h: BRDF mixture and light by area, two samples, power heuristic.
+// mis-power, as src/samplers/mis.h: BRDF mixture and light by area, two samples, power heuristic.
 //   w_i = p_i^2 / (p_1^2 + p_2^2)      Veach & Guibas 1995, eq. (13) with beta = 2.
 #include "arms/mis.glsl"
 

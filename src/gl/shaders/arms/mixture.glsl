@@ -1,4 +1,4 @@
-// mixture, as src/arms/mixture.h: one sample from two techniques, chosen by u1: the lobe (phong, about R) with
+// mixture, as src/samplers/mixture.h: one sample from two techniques, chosen by u1: the lobe (phong, about R) with
 // probability q, else cosine.
 //   q = min(rho_s / (rho_s + Y(rho_d)), 9/10), and 0 on a surface without a lobe;
 //   p = q p_phong + (1 - q) p_cosine;  u1 in [0, q) is stretched to [0, 1) for the lobe, the rest for the cosine.
@@ -7,8 +7,8 @@
 #include "arms/phong.glsl"
 
 float mixture_q() {
-    float sum = site.lobe + site.diffuse;
-    return sum > 0.0 ? min(site.lobe / sum, 0.9) : 0.0;
+    float sum = shading_point.lobe + shading_point.diffuse;
+    return sum > 0.0 ? min(shading_point.lobe / sum, 0.9) : 0.0;
 }
 float pdf_mixture(vec3 wo, vec3 wi) {
     float q = mixture_q();

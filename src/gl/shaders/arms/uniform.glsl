@@ -1,4 +1,4 @@
-// uniform, as src/arms/uniform.h: the hemisphere of n, every solid angle alike.
+// uniform, as src/samplers/uniform.h: the hemisphere of n, uniform in solid angle.
 //   p = 1/(2 pi);  cos = u1, phi = 2 pi u2, about n.
 #include "sampler.glsl"
 

@@ -1,6 +1,6 @@
-// beckmann, as src/lobes/beckmann.h: D G1 G1 / (4 cos cos), separable G.
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": (25), 1/sr, (26), (20).
-#include "site.glsl"
+// beckmann, as src/scene/lobes/beckmann.h: D G1 G1 / (4 cos cos), separable G. Walter et al. 2007, "Microfacet Models
+// for Refraction through Rough Surfaces": (25), 1/sr, (26), (20).
+#include "shading_point.glsl"
 
 float exp_of_minus(float x) {  // x >= 0
     float y = -1.4426950408889634 * x;
@@ -19,7 +19,7 @@ float beckmann_G1(vec3 w, float alpha) {  // erf by Abramowitz & Stegun 1964, 7.
     return 2.0 / (2.0 + exp_of_minus(a * a) * (0.56418958354775629 / a - P));
 }
 float lobe_beckmann(vec3 wo, vec3 wi) {
-    float alpha = site.alpha;
+    float alpha = shading_point.alpha;
     float f = beckmann_D(unit(wo + wi), alpha) * beckmann_G1(wo, alpha) * beckmann_G1(wi, alpha) / (4.0 * wo.z * wi.z);
     return wo.z > 0.0 && wi.z > 0.0 ? f : 0.0;
 }

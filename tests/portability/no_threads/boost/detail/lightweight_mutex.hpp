@@ -1,4 +1,4 @@
-// Boost's mutex where there are no threads to keep apart: found before its own.
+// Replaces Boost's mutex if there are no threads; found before its own.
 #pragma once
 
 namespace boost::detail {

@@ -1,0 +1,142 @@
+// One instance of the WebAssembly module, as apps/web/api.h describes it. All computation happens in the module.
+
+/** The kinds of error of the core: "input" is the user's mistake, "memory" and "bug" are not. */
+export class DoorError extends Error {
+  constructor(readonly kind: string, text: string) {
+    super(text);
+  }
+
+  /** The error and the next step. */
+  get sentence(): string {
+    if (this.kind === "memory") return "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below.";
+    if (this.kind === "input") return `This cannot be: ${this.message}.`;
+    return `The kernels stopped: ${this.message}. Reload the page; the address holds your settings.`;
+  }
+}
+
+export interface Box { x0: number; y0: number; x1: number; y1: number }
+export const pixelsOf = (b: Box): number => (b.x1 - b.x0) * (b.y1 - b.y0);
+
+type Call = (...numbers: number[]) => number;
+const text = new TextDecoder();
+
+/** The part of WASI that the C++ library needs: no files, no real clock, no input. */
+function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
+  const nothing: Call = () => 52; // ENOSYS
+  const sized: Call = (count, size) => {
+    const view = new DataView(memory().buffer);
+    view.setUint32(count ?? 0, 0, true);
+    view.setUint32(size ?? 0, 0, true);
+    return 0;
+  };
+  const known: Record<string, Call> = {
+    environ_sizes_get: sized,
+    environ_get: () => 0,
+    clock_time_get: (_id, _precision, at) => {
+      new DataView(memory().buffer).setBigUint64(at ?? 0, BigInt(Math.round(performance.now() * 1e6)), true);
+      return 0;
+    },
+    proc_exit: () => {
+      throw new DoorError("bug", "the kernels stopped");
+    },
+  };
+  return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
+}
+
+const unwinding = 1, rewinding = 2; // returned by asyncify_get_state()
+
+export class Api {
+  private readonly calls: Record<string, Call>;
+  private readonly memory: WebAssembly.Memory;
+  private paused: (() => number) | undefined; // continues a call that left the module, apps/web/pause.h
+  private room = 0; // where that call keeps its locals
+
+  constructor(module: WebAssembly.Module) {
+    const memory = (): WebAssembly.Memory => this.memory;
+    const failed = (kind: number, kindSize: number, at: number, size: number): never => {
+      throw new DoorError(this.words(kind, kindSize), this.words(at, size));
+    };
+    const system = wasi(memory);
+    const pause = (): void => {
+      const call = this.calls;
+      if (call["asyncify_get_state"]!() === rewinding) call["asyncify_stop_rewind"]!();
+      else call["asyncify_start_unwind"]!((this.room = call["pause_buffer"]!()));
+    };
+    const imports: WebAssembly.Imports = { api: { failed, pause }, wasi_snapshot_preview1: {} };
+    for (const { module: from, name } of WebAssembly.Module.imports(module))
+      if (from === "wasi_snapshot_preview1") imports[from]![name] = system[name]!;
+    const instance = new WebAssembly.Instance(module, imports);
+    this.calls = instance.exports as unknown as Record<string, Call>;
+    this.memory = instance.exports["memory"] as WebAssembly.Memory;
+    this.calls["_initialize"]!();
+  }
+
+  /** Bytes of memory of the instance. */
+  get size(): number { return this.memory.buffer.byteLength; }
+
+  private words(at: number, size: number): string {
+    return text.decode(new Uint8Array(this.memory.buffer, at, size));
+  }
+
+  /** A call that takes and returns numbers. A trap becomes an error with a message. */
+  number(name: string, ...given: number[]): number {
+    try {
+      const info = this.calls[name]!(...given);
+      if (this.calls["asyncify_get_state"]!() === unwinding) this.pauseIn(name, given);
+      return info;
+    } catch (error) {
+      if (error instanceof DoorError) throw error;
+      const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
+      throw new DoorError(full ? "memory" : "bug", String(error));
+    }
+  }
+
+  private pauseIn(name: string, given: number[]): void {
+    this.calls["asyncify_stop_unwind"]!();
+    this.paused = (): number => {
+      this.paused = undefined;
+      this.calls["asyncify_start_rewind"]!(this.room);
+      return this.number(name, ...given);
+    };
+  }
+
+  /** Whether a call is paused: only its continuation may be called then. */
+  get waits(): boolean { return this.paused !== undefined; }
+
+  private request(request: unknown): void {
+    const bytes = new TextEncoder().encode(JSON.stringify(request));
+    const at = this.number("request_buffer", bytes.length);
+    new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
+  }
+
+  /** A call that returns text. A paused one reports that more is left, like a request in parts. */
+  say(name: string, request?: unknown, ...given: number[]): string {
+    if (request !== undefined) this.request(request);
+    if (this.paused && name === "go_on") this.paused();
+    else this.number(name, ...given);
+    if (this.paused) return '{"more":1}';
+    return this.words(this.number("response_data"), this.number("response_size"));
+  }
+
+  ask<T>(name: string, request?: unknown, ...given: number[]): T {
+    return JSON.parse(this.say(name, request, ...given)) as T;
+  }
+
+  /** A call that returns bytes: a copy of them, which may be transferred. */
+  bytes(name: string, size: number, ...given: number[]): ArrayBuffer {
+    const at = this.number(name, ...given);
+    return this.memory.buffer.slice(at, at + size);
+  }
+
+  /** The same with a text request. */
+  bytesAbout(name: string, request: unknown, size: number, ...given: number[]): ArrayBuffer {
+    this.request(request);
+    return this.bytes(name, size, ...given);
+  }
+
+  /** Copies bytes into the module, for the next call. */
+  give(bytes: ArrayBuffer): void {
+    const at = this.number("tile_buffer", bytes.byteLength);
+    new Uint8Array(this.memory.buffer, at, bytes.byteLength).set(new Uint8Array(bytes));
+  }
+}

@@ -1,0 +1,141 @@
+// Numbers under the pictures: the metrics of a film with the published values of the same run, tails, and charts of
+// both.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "parts.h"
+
+namespace crescent::web {
+
+namespace {
+
+ordered_json one_metric(const RunMetrics& run, const std::string& name) {
+    const std::optional<Published>& figures = bench().experiment.figures;
+    ordered_json out = {
+        {"value", json_number(metric_value(run, name))}, {"text", figures_of(name, metric_value(run, name))}};
+    const bool same_seed = figures && (!figures->seed || *figures->seed == run.key.seed);
+    const auto published = same_seed ? figures->find(run.key.arm, run.key.n, run.key.s, name) : std::nullopt;
+    if (published) out["published"] = figures_of(name, *published);
+    return out;
+}
+
+std::string class_of(const std::string& arm) {
+    const auto& arms = bench().experiment.arms;
+    const auto at = std::ranges::find(arms, arm, &ArmPlan::name) - arms.begin();
+    return fmt::format("c{}", at % 6);
+}
+
+/// Merges the largest samples of a box with those of the boxes before it.
+void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
+    const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
+    count_work(pixels_of(box) * cost_of(sampler, tail_cost * plan.n));
+    ProgressMonitor monitor;
+    std::uint64_t drawn = 0;
+    const std::vector<float> here =
+        largest_samples(bench().scene, sampler, plan.n, bench().experiment.seed, ends, plan.kept, "", monitor, drawn);
+    largest.insert(largest.end(), here.begin(), here.end());
+    if (largest.size() <= plan.kept) return;
+    std::ranges::nth_element(largest, largest.begin() + static_cast<std::ptrdiff_t>(plan.kept), std::greater<>());
+    largest.resize(plan.kept);
+}
+
+void send_tail(std::vector<float>& largest) {
+    std::ranges::sort(largest, std::greater<>());
+    const std::optional<Tail> found = fit_pooled_tail(largest);
+    if (!found) return respond(ordered_json{{"words", "no tail: the samples do not spread"}});
+    // The mean is the integral and exists for any k; from k = 1 on the observed samples do not bound it.
+    const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
+    const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
+        : found->heavy() && sure                 ? "inconclusive: heavy tail, the variance looks infinite"
+        : found->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
+        : sure                                   ? "the variance looks finite"
+                                                 : "the variance may be finite";
+    respond(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
+        {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
+}
+
+ordered_json metrics_of(const Slot& s) {
+    const Bench& b = bench();
+    const RunMetrics run = measure(b.experiment, s.key, s.film, b.reference, b.shapes);
+    ordered_json out = {{"key", to_string(s.key)}, {"largest", json_number(run.largest)}, {"bad", run.bad}};
+    for (const auto& [name, info] : metric_names(b.experiment))
+        if (!(info->from_two_samples && s.key.n < 2)) out["metrics"][name] = one_metric(run, name);
+    for (const Region& region : b.experiment.regions) {
+        const double error = rms(b.reference.error, b.reference.width, region.box);
+        const double rmse = run.region(region.name)->rmse;
+        if (error > most_error_share * rmse) out["unsure"].push_back(region.name);
+    }
+    return out;
+}
+
+}  // namespace
+
+/// Film `index` -> {key, metrics: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
+CRESCENT_EXPORT(metrics)(int index)->void {
+    const auto out = std::make_shared<ordered_json>();
+    const auto hash = std::make_shared<FilmHash>();
+    Parts parts{[=] {
+        count_work(bench().pixels() * metric_cost);
+        *out = metrics_of(slot(index));
+    }};
+    for (std::size_t plane = 0; plane < slot(index).film.planes().size(); ++plane)
+        parts.emplace_back([=] {
+            count_work(bench().pixels() / hashed);
+            hash->add(slot(index).film.planes()[plane]);
+        });
+    parts.emplace_back([=] {
+        (*out)["hash"] = hash->text();
+        respond(*out);
+    });
+    begin(std::move(parts));
+}
+
+/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box.
+CRESCENT_EXPORT(tail)()->void {
+    const ordered_json query = request();
+    const Box box = requested_box(query);
+    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    const TailPlan plan = tail_plan(box);
+    const auto largest = std::make_shared<std::vector<float>>();
+    Parts parts;
+    if (plan.kept > 0)
+        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
+            parts.emplace_back([=] { keep_largest(part, sampler, plan, *largest); });
+    parts.emplace_back([=] { send_tail(*largest); });
+    begin(std::move(parts));
+}
+
+/// {region, series: [{arm, points: [[n, rmse], ...]}]} -> RMSE against N as SVG, with N^(-1/2) from the first points.
+CRESCENT_EXPORT(ladder_chart)()->void {
+    const ordered_json query = request();
+    std::vector<double> ns, values;
+    for (const auto& series : query.at("series"))
+        for (const auto& p : series.at("points")) ns.push_back(p.at(0)), values.push_back(p.at(1));
+    Axis x = log_axis("N, samples per pixel", ns);
+    x.ticks = ns;
+    std::ranges::sort(x.ticks);
+    x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
+    const double last = *std::ranges::max_element(ns);
+    x.high *= 2.2;  // room for names at the ends of lines
+    for (const auto& series : query.at("series"))
+        if (const auto& all = series.at("points"); !all.empty())
+            values.push_back(all[0].at(1).get<double>() * std::sqrt(all[0].at(0).get<double>() / last));
+    const auto region = query.at("region").get<std::string>();
+    Chart chart(420, 330, x, log_axis("RMSE of " + region, values), "RMSE against N in region " + region);
+    for (const auto& series : query.at("series")) {
+        std::vector<Point> points;
+        for (const auto& p : series.at("points")) points.push_back({p.at(0), p.at(1)});
+        if (points.empty()) continue;
+        const auto arm = series.at("arm").get<std::string>();
+        const Point first = points.front();
+        if (first.y > 0) chart.line({first, {last, first.y * std::sqrt(first.x / last)}}, "dashed " + class_of(arm));
+        chart.line(points, class_of(arm));
+        chart.dots(points, class_of(arm));
+        chart.name(points.back(), arm, class_of(arm));
+    }
+    respond(chart.str());
+}
+
+}  // namespace crescent::web

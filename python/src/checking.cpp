@@ -1,0 +1,250 @@
+// Samplers and the results of their checks, for crescent/_check.py.
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "callables.h"
+#include "doors.h"
+
+namespace crescent::python {
+
+namespace {
+
+using Adapter = std::shared_ptr<const SamplerAdapter>;
+
+/// CheckCases over w_o, and the sampler in them.
+struct CheckCases {
+    std::vector<CheckCase> all;
+    Adapter adapter;  // null: a built-in sampler
+    std::size_t size() const {
+        std::size_t checked = 0;
+        for (const CheckCase& t : all) checked += !t.baseline;
+        return checked;
+    }
+};
+
+Traits::WoDomain wo_domain(const std::string& wo) {
+    if (wo == "upper") return Traits::WoDomain::upper;
+    if (wo == "both") return Traits::WoDomain::both;
+    if (wo == "none") return Traits::WoDomain::none;
+    throw nb::value_error(fmt::format("wo is '{}': expected 'upper', 'both' or 'none'", wo).c_str());
+}
+
+CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers,
+    int channels, const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial, bool reciprocal,
+    bool own_random, std::optional<std::vector<double>> eta, bool importance, bool full, const Grid& grid) {
+    Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
+    c.traits.numbers = numbers;
+    c.traits.channels = channels;
+    c.traits.wo = wo_domain(wo);
+    c.traits.has_pdf = !c.pdf.is_none();
+    c.traits.delta = delta;
+    c.traits.reciprocal = reciprocal;
+    c.traits.own_random = own_random;
+    c.traits.importance = importance;
+    if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
+    const auto adapter = std::make_shared<CallableSampler>(std::move(c));
+    return {make_user_cases(adapter, full, grid), adapter};
+}
+
+/// What was checked of what, in words and for files.
+struct CheckRun {
+    CheckResult result;
+    ResultSource source;
+    bool against = false;
+};
+
+TestSettings settings_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
+    if (!(alpha > 0 && alpha < 1))
+        throw nb::value_error(fmt::format("alpha is {:g}: expected a number between 0 and 1", alpha).c_str());
+    TestSettings r = full ? TestSettings::thorough() : TestSettings::quick();
+    r.alpha = alpha;
+    r.seed = seed;
+    r.pictures = true;
+    r.accept_few = accept_few;
+    return r;
+}
+
+void set_raised(const CheckCases& check_cases, Raised* raised) {
+    if (const auto* callables = dynamic_cast<const CallableSampler*>(check_cases.adapter.get()))
+        callables->set_raised(raised);
+}
+
+bool is_serial(const CheckCases& check_cases) {
+    return dynamic_cast<const CallableSampler*>(check_cases.adapter.get()) && check_cases.adapter->serial();
+}
+
+CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::uint32_t seed, bool full,
+    bool accept_few, bool expect_same, int threads, const std::string& command, const nb::object& progress) {
+    const TestSettings settings = settings_of(alpha, seed, full, accept_few);
+    PolledMonitor monitor;
+    Raised raised(monitor);
+    CheckRun out{{}, {version(), commit(), command}, other != nullptr};
+    const auto work = [&] {
+        if (!other) {
+            out.result = run_checks(check_cases.all, settings, monitor);
+            return;
+        }
+        std::vector<CheckCase> a = check_cases.all, b = other->all;
+        for (std::vector<CheckCase>* side : {&a, &b})
+            std::erase_if(*side, [](const CheckCase& t) { return t.baseline; });
+        if (other->adapter) b = sampler_against(other->adapter, a);
+        out.result = compare_samplers(a, b, settings, expect_same, monitor);
+    };
+    const bool serial = is_serial(check_cases) || (other && is_serial(*other));
+    set_raised(check_cases, &raised);
+    if (other) set_raised(*other, &raised);
+    const auto quiet = [&] {
+        set_raised(check_cases, nullptr);
+        if (other) set_raised(*other, nullptr);
+    };
+    try {
+        watched(monitor, raised, progress, serial, [&] { threads > 0 ? on_threads(threads, work) : work(); });
+    } catch (...) {
+        quiet();
+        throw;
+    }
+    quiet();
+    return out;
+}
+
+/// Describes the distribution of the draws, as text and as JSON.
+std::pair<std::string, std::string> described(
+    CheckCases& check_cases, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
+    check::DescribeSettings settings;
+    settings.seed = seed;
+    if (full) settings.draws *= 16, settings.draws_of_limited *= 16;
+    PolledMonitor monitor;
+    Raised raised(monitor);
+    std::vector<check::Description> all;
+    const auto work = [&] { all = check::describe(check_cases.all, settings, monitor); };
+    set_raised(check_cases, &raised);
+    try {
+        watched(monitor, raised, progress, is_serial(check_cases),
+            [&] { threads > 0 ? on_threads(threads, work) : work(); });
+    } catch (...) {
+        set_raised(check_cases, nullptr);
+        throw;
+    }
+    set_raised(check_cases, nullptr);
+    std::string text;
+    for (const check::Description& d : all) text += check::description_text(d) + "\n";
+    return {text, check::description_json(all).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
+/// Returns the cases of a built-in sampler on which `a` was checked.
+CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
+    if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
+        const std::string near = nearest(arm, names);
+        throw nb::value_error(fmt::format(
+            "against is '{}': no built-in arm{}", arm, near.empty() ? "" : fmt::format("; did you mean '{}'?", near))
+                .c_str());
+    }
+    std::vector<CheckCase> checked = a.all;
+    std::erase_if(checked, [](const CheckCase& t) { return t.baseline; });
+    return {sampler_named_against(arm, checked), nullptr};
+}
+
+void draw_batches(const CheckCases& check_cases, std::uint32_t batches) {
+    if (!check_cases.adapter) throw nb::value_error("an arm of the list has no callables");
+    PolledMonitor monitor;
+    Raised raised(monitor);
+    set_raised(check_cases, &raised);
+    const int count = check_cases.adapter->traits().numbers;
+    const auto batch = [&](std::uint32_t b) {
+        std::vector<PrimarySample> u(32768);
+        std::vector<Draw> out(u.size());
+        for (std::size_t i = 0; i < u.size(); ++i)
+            for (int k = 0; k < count; k += 2) {
+                const Vec2<float> pair = draw(1, b, i, static_cast<std::uint32_t>(k));
+                u[i][k] = pair.x;
+                if (k + 1 < count) u[i][k + 1] = pair.y;
+            }
+        check_cases.adapter->sample(0, check_cases.all.front().wo, u, out);
+    };
+    watched(monitor, raised, nb::none(), check_cases.adapter->serial(), [&] {
+        if (check_cases.adapter->serial())
+            for (std::uint32_t b = 0; b < batches; ++b) batch(b);
+        else parallel_for(std::uint32_t{0}, batches, batch);
+    });
+    set_raised(check_cases, nullptr);
+}
+
+using AsDict = nb::typed<nb::dict, std::string, nb::any>;
+
+AsDict as_dict(const Verdict& v) {
+    nb::dict out;
+    out["arm"] = v.arm;
+    out["case"] = v.check_case;
+    out["name"] = v.name;
+    out["state"] = std::string(word(v.state));
+    out["say"] = v.message;
+    out["cause"] = v.cause;
+    out["settle"] = settling(v, FrontEnd::python);
+    out["expected"] = v.expected;
+    out["evidence"] = v.evidence.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    out["seconds"] = v.seconds;
+    return out;
+}
+
+std::vector<AsDict> verdicts_of(const CheckRun& j) {
+    std::vector<AsDict> out;
+    for (const Verdict& v : j.result.verdicts) out.push_back(as_dict(v));
+    return out;
+}
+
+void add_check_run(nb::module_& m) {
+    nb::class_<CheckRun>(m, "CheckRun", "A result as it came: verdicts with their evidence, and where it comes from.")
+        .def_prop_ro("state", [](const CheckRun& j) { return std::string(word(j.result.state)); })
+        .def_prop_ro("as_expected", [](const CheckRun& j) { return j.result.as_expected; })
+        .def_prop_ro("tests", [](const CheckRun& j) { return j.result.tests; })
+        .def_prop_ro("questions", [](const CheckRun& j) { return j.result.questions; })
+        .def_prop_ro("verdicts", &verdicts_of)
+        .def(
+            "text",
+            [](const CheckRun& j, bool all) {
+                return j.against ? against_text(j.result) : verdict_table(j.result, all);
+            },
+            nb::arg("all") = false)
+        .def("json", [](const CheckRun& j) { return verdict_json(j.result, j.source); })
+        .def("junit", [](const CheckRun& j) { return verdict_junit(j.result); })
+        .def("html", [](const CheckRun& j) { return verdict_html(j.result, j.source); });
+}
+
+}  // namespace
+
+void add_checking(nb::module_& m) {
+    using namespace nb::literals;
+    nb::class_<CheckCases>(m, "CheckCases", "A sampler over a grid of w_o, ready to be checked.")
+        .def("__len__", &CheckCases::size)
+        .def_prop_ro(
+            "draws",
+            [](const CheckCases& t) {
+                const auto* c = dynamic_cast<const CallableSampler*>(t.adapter.get());
+                return c ? c->draws() : 0;
+            },
+            "Draws that the callables made so far.");
+    m.def("cases_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
+        "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "own_random"_a,
+        "eta"_a.none(), "importance"_a, "full"_a, "grid"_a);
+    m.def(
+        "cases_of_arm",
+        [](const std::string& arm, const Settings& settings, bool full, const Grid& grid) {
+            return CheckCases{make_cases(arm, settings, full, grid), nullptr};
+        },
+        "arm"_a, "settings"_a, "full"_a, "grid"_a);
+    m.def("draw", &draw_batches, "cases"_a, "batches"_a,
+        "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
+    m.def("baseline_of", &arm_beside, "arm"_a, "cases"_a);
+    m.def("run_checks", &checked, "cases"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
+        "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
+    m.def("describe", &described, "cases"_a, "seed"_a, "full"_a, "threads"_a, "progress"_a.none());
+    m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes beside the place and renames.");
+    m.def("sampler_names", &sampler_names, "The built-in arms.");
+    add_check_run(m);
+}
+
+}  // namespace crescent::python

