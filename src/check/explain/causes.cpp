@@ -28,7 +28,7 @@ constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
 constexpr double most_of_it = 0.4, nearly_all = 0.9;
 /// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and a
 /// likelihood from that of p for what explains a part.
-constexpr double clear_errors = 5;
+constexpr double clear_errors = 8;
 
 /// A candidate, with what is said of it once it has passed.
 struct Candidate {
@@ -179,7 +179,8 @@ void sort_by_gain(Candidates& all) {
 Candidates plain_candidates(std::span<const Place> places) {
     Candidates out;
     add_if(out, constant_candidate(places));
-    for (FactorHypothesis& f : factor_hypotheses(places)) out.push_back(candidate_of(std::move(f), places));
+    for (FactorHypothesis& f : factor_hypotheses(places))
+        if (std::fabs(f.fitted) > clear_errors * f.error) out.push_back(candidate_of(std::move(f), places));
     for (const Hypothesis& h : frame_hypotheses(places)) out.push_back(candidate_of(h));
     sort_by_gain(out);
     return out;
