@@ -251,11 +251,11 @@ std::string_view cause_of(const Fault& fault) {
 bool is_true_of(std::string_view kind, std::string_view family, std::string_view text) {
     static const std::map<std::string_view, std::vector<std::string_view>> words = {
         {"leak", {"spread evenly", "does not have one of the lobes"}}, {"rotation", {"turned by"}},
-        {"mismatch", {"An exponent or a roughness differs"}}, {"exponent", {"An exponent or a roughness differs"}},
-        {"hole", {"positive where no draw falls"}}, {"one number twice", {"lie on a curve"}},
-        {"lobe's pdf", {"the chooser's probability"}}};
-    const bool bounded =
-        family == "cone" || family == "ring" || family.find(" light ") != family.npos || family == "textured disk";
+        {"mismatch", {"An exponent or a roughness differs", "Across the surface p is"}},
+        {"exponent", {"An exponent or a roughness differs"}}, {"hole", {"positive where no draw falls"}},
+        {"one number twice", {"lie on a curve"}}, {"lobe's pdf", {"the chooser's probability"}}};
+    const bool bounded = family == "cone" || family == "ring" || family.find(" light ") != family.npos ||
+        family == "textured disk" || family == "projected solid angle of a rectangle";
     if (bounded && (kind == "leak" || kind == "mismatch") && text.find("p is a constant") != text.npos) return true;
     const auto at = words.find(kind);
     if (at == words.end()) return false;

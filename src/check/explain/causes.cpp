@@ -26,6 +26,9 @@ constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
 /// Shares of the divergence that are enough where nothing explains all of it: of frames, in which a table that is read
 /// in another order is not wholly known; of what has a fitted number, which replicates know better than the fit.
 constexpr double most_of_it = 0.4, nearly_all = 0.9;
+/// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and a
+/// likelihood from that of p for what explains a part.
+constexpr double clear_errors = 8;
 
 /// A candidate, with what is said of it once it has passed.
 struct Candidate {
@@ -40,7 +43,7 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
     bool any = false;
     for (const Place& place : places) {
         all.push_back(mass_ratio(*place.at));
-        any = any || std::fabs(all.back().ratio - 1) > std::max(detection_floor, 3 * all.back().error);
+        any = any || std::fabs(all.back().ratio - 1) > std::max(detection_floor, clear_errors * all.back().error);
     }
     if (!any) return {};
     Candidate out;
@@ -115,7 +118,7 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
 }
 
 Candidate candidate_of_power(FactorHypothesis f) {
-    Candidate out{f.hypothesis, {}, nearly_all};
+    Candidate out{f.hypothesis};  // much that is no power is nearly one
     out.make_cause = [f](const Hypothesis&) {
         return Cause{"p", f.exponent, f.error,
             fmt::format("Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
@@ -176,7 +179,8 @@ void sort_by_gain(Candidates& all) {
 Candidates plain_candidates(std::span<const Place> places) {
     Candidates out;
     add_if(out, constant_candidate(places));
-    for (FactorHypothesis& f : factor_hypotheses(places)) out.push_back(candidate_of(std::move(f), places));
+    for (FactorHypothesis& f : factor_hypotheses(places))
+        if (std::fabs(f.fitted) > clear_errors * f.error) out.push_back(candidate_of(std::move(f), places));
     for (const Hypothesis& h : frame_hypotheses(places)) out.push_back(candidate_of(h));
     sort_by_gain(out);
     return out;
@@ -190,7 +194,8 @@ Candidates fitted_candidates(std::span<const Place> places) {
             out.push_back(candidate_of(*turn, places, true));
     if (const auto turn = turn_hypothesis(places); turn && turn->is_clear())
         out.push_back(candidate_of(*turn, places, false));
-    if (auto power = power_hypothesis(places)) out.push_back(candidate_of_power(std::move(*power)));
+    if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_errors * power->error)
+        out.push_back(candidate_of_power(std::move(*power)));
     for (const Leak& leak : leak_hypotheses(places)) {
         Candidate c{leak.hypothesis, {}, nearly_all};
         c.make_cause = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
@@ -233,7 +238,9 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     for (Candidate& c : all) {
         if (c.in_part > 1) continue;
         score(c.hypothesis, places);
-        if (c.hypothesis.explained > c.in_part && (!best || c.hypothesis.gain > best->hypothesis.gain)) best = &c;
+        if (c.hypothesis.gain > clear_errors * c.hypothesis.error && c.hypothesis.explained > c.in_part &&
+            (!best || c.hypothesis.gain > best->hypothesis.gain))
+            best = &c;
     }
     if (!best) return {};
     for (const Candidate& c : all) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int em_steps = 60;
 constexpr double least_share = 1e-4;
-constexpr double least_errors = 4;        // standard errors that a share is above 0
+constexpr double least_errors = 8;        // standard errors that a share is above 0
 constexpr double expected_at_least = 10;  // draws, of a leaf in which none fell: e^-10
 constexpr double right_elsewhere = 0.1;   // how far draws over p may be from 1 where draws fall
 constexpr double least_unreached = 0.02;  // share of p's mass
