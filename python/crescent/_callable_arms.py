@@ -46,7 +46,7 @@ def _sampler_of(name: Any, sampler: Any) -> Sampler:
 
 
 def source_of(sampler: Sampler) -> str:
-    """ "FILE.py:NAME" of the callable that draws; its module stands for a file where it was not read from one."""
+    """ "FILE.py:NAME" of the callable that draws; its module if it was not read from a file."""
     call = inspect.unwrap(sampler.sample)
     name = getattr(call, "__qualname__", type(call).__qualname__)
     try:

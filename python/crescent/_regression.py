@@ -1,4 +1,4 @@
-"""The fixture `render_regression`: the renders of a test against the baseline that is committed beside it.
+"""The fixture `render_regression`: the renders of a test against the baseline that is committed next to it.
 
 The baseline of `test_lamp` in `tests/test_scene.py` is `tests/test_scene/test_lamp-moments.exr`: mean and variance of
 each pixel. `pytest --crescent-accept` makes the renders of the tests that run the baseline.

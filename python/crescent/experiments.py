@@ -397,7 +397,7 @@ def run(
     """Runs an experiment, or the file of one.
 
     `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and evidence too.
-    `out`: a folder for metrics and films. Films are the same bits whatever `threads` and `isa` say.
+    `out`: a folder for metrics and films. Films have the same bits for any `threads` and `isa`.
 
     Each sampler of ``e.samplers`` is an arm of its name, at the sample counts of the other arms. What it raises is
     raised here. `code`: False refuses an experiment whose file names a plugin, a program or a Python file.
