@@ -216,8 +216,8 @@ Experiment with_figures(Experiment experiment);
 /// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
 /// layout.
 std::string canonical_text(const Experiment& experiment);
-/// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their path, of the
-/// published figures, and of the contents of the files of samplers (sampler_files.h). Computed at each call, so
+/// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their path, of
+/// the published figures, and of the contents of the files of samplers (sampler_files.h). Computed at each call, so
 /// that it is right for an experiment that was made or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 

@@ -33,7 +33,7 @@ constexpr double clear_errors = 8;
 /// A candidate, with what is said of it once it has passed.
 struct Candidate {
     Hypothesis hypothesis;
-    std::function<Cause(const Hypothesis&)> make_cause;
+    std::function<Cause(const Hypothesis&)> make_cause{};
     double in_part = 2;  // named too if it explains this share of the divergence; above 1: only if it passes
     int plainness = 0;   // of two that say the same the plainer is named
 };
