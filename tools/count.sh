@@ -37,7 +37,7 @@ failed_tests() {
 # longest LOG: the five slowest tests of ctest.
 longest() {
     sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +([^ ]+) .* ([0-9]+)\.[0-9]+ sec.*/\2 \1/p' "$1" | sort -rn | head -n 5 |
-        awk '{ printf "%s%s %d s", NR > 1 ? ", " : "", $2, $1 }'
+        awk '{ printf "%s%s %d s", (NR > 1 ? ", " : ""), $2, $1 }'
 }
 
 # check PRESET [OPTION...]: runs ctest on its build. A test program counts as its test cases, a script as one.
