@@ -147,7 +147,8 @@ TEST(Suites, EqualSeedsOnOneSideAreFound) {
     for (int k = 0; k < 6; ++k)
         s.put("view", "baseline", k, noise, 2100 + static_cast<std::uint32_t>(k)),
             s.put("view", "candidate", k, noise, 5);
-    const ViewResult& view = s.compare().views[0];
+    const SuiteResult result = s.compare();
+    const ViewResult& view = result.views[0];
     EXPECT_EQ(view.state, ViewState::too_few);
     EXPECT_THAT(view.sentence, HasSubstr("give each render its own seed"));
 }
