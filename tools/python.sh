@@ -52,7 +52,7 @@ make_environment() {
 # add_python_module DIR: adds the Python module to the release build, with an environment of its own in DIR. If that is
 # not possible, prints a message and omits it: nothing else depends on it.
 add_python_module() {
-    local python packages=(nanobind numpy pytest mypy matplotlib xarray mitsuba jax)
+    local python packages=(nanobind numpy pytest mypy matplotlib pandas xarray mitsuba jax 'arviz<1')
     python=$(find_python) && (make_environment "$1" "$python" "${packages[@]}") ||
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&

@@ -44,6 +44,7 @@ struct Stage {
 void test_all(const Evidence& e, const Visit& visit) {
     test_sums(e, visit);
     test_nodes(e, visit);
+    test_bands(e, visit);
     test_light(e, visit);
     test_counts(e, visit);
     test_deltas(e, visit);

@@ -11,6 +11,7 @@ namespace {
 /// A cosine sampler that can be broken in one way.
 struct Cosine : SamplerAdapter {
     double factor = 1, leak = 0, hole = 0;  // of pdf; share of draws that are uniform; mass of a cap never drawn
+    double turn = 1;  // azimuths are drawn over this share of the circle
     bool nothing = false, elsewhere = false;
     std::string name() const override { return "cosine"; }
     Traits traits() const override {
@@ -22,7 +23,8 @@ struct Cosine : SamplerAdapter {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const bool leaks = u[i][2] < leak;
             const double z = leaks ? u[i].x : std::sqrt(u[i].x), r = std::sqrt(1 - z * z);
-            Vec3d w{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z};
+            const double phi = two_pi * turn * u[i].y;
+            Vec3d w{r * std::cos(phi), r * std::sin(phi), z};
             if (w.x * 0.48 + w.y * 0.36 + w.z * 0.8 > 1 - hole / 1.6) w.x = -w.x, w.y = -w.y;
             out[i] = {};
             if (!nothing) out[i] = {w, elsewhere ? 1.0 : value(w.z)};
@@ -71,6 +73,19 @@ TEST(CheckAtOneWo, FindsFaultsAndNamesTheirVerdict) {
     EXPECT_TRUE(has(checked(hole), "density"));
     EXPECT_TRUE(has(checked(nothing), "normalised"));
     EXPECT_TRUE(has(checked(elsewhere), "identity"));
+}
+
+TEST(CheckAtOneWo, FindsAnArcThatIsNeverDrawn) {
+    Cosine arc;
+    arc.turn = 358.0 / 360;
+    const CheckAt c = checked(arc);
+    const auto band = std::ranges::find(c.findings, Family::band, [](const Finding& f) { return f.first.family; });
+    ASSERT_NE(band, c.findings.end());
+    // The last of 64: 5.625 degrees, of which 2 are missing.
+    const ChartRect where = rect_of_band(band->first.member);
+    EXPECT_EQ(where.phi1, two_pi);
+    EXPECT_NEAR(where.phi0, two_pi * 63 / 64, 1e-12);
+    EXPECT_NEAR(-band->second.difference / band->second.expected, 2.0 / 5.625, 0.1);
 }
 
 /// A fault of a stated size is found in nine of ten checks.

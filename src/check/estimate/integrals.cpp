@@ -189,12 +189,27 @@ private:
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
+            if (source_.has_density()) add_to_bands(at, h[0][bridge], h[1][bridge], leaf.q, k);
             if (of_f_) take_light(g.leaf, at, k);
         }
         if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
         to.top = most;
         out_.points += 2 * g.cells();
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
+    }
+
+    /// Values of h p of a pair. From them h^2 p follows: with g = h p, h = q / (p + q) is 1 - g / q.
+    void add_to_bands(std::size_t at, double a, double b, double q, double k) {
+        const ChartPoint first = to_chart(w_[at]), second = to_chart(w_[at + 1]);
+        for (std::size_t axis = 0; axis < axes; ++axis) {
+            const std::size_t i = band_of(first, axis), j = band_of(second, axis);
+            out_.second_by_band[i] += k * a * (1 - a / q), out_.second_by_band[j] += k * b * (1 - b / q);
+            if (i == j) {
+                out_.bridge_by_band[i].add_pair(a, b, k);
+            } else {
+                out_.bridge_by_band[i].add_pair(a, 0, k), out_.bridge_by_band[j].add_pair(0, b, k);
+            }
+        }
     }
 
     void allow_tabulation(const Values& h, Vec3d w, double k, LeafIntegral& to) {
@@ -245,6 +260,8 @@ private:
 
 void scale(Integrals& x, double by) {
     for (Estimate& e : x.sums) e.scale(by);
+    for (Estimate& e : x.bridge_by_band) e.scale(by);
+    for (double& v : x.second_by_band) v *= by;
     x.domain *= by;
     for (double& v : x.known_to) v *= by;
     for (double& v : x.even) v *= by;
@@ -281,6 +298,8 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
         a.second += b.second, a.solid_angle += b.solid_angle, a.known_to += b.known_to;
         a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);
     }
+    for (std::size_t k = 0; k < to.bridge_by_band.size(); ++k)
+        to.bridge_by_band[k].add(pass.bridge_by_band[k]), to.second_by_band[k] += pass.second_by_band[k];
     to.heavy.insert(to.heavy.end(), pass.heavy.begin(), pass.heavy.end());
     to.domain += pass.domain;
     to.points = total;

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "check/estimate/bands.h"
 #include "check/estimate/plan.h"
 
 namespace crescent::check {
@@ -58,6 +59,8 @@ struct LightIntegrals {
 struct Integrals {
     std::array<Estimate, integrands> sums;
     std::vector<LeafIntegral> leaves;
+    ByBand<Estimate> bridge_by_band;  // of h p
+    ByBand<double> second_by_band{};  // of h^2 p
     LightIntegrals light;
     std::array<double, integrands> even{}, even_square{};  // integrals of h and h^2 where p > 0
     std::array<double, integrands> known_to{};             // what the error of a tabulated p makes of `sums` at most

@@ -241,6 +241,8 @@ private:
         ++to_.checks.directions;
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
+        const ChartPoint at = to_chart(w);
+        for (std::size_t axis = 0; axis < axes; ++axis) to_.bands[band_of(at, axis)] += v[bridge];
         ++to_.counts[l];
         const double density = source_.has_density() ? p : leaf.q;
         to_.mean_p += density;

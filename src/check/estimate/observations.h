@@ -63,6 +63,7 @@ struct Observations {
     double independent = 0, scrambled = 0;  // draws of each kind; scrambled: in all sets together
     std::array<Sums, integrands> sums;
     std::vector<double> leaves;  // sum of h over independent draws, by leaf
+    ByBand<double> bands{};      // the same by band
     std::vector<float> counts;   // independent draws by leaf, for maps
     std::array<Replicates, integrands> by_set{};
     std::vector<Replicates> node_by_set;  // sum of h, by row of the coarse node that a leaf is in

@@ -66,6 +66,16 @@ std::string node_sentence(const CheckAt& c, int node, const Answer& a) {
         where);
 }
 
+std::string band_sentence(int member, const Answer& a) {
+    const ChartRect r = rect_of_band(member);
+    constexpr double degrees = 360 / two_pi;
+    const bool of_phi = r.t0 == 0 && r.t1 == 2;
+    return fmt::format("{} {} draws than p expects at {} from {:.4g} to {:.4g} degrees.",
+        percent(std::fabs(a.difference) / a.expected, interval * a.sd / a.expected),
+        a.difference > 0 ? "more" : "fewer", of_phi ? "azimuths" : "polar angles",
+        degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
+}
+
 std::string pair_sentence(const char* what, double share, const Example& e, int numbers, const std::string& values) {
     return fmt::format("{} for {:.3g} % of the draws, {}{}.", what, 100 * share, first_at(e, numbers), values);
 }
@@ -126,6 +136,7 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
         case Family::centre:
         case Family::centre_sets:
         case Family::depth: return sum_sentence(f, a);
+        case Family::band: return band_sentence(f.first.member, a);
         case Family::pointwise:
             return pair_sentence("The pdf with a draw is not pdf(w)", a.difference, checks.pointwise.first, numbers,
                 fmt::format(": {:.5g} with the draw, pdf(w) {:.5g}", checks.pointwise.first.draw.pdf,

@@ -10,6 +10,13 @@
 
 namespace crescent::check {
 
+NodeSums& operator+=(NodeSums& to, const NodeSums& o) {
+    to.drawn += o.drawn, to.claimed += o.claimed, to.second += o.second, to.solid_angle += o.solid_angle;
+    to.variance += o.variance, to.doubt += o.doubt, to.known_to += o.known_to;
+    to.largest = std::max(to.largest, o.largest);
+    return to;
+}
+
 std::vector<NodeSums> node_sums(const Evidence& e) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const Observations& o = e.observations;
@@ -23,12 +30,7 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
                 c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q), c.known_to};
             continue;
         }
-        for (int half : {0, 1}) {
-            const NodeSums& h = out[static_cast<std::size_t>(nodes[i].child + half)];
-            s.drawn += h.drawn, s.claimed += h.claimed, s.second += h.second, s.solid_angle += h.solid_angle;
-            s.variance += h.variance, s.doubt += h.doubt, s.known_to += h.known_to,
-                s.largest = std::max(s.largest, h.largest);
-        }
+        for (int half : {0, 1}) s += out[static_cast<std::size_t>(nodes[i].child + half)];
     }
     return out;
 }
@@ -41,12 +43,18 @@ double floor_of_cut(const TreeNode& x, double share) {
 
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node) {
     const TreeNode& x = e.plan.tree.nodes()[node];
-    const NodeSums &all = sums[node], &a = sums[static_cast<std::size_t>(x.child)],
-                   &b = sums[static_cast<std::size_t>(x.child) + 1];
+    const NodeSums &a = sums[static_cast<std::size_t>(x.child)], &b = sums[static_cast<std::size_t>(x.child) + 1];
+    const double share = a.claimed / (a.claimed + b.claimed);
+    return split_between(a, b, e.observations.independent, floor_of_cut(x, share));
+}
+
+NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor) {
+    NodeSums all = a;
+    all += b;
     NodeSplit out;
-    const double r = out.share = a.claimed / all.claimed, less = std::min(r, 1 - r), n = e.observations.independent;
+    const double r = out.share = a.claimed / all.claimed, less = std::min(r, 1 - r);
     out.difference = a.drawn - r * all.drawn;
-    out.floor = all.drawn * (floor_of_cut(x, r) + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
+    out.floor = all.drawn * (floor + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
     const double c2 = all.claimed * all.claimed, to_variance = all.drawn * all.drawn / (c2 * c2);
     out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };

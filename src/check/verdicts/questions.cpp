@@ -19,6 +19,7 @@ const FamilyInfo& info(Family family) {
         {"centre, replicates", "density"},
         {"node", "density"},
         {"node, replicates", "density"},
+        {"band", "density"},
         {"depth", "density"},
         {"delta share", "density"},
         {"delta scatter", "density"},

@@ -23,6 +23,7 @@ enum class Family {
     centre_sets,
     node,  // how h divides between the halves of a node
     node_sets,
+    band,           // how h divides between a band of theta or phi and the rest
     depth,          // sum of squares over all nodes of one depth
     delta_share,    // draws of a delta part against the probability they state
     delta_scatter,  // too many directions for delta parts
@@ -54,7 +55,7 @@ bool is_of_f(Family family);
 /// One question with its result at some stage.
 struct Answer {
     Family family = Family::values;
-    int member = 0;         // channel, axis, node or depth
+    int member = 0;         // channel, axis, node, band or depth
     double difference = 0;  // left side less right side
     double sd = 0, floor = 0;
     double p = 1;         // two-sided
@@ -77,6 +78,7 @@ struct Evidence {
 // Each visits every member of its families.
 void test_sums(const Evidence& e, const Visit& visit);
 void test_nodes(const Evidence& e, const Visit& visit);
+void test_bands(const Evidence& e, const Visit& visit);
 void test_light(const Evidence& e, const Visit& visit);
 void test_counts(const Evidence& e, const Visit& visit);
 void test_deltas(const Evidence& e, const Visit& visit);
@@ -104,10 +106,11 @@ struct NodeSums {
     double drawn = 0, claimed = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0, known_to = 0;
 };
 std::vector<NodeSums> node_sums(const Evidence& e);
-/// What a node's test compares.
+NodeSums& operator+=(NodeSums& to, const NodeSums& other);
+/// What the test of a whole and its part compares.
 struct NodeSplit {
-    double share = 0;       // of h p in the first half
-    double difference = 0;  // of the first half, given the whole
+    double share = 0;       // of h p in the part
+    double difference = 0;  // of the part, given the whole
     double floor = 0, variance = 0, doubt = 0, claim_variance = 0;
     double smaller_half = 0;  // expected draws
     double one_draw = 0;      // what one counts for: E[h^2] / E[h]
@@ -117,6 +120,8 @@ struct NodeSplit {
 double floor_of_cut(const TreeNode& node, double share);
 /// Sums over replicates below each node down to the replicated depth, from those of its lowest rows.
 std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicates> lowest);
+/// Of a whole into a part `a` and the rest `b`. floor: shares of the whole's draws that are allowed.
+NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor);
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node);
 
 }  // namespace crescent::check
