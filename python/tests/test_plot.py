@@ -1,9 +1,9 @@
 """Figures and tables of a result: what they show is what was measured."""
 
-import matplotlib
 import numpy as np
 import pytest
 
+matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
 
 import crescent  # noqa: E402
