@@ -1,5 +1,7 @@
 """crescent.compare and the fixture render_regression."""
 
+from importlib.metadata import entry_points
+
 import numpy as np
 import pytest
 
@@ -84,7 +86,7 @@ def test_lamp(render_regression):
 def test_the_fixture_compares_with_what_was_accepted(pytester):
     def run(seed, scale, *options):
         pytester.makepyfile(test_scene=TEST.replace("{seed}", str(seed)).replace("{scale}", str(scale)))
-        return pytester.runpytest_subprocess("-p", "crescent.pytest_plugin", *options)
+        return pytester.runpytest_subprocess(*LOAD, *options)
 
     run(1, 1).stdout.fnmatch_lines(["*no baseline in *--crescent-accept*"])
     run(1, 1, "--crescent-accept", "--crescent-because", "first").assert_outcomes(passed=1)

@@ -11,7 +11,7 @@ namespace {
 /// A cosine sampler that can be broken in one way.
 struct Cosine : SamplerAdapter {
     double factor = 1, leak = 0, hole = 0;  // of pdf; share of draws that are uniform; mass of a cap never drawn
-    double turn = 1;  // azimuths are drawn over this share of the circle
+    double turn = 1;                        // azimuths are drawn over this share of the circle
     bool nothing = false, elsewhere = false;
     std::string name() const override { return "cosine"; }
     Traits traits() const override {

@@ -177,7 +177,9 @@ private:
                 least = std::min(least, p), most = std::max(most, p);
                 lit = lit || (of_f_ && lit_at(at + a) > 0);
                 if (k * p > heavy_point) out_.heavy.push_back({to_chart(w_[at + a]), p});
-                to.second += k * h[a][bridge] * h[a][bridge] * p;
+                const double second = k * h[a][bridge] * h[a][bridge] * p;
+                to.second += second;
+                if (source_.has_density()) add_second_to_bands(to_chart(w_[at + a]), second);
                 if (w_[at + a].z > 0 || p > 0) out_.domain += k;
                 if (p > 0) {
                     to.solid_angle += k * h[a][bridge];
@@ -189,7 +191,7 @@ private:
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
-            if (source_.has_density()) add_to_bands(at, h[0][bridge], h[1][bridge], leaf.q, k);
+            if (source_.has_density()) add_to_bands(at, h[0][bridge], h[1][bridge], k);
             if (of_f_) take_light(g.leaf, at, k);
         }
         if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
@@ -198,12 +200,15 @@ private:
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
     }
 
-    /// Values of h p of a pair. From them h^2 p follows: with g = h p, h = q / (p + q) is 1 - g / q.
-    void add_to_bands(std::size_t at, double a, double b, double q, double k) {
+    void add_second_to_bands(ChartPoint point, double second) {
+        for (std::size_t axis = 0; axis < axes; ++axis) out_.second_by_band[band_of(point, axis)] += second;
+    }
+
+    /// Values of h p of a pair.
+    void add_to_bands(std::size_t at, double a, double b, double k) {
         const ChartPoint first = to_chart(w_[at]), second = to_chart(w_[at + 1]);
         for (std::size_t axis = 0; axis < axes; ++axis) {
             const std::size_t i = band_of(first, axis), j = band_of(second, axis);
-            out_.second_by_band[i] += k * a * (1 - a / q), out_.second_by_band[j] += k * b * (1 - b / q);
             if (i == j) {
                 out_.bridge_by_band[i].add_pair(a, b, k);
             } else {
