@@ -8,6 +8,8 @@ import pytest
 import crescent
 
 pytest_plugins = ["pytester"]
+#: An installed package's plugin is loaded automatically.
+LOAD = () if entry_points(group="pytest11", name="crescent") else ("-p", "crescent.pytest_plugin")
 
 
 def renders(seed, count=6, *, scale=1.0, sd=0.2, size=32):

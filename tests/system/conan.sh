@@ -25,7 +25,7 @@ onetbb/2021.8.0
 xxhash/0.8.1
 [conf]
 tools.cmake.cmaketoolchain:generator=Ninja
-tools.cmake.cmaketoolchain:user_presets=""
+tools.cmake.cmaketoolchain:user_presets=
 tools.cmake.cmake_layout:test_folder=\$TMP
 END_OF_PROFILE
 PATH="$tools/bin:$PATH" expect 0 "$tools/bin/conan" create "$CRESCENT_SOURCE/examples/conan" -pr:a profile --no-remote
