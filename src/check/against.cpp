@@ -10,7 +10,6 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "check/against_f.h"
 #include "check/check.h"
 #include "check/constants.h"
 #include "check/explain/text.h"

@@ -4,6 +4,7 @@
 // alarm is shared out: half to the regions (Holm), a quarter each to tiles and pixels (false discoveries); within each,
 // half to Y and a sixth to each channel (Bonferroni). Where values are not finite, half of all of it is for them.
 #include "compare/bias.h"
+#include "compare/noise.h"
 
 #include <algorithm>
 #include <array>
@@ -13,8 +14,7 @@
 #include "base/parallel.h"
 #include "compare/compare.h"
 #include "compare/metrics.h"
-#include "compare/noise.h"
-#include "compare/wording.h"
+#include "compare/outputs.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {

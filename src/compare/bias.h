@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/compare.h"
-#include "compare/wording.h"
+#include "compare/outputs.h"
 
 namespace crescent::inline comparison {
 

@@ -7,7 +7,7 @@
 
 #include "base/files.h"
 #include "compare/plan.h"
-#include "compare/plates.h"
+#include "compare/outputs.h"
 #include "output/format.h"
 #include "report/plates/canvas.h"
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <OpenEXR/openexr.h>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -12,10 +13,38 @@
 #include <string>
 #include <vector>
 
+#include "base/vec.h"
 #include "compare/open_file.h"
-#include "compare/primaries.h"
 
 namespace crescent::inline comparison {
+
+// ---- Colours of other primaries than Rec.709: RGB to CIE XYZ and back from the chromaticities of a file, and from one
+// set of primaries to another. White points are adapted by Bradford's transform (Lam 1985), as ICC profiles do.
+
+/// CIE 1931 xy of the three primaries and of white (R = G = B).
+struct Chromaticities {
+    std::array<double, 2> red{0.64, 0.33}, green{0.30, 0.60}, blue{0.15, 0.06}, white{0.3127, 0.3290};  // Rec.709
+};
+
+/// Whether they describe colours: finite, a white with luminance, primaries not on one line.
+bool is_valid(const Chromaticities& c);
+/// Whether no coordinate differs by more than 0.001: the same primaries, written with other digits.
+bool same_primaries(const Chromaticities& a, const Chromaticities& b);
+/// "Rec.709", or the eight numbers.
+std::string to_string(const Chromaticities& c);
+
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+
+Rgb transformed(const Matrix3& m, const Rgb& v);
+/// Y of white is 1. Of Rec.709 the second row is luminance_weights, as ITU-R BT.709 rounds them.
+Matrix3 rgb_to_xyz(const Chromaticities& c);
+/// Without adaptation: XYZ of any white as the RGB that has it.
+Matrix3 xyz_to_rgb(const Chromaticities& c);
+/// RGB of one set of primaries as that of another; white stays white. Files that hold XYZ itself (red 1 0, green 0 1,
+/// blue 0 0) are not adapted.
+Matrix3 conversion(const Chromaticities& from, const Chromaticities& to);
+/// Weights of R, G and B in Y.
+Rgb luminance_weights_of(const Chromaticities& c);
 
 struct ExrChannel {
     std::string name;

@@ -1,7 +1,7 @@
 // FLIP (Andersson et al. 2020) and HDR-FLIP (Andersson et al. 2021), with their constants: contrast sensitivities as
 // Gaussians, HyAB after Hunt's adjustment, edges and points of lightness. Distances in degrees of view become pixels by
 // ppd, pixels a degree. ColourPlanes are float, sums double.
-#include "compare/flip.h"
+#include "compare/metrics.h"
 
 #include <algorithm>
 #include <array>

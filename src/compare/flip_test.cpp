@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/flip.h"
+#include "compare/metrics.h"
 
 namespace crescent::inline comparison {
 namespace {

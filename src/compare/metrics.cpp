@@ -10,12 +10,11 @@
 
 #include "base/parallel.h"
 #include "compare/compare.h"
-#include "compare/flip.h"
 #include "compare/plan.h"
 #include "compare/renders.h"
-#include "compare/wording.h"
+#include "compare/outputs.h"
 #include "math/functions.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 #include "output/tone_map.h"
 
 namespace crescent::inline comparison {

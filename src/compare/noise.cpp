@@ -87,7 +87,7 @@ NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::
 }
 
 // ---- Which renders of two arms were made with the same random numbers: those with the same number in their names, or
-// with correlated residuals (shared_seeds.h); and the pictures of their differences.
+// with correlated residuals (noise.h); and the pictures of their differences.
 
 namespace {
 

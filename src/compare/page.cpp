@@ -1,5 +1,5 @@
 // report.html of a comparison: what was found, the numbers with their doubt, the pictures, the spectra, the files.
-#include "compare/page.h"
+#include "compare/outputs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "compare/compare.h"
 #include "compare/metrics.h"
-#include "compare/outputs.h"
 #include "compare/plan.h"
 #include "output/charts.h"
 #include "output/format.h"

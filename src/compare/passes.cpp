@@ -13,10 +13,9 @@
 #include "compare/file_warnings.h"
 #include "compare/metrics.h"
 #include "compare/moments.h"
-#include "compare/shared_seeds.h"
-#include "compare/spectrum.h"
+#include "compare/noise.h"
 #include "math/hypotheses.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 
 namespace crescent::inline comparison {
 

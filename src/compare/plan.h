@@ -11,7 +11,7 @@
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
 #include "experiment/tree.h"
-#include "output/color_map.h"
+#include "output/tone_map.h"
 
 namespace crescent::inline comparison {
 
@@ -59,7 +59,7 @@ struct ComparePlan {
     bool flip = true;                    // whether FLIP is measured
     std::optional<double> brightest;     // the most that Y of a pixel of one render can be
     Expectation expect = Expectation::nothing;
-    int spectrum_blocks = 1024;  // of the noise's spectrum, see spectrum.h
+    int spectrum_blocks = 1024;  // of the noise's spectrum, see noise.h
     bool count_pixel_p = true;   // whether the p of every pixel is counted for the report
     double smallest = 0.01;      // with expect = "same": the relative difference of Y that must have been seen
 };

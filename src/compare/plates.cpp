@@ -1,6 +1,6 @@
 // The plates of a comparison, 1280x720: photographs of one render an arm, their errors on one scale, where arms differ
 // and where the noise moved. Instruments read radiance; photographs have gone through the display chain.
-#include "compare/plates.h"
+#include "compare/outputs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,10 @@
 #include "compare/compare.h"
 #include "compare/metrics.h"
 #include "compare/plan.h"
-#include "compare/wording.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 #include "metrics/compute.h"
-#include "output/color_map.h"
+#include "output/tone_map.h"
 #include "output/format.h"
 #include "report/plates/ladder_chart.h"
 #include "report/plates/sheet.h"

@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "compare/open_file.h"
 #include "compare/plan.h"
-#include "compare/primaries.h"
+#include "compare/exr_file.h"
 #include "metrics/metrics.h"
 
 namespace crescent::inline comparison {
@@ -135,7 +135,7 @@ struct ArmStats {
     std::vector<std::vector<double>> power;                 // [region][frequency]: error spectrum; empty: none
     std::vector<std::uint32_t> not_finite;                  // [pixel]: in how many renders; empty: nowhere
     std::vector<std::vector<std::uint32_t>> failed_groups;  // [render][region]: groups of such pixels; empty: none
-    std::vector<std::vector<float>> sampled;                // [render]: residuals of some pixels, see shared_seeds.h
+    std::vector<std::vector<float>> sampled;                // [render]: residuals of some pixels, see noise.h
 };
 
 /// Two renders, by their places in their arms.

@@ -10,8 +10,7 @@
 
 #include "compare/file_warnings.h"
 #include "compare/renders.h"
-#include "compare/shared_seeds.h"
-#include "compare/spectrum.h"
+#include "compare/noise.h"
 #include "math/hypotheses.h"
 #include "metrics/metrics.h"
 
@@ -34,7 +33,7 @@ struct RegionResult {
     std::vector<std::pair<std::string, MetricValue>> metrics;  // in the order of compare_words()
     std::optional<Tail> tail;                                  // of the squared errors of all pixels and renders
     double largest_share = 0;                                  // of the largest squared error in their sum
-    std::vector<double> power;                                 // error spectrum, see spectrum.h
+    std::vector<double> power;                                 // error spectrum, see noise.h
     NoiseColour colour = NoiseColour::unknown;
     std::optional<double> stated_ratio;    // the variance that the renderer wrote over that over renders
     std::optional<double> renders_needed;  // where the tail is heavy: renders from which an interval could be said

@@ -4,7 +4,7 @@
 // 1) standard deviations, so that bright events cannot decide it. Where K and L renders share m seeds, the means that
 // are taken off make the covariance of residuals of renders that share one 1 - 1/K - 1/L + m/(K L) of that of their
 // noise, and of others m/(K L) of it: less than half from K = L = 3 on.
-#include "compare/shared_seeds.h"
+#include "compare/noise.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The power spectrum of the error in blocks that do not overlap, spread over the box: a row-column transform, |F|^2
 // over the pixels of a block, averaged over rings of equal frequency in cycles a block. The mean, frequency 0, is left
 // out.
-#include "compare/spectrum.h"
+#include "compare/noise.h"
 
 #include <array>
 #include <cmath>

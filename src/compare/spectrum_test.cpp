@@ -1,5 +1,5 @@
 // Spectra of noise that was made, and of a wave.
-#include "compare/spectrum.h"
+#include "compare/noise.h"
 
 #include <gtest/gtest.h>
 

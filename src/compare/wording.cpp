@@ -1,7 +1,7 @@
 // Variances of means over k renders are a pixel's over k. Where one file says nothing of its noise, half the mean
 // square difference of neighbours stands in for it, less the other side's noise, times how much more there is at low
 // frequencies than at high ones.
-#include "compare/wording.h"
+#include "compare/outputs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "compare/metrics.h"
 #include "compare/plan.h"
 #include "math/functions.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {

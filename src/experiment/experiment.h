@@ -15,7 +15,7 @@
 #include "base/errors.h"
 #include "base/vec.h"
 #include "experiment/assertion.h"
-#include "output/color_map.h"
+#include "output/tone_map.h"
 #include "scene/scene_data.h"
 
 namespace crescent::inline experiment {

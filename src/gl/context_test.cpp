@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator.h"
-#include "functions.h"
+#include "context.h"
 #include "tests/support/gl_test_scene.h"
 
 namespace crescent::gl {

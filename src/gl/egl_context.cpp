@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "context.h"
-#include "functions.h"
 
 namespace crescent::gl {
 

@@ -3,7 +3,7 @@ cmake_minimum_required(VERSION 3.25)
 file(GLOB_RECURSE paths RELATIVE ${FOLDER} ${FOLDER}/*.glsl)
 list(SORT paths)
 file(WRITE ${OUTPUT}
-  "#include \"shader_source.h\"\n\nnamespace crescent::gl {\n\nconst ShaderFile shader_files[] = {\n")
+  "#include \"program.h\"\n\nnamespace crescent::gl {\n\nconst ShaderFile shader_files[] = {\n")
 foreach(path IN LISTS paths)
   file(READ ${FOLDER}/${path} text)
   file(APPEND ${OUTPUT} "    {\"${path}\", R\"glsl(${text})glsl\"},\n")

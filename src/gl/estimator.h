@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framebuffer.h"
-#include "pacer.h"
+#include "pass.h"
 #include "program.h"
 #include "point_texture.h"
 

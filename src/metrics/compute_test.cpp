@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "math/simd/random.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 #include "metrics/compute.h"
 #include "render/estimator.h"
 #include "render/reference/reference.h"

@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 #include "base/vec.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 #include "render/estimator.h"
 #include "render/reference/lobe_albedo.h"
 

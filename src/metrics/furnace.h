@@ -8,7 +8,7 @@
 
 #include "base/progress.h"
 #include "experiment/experiment.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 #include "metrics/metrics.h"
 #include "render/shading_points.h"
 #include "samplers/external_sampler.h"

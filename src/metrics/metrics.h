@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "math/tail.h"
+#include "math/statistics.h"
 #include "render/film.h"
 #include "render/film_metrics/all.h"
 

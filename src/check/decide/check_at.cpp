@@ -7,8 +7,8 @@
 
 #include "base/progress.h"
 #include "check/constants.h"
-#include "check/decide/delta_directions.h"
-#include "check/estimate/both_ways.h"
+#include "check/decide/small_tests.h"
+#include "check/estimate/scatter.h"
 #include "check/verdicts/two_stages.h"
 
 namespace crescent::check {

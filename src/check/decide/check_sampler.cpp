@@ -10,7 +10,6 @@
 
 #include "base/parallel.h"
 #include "check/constants.h"
-#include "check/decide/whole_sampler.h"
 #include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {

@@ -10,6 +10,7 @@
 
 #include "base/progress.h"
 #include "check/decide/check_at.h"
+#include "check/decide/small_tests.h"
 #include "check/decide/tail.h"
 
 namespace crescent::check {
@@ -50,5 +51,21 @@ struct CheckOutcome {
 /// Faults of a sampler from outside (samplers/faults.h) are kept with the w_o at which they occurred.
 std::vector<CheckOutcome> check_samplers(
     std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor);
+
+// ---- Tests of a sampler that belong to no single w_o: w_o and w_i exactly on axes, planes and the horizon and next to
+// them; f in both directions; weights of combined techniques.
+
+/// Directions on axes and planes, and one rounding of single precision beside them.
+std::vector<Vec3d> special_directions();
+/// Draws at special w_o, pdf and f at special w_i; of one technique.
+std::optional<SmallFault> special_places(const SamplerAdapter& adapter, int technique, std::span<const Vec3d> ordinary);
+/// f(a, b) against f(b, a), with eta^2 across the surface.
+std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key);
+/// Weights of two techniques that are combined sum to 1 wherever one of them draws.
+std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key);
+
+/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and
+/// one over that for importance (Veach 1997, (5.14)).
+double reciprocal_ratio(const Traits& traits, const Pair& p, int channel);
 
 }  // namespace crescent::check

@@ -1,5 +1,5 @@
 // That a boundary lies flat is seen from where it mirrors to, or, if nothing is mirrored, by turning w_o about n.
-#include "check/decide/delta_directions.h"
+#include "check/decide/small_tests.h"
 
 #include <algorithm>
 #include <cmath>

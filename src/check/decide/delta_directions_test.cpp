@@ -1,5 +1,5 @@
 // Samplers with delta parts: right ones stay right, and each fault of a part is found under its verdict.
-#include "check/decide/delta_directions.h"
+#include "check/decide/small_tests.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "check/constants.h"
 #include "check/decide/tail.h"
-#include "check/estimate/weights.h"
+#include "check/estimate/observations.h"
 #include "check/sources/sampler_adapter.h"
 #include "math/functions.h"
 

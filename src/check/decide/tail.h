@@ -9,7 +9,6 @@
 #include "check/decide/check_at.h"
 #include "check/verdict.h"
 #include "math/statistics.h"
-#include "math/tail.h"
 
 namespace crescent::check {
 

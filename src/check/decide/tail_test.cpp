@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "check/report/verdicts.h"
+#include "check/report/sentences.h"
 
 namespace crescent::check {
 namespace {

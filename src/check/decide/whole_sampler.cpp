@@ -1,12 +1,12 @@
 // Directions exactly on axes, planes and the horizon, and one ulp next to them, as w_o and as w_i: a few calls at each,
 // whose numbers must be usable.
-#include "check/decide/whole_sampler.h"
+#include "check/decide/check_sampler.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/estimate/both_ways.h"
+#include "check/estimate/scatter.h"
 
 namespace crescent::check {
 

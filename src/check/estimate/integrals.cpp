@@ -201,13 +201,13 @@ private:
     }
 
     void add_second_to_bands(ChartPoint point, double second) {
-        for (std::size_t axis = 0; axis < axes; ++axis) out_.second_by_band[band_of(point, axis)] += second;
+        for (std::size_t axis = 0; axis < chart_axes; ++axis) out_.second_by_band[band_of(point, axis)] += second;
     }
 
     /// Values of h p of a pair.
     void add_to_bands(std::size_t at, double a, double b, double k) {
         const ChartPoint first = to_chart(w_[at]), second = to_chart(w_[at + 1]);
-        for (std::size_t axis = 0; axis < axes; ++axis) {
+        for (std::size_t axis = 0; axis < chart_axes; ++axis) {
             const std::size_t i = band_of(first, axis), j = band_of(second, axis);
             if (i == j) {
                 out_.bridge_by_band[i].add_pair(a, b, k);

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "check/estimate/delta_parts.h"
 #include "check/estimate/integrals.h"
-#include "check/estimate/sobol.h"
+#include "check/estimate/stream.h"
+#include "check/estimate/source.h"
 
 namespace crescent::check {
 
@@ -93,5 +95,21 @@ struct Observations {
 /// met: a draw with p > 2 top shows a part of its leaf without points, whose share of both variances (1) itself gives.
 void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
     Integrals& integrals, Observations& to);
+
+// ---- The weights X = f L cos / p of draws: what the tail and the variance are of.
+
+/// Draws of a batch that are of the density: where they are in the batch, their directions, p there, and f |cos| where
+/// the sampler has f.
+struct DrawnDirections {
+    std::span<const std::size_t> at;
+    std::span<const Vec3d> wi;
+    std::span<const double> p;
+    std::span<const Vec3d> f_cos;
+};
+
+/// Appends a weight for each draw of the batch, with the radiance of the light and the technique's MIS weight; 0 for
+/// nothing. Of three channels their luminance.
+void append_weights(
+    Source& source, std::span<const Draw> batch, const DrawnDirections& directions, std::vector<double>& to);
 
 }  // namespace crescent::check

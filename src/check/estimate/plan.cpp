@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/estimate/local_steps.h"
+#include "check/estimate/scatter.h"
 
 namespace crescent::check {
 

@@ -25,7 +25,7 @@ public:
     bool estimates = false, f_estimates = false;
     /// The density is left out: what is asked is a matter of the draws alone.
     bool by_draws = false;
-    /// No index is stated, and none scales f across the surface (both_ways.h).
+    /// No index is stated, and none scales f across the surface (scatter.h).
     bool unscaled = false;
 
     /// The file that the draws are read from, if they are.

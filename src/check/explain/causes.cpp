@@ -9,12 +9,8 @@
 
 #include "check/constants.h"
 #include "check/decide/small_tests.h"
-#include "check/explain/frames.h"
-#include "check/explain/leaf_factors.h"
-#include "check/explain/lobes.h"
-#include "check/explain/spread.h"
+#include "check/explain/factors.h"
 #include "check/explain/text.h"
-#include "check/explain/weights.h"
 
 namespace crescent::check {
 

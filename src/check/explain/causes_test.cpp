@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "check/explain/frames.h"
+#include "check/explain/factors.h"
 #include "check/explain/text.h"
-#include "check/report/verdicts.h"
+#include "check/report/sentences.h"
 #include "math/simd/frame.h"
 
 namespace crescent::check {

@@ -1,6 +1,6 @@
 // Named frames are tried on a few hundred draws; turns are looked for on the tree's own densities first, which costs no
 // evaluations, and then with p itself.
-#include "check/explain/frames.h"
+#include "check/explain/factors.h"
 
 #include <algorithm>
 #include <cmath>

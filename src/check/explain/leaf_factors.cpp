@@ -1,10 +1,10 @@
 // Rows of the regression are the leaves in which the claim expects a draw, chosen by the claim alone.
-#include "check/explain/leaf_factors.h"
+#include "check/explain/factors.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "check/explain/regression.h"
+#include "check/explain/hypothesis.h"
 
 namespace crescent::check {
 

@@ -1,7 +1,7 @@
 // The ends of the lobes are where the direction jumps along one number, at the same place for all values of the others.
 // By (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, x = 1
 // where p has the lobe as it is drawn; x follows by weighted least squares over cells.
-#include "check/explain/lobes.h"
+#include "check/explain/factors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Poisson regression by Newton's method: observed draws of a leaf over expected ones, explained by the logarithms of
 // candidate factors. Factors are added one at a time, the one of the largest gain in likelihood first.
-#include "check/explain/regression.h"
+#include "check/explain/hypothesis.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // By the counts and densities of the leaves.
-#include "check/explain/spread.h"
+#include "check/explain/factors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Fresh draws at up to three w_o where a question on them failed.
-#include "check/explain/weights.h"
+#include "check/explain/factors.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "check/constants.h"
-#include "check/decide/whole_sampler.h"
-#include "check/explain/ratios.h"
+#include "check/decide/check_sampler.h"
+#include "check/explain/hypothesis.h"
 
 namespace crescent::check {
 

@@ -1,12 +1,11 @@
 // The page of a result: what was found, in sentences, tables and pictures.
-#include "check/report/html.h"
+#include "check/report/print.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "check/report/print.h"
 #include "check/report/summary.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"

@@ -1,6 +1,6 @@
 // The cells are nodes of the tree, cut while their halves have enough draws; a map's bins take their share of each
 // leaf, both being rectangles of one chart. What is counted has the standard error of a binomial law.
-#include "check/report/implied.h"
+#include "check/report/sentences.h"
 #include "check/explain/text.h"
 
 #include <algorithm>

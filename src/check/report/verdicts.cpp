@@ -1,6 +1,6 @@
 // A verdict is wrong if a finding of its families is there; inconclusive where a stated size is too large for one;
 // skipped where the sampler gives nothing that its families could ask; else right.
-#include "check/report/verdicts.h"
+#include "check/report/sentences.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,6 @@
 
 #include "check/constants.h"
 #include "check/decide/tail.h"
-#include "check/report/limits.h"
-#include "check/report/sentences.h"
 #include "check/verdict_names.h"
 #include "check/verdicts/kinds.h"
 

@@ -1,5 +1,5 @@
 // Findings become verdicts of today's names.
-#include "check/report/verdicts.h"
+#include "check/report/sentences.h"
 
 #include <gtest/gtest.h>
 

@@ -25,7 +25,7 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
         const ChartRect& r = tree.rect(tree.leaves()[l]);
         const TreeNode& node = tree.nodes()[static_cast<std::size_t>(tree.leaves()[l].node)];
         const LeafIntegral& leaf = e.integrals.leaves[l];
-        for (std::size_t axis = 0; axis < axes; ++axis) {
+        for (std::size_t axis = 0; axis < chart_axes; ++axis) {
             const bool along_phi = axis == 1;
             const double per = bands / axis_length[axis];
             const double from = (along_phi ? r.phi0 : r.t0) * per, past = (along_phi ? r.phi1 : r.t1) * per;
@@ -60,7 +60,7 @@ void test_bands(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density()) return;
     const double n = e.observations.independent;
     const ByBand<Band> finest = bands_of(e);
-    for (std::size_t axis = 0; axis < axes; ++axis)
+    for (std::size_t axis = 0; axis < chart_axes; ++axis)
         for (std::size_t width = 1; width < bands; width *= 2)
             for (std::size_t first = 0; first < bands; first += width) {
                 Band inside, outside;

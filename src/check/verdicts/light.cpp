@@ -6,7 +6,7 @@
 #include "check/constants.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
-#include "math/tail.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 

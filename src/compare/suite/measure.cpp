@@ -9,8 +9,8 @@
 #include "base/parallel.h"
 #include "compare/metrics.h"
 #include "compare/moments.h"
-#include "compare/suite/pictures.h"
-#include "compare/suite/power.h"
+#include "compare/suite/suite_outputs.h"
+#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
 #include "output/format.h"
 

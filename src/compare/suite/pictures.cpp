@@ -1,11 +1,11 @@
 // Means over renders as photographs; the difference of the means over their mean brightness, blue where the candidate
 // is darker and orange where it is brighter. All pictures of a report together take 36 MB at most.
-#include "compare/suite/pictures.h"
+#include "compare/suite/suite_outputs.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "compare/plates.h"
+#include "compare/outputs.h"
 #include "math/statistics.h"
 #include "report/plates/raster.h"
 

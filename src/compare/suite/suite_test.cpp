@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compare/suite/power.h"
+#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_outputs.h"
 #include "compare/synthetic.h"

@@ -5,16 +5,28 @@
 #include <algorithm>
 #include <cairo-svg.h>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
+#include <string>
 
 #include "base/errors.h"
+#include "base/machine.h"
 #include "math/functions.h"
 #include "report/plates/canvas_surface.h"
-#include "report/plates/fonts.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {
+
+// ---- Points Fontconfig at the fonts that are installed with the program, by its environment variable FONTCONFIG_FILE.
+
+void use_fonts_beside_program() {
+    static const bool once = [] {
+        const std::string config = shared_file("fonts/fonts.conf");
+        return !config.empty() && ::setenv("FONTCONFIG_FILE", config.c_str(), 0) == 0;
+    }();
+    static_cast<void>(once);
+}
 
 Colour colour(const Srgb8& c) { return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, 1}; }
 

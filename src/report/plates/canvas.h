@@ -7,9 +7,18 @@
 #include <string_view>
 #include <vector>
 
-#include "output/color_map.h"
 #include "output/tone_map.h"
 #include "report/plates/plates.h"
+
+namespace crescent::plates {
+
+// ---- Fonts installed with the program: a package that contains Inter needs none of the machine's.
+
+/// Makes ../share/crescent/fonts/fonts.conf, seen from the program's folder, Fontconfig's configuration, where that
+/// file exists and FONTCONFIG_FILE is not set. Before Fontconfig is first used.
+void use_fonts_beside_program();
+
+}  // namespace crescent::plates
 
 typedef struct _cairo cairo_t;  // NOLINT(bugprone-reserved-identifier): Cairo's own name
 

@@ -8,7 +8,7 @@
 
 #include "experiment/experiment.h"
 #include "metrics/metrics.h"
-#include "output/color_map.h"
+#include "output/tone_map.h"
 #include "render/film.h"
 #include "samplers/external_sampler.h"
 

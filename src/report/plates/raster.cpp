@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "output/color_map.h"
+#include "output/tone_map.h"
 
 namespace crescent::plates {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "math/functions.h"
-#include "output/color_map.h"
+#include "output/tone_map.h"
 #include "report/plates/polar.h"
 #include "report/plates/sheet.h"
 #include "samplers/info.h"

@@ -9,7 +9,7 @@
 #include "experiment/queries.h"
 #include "math/functions.h"
 #include "output/charts.h"
-#include "output/color_map.h"
+#include "output/tone_map.h"
 #include "output/formula.h"
 #include "report/plates/canvas.h"
 #include "samplers/info.h"
