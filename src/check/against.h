@@ -83,6 +83,7 @@ void test_against(const CommonGround& ground, const AgainstDraws& a, const Again
 struct AgainstSizes {
     std::optional<double> part, distance;
 };
+/// level: of each question.
 AgainstSizes sizes_against(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b, double level);
 
 // ---- f and variances of two samplers beside one another.
