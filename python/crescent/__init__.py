@@ -18,12 +18,14 @@ from ._crescent import version as __version__
 from ._result import CheckResult, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
+from .combinations import Combination, mis, mixture, ris
 from .experiments import Experiment, Film, Measured, join, load, parse, run
 
 if TYPE_CHECKING:
     from . import adapters, testing
 
 __all__ = [
+    "Combination",
     "Comparison",
     "Description",
     "Experiment",
@@ -46,8 +48,11 @@ __all__ = [
     "describe",
     "join",
     "load",
+    "mis",
+    "mixture",
     "parse",
     "pdf_of",
+    "ris",
     "run",
     "tail",
     "testing",

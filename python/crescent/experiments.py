@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crescent
-from ._callable_arms import Samplers, all_counts, callable_arms, source_of
+from ._callable_arms import Samplers, all_counts, callable_arms, table_of
 from ._sampler import whole
 
 Progress = Callable[[str, float, float], None]
@@ -180,7 +180,7 @@ class Experiment:
         if not self.samplers:
             return self
         counts = all_counts(arms.values())
-        tables = {f"arms.{_quoted(n)}": {"python": source_of(s), "n": counts} for n, s in self.samplers.items()}
+        tables = {f"arms.{_quoted(n)}": {**table_of(s), "n": counts} for n, s in self.samplers.items()}
         return Experiment(_crescent.with_arms(self._core, _overrides(tables)))
 
     @property

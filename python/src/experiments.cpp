@@ -123,9 +123,6 @@ void restore(RunResult& into, const State& state) {
     }
 }
 
-/// (arm, draw, numbers, uses, serial) of each arm whose sampler is a callable, see callable_arm.h.
-using CallableArms = std::vector<std::tuple<std::string, nb::object, int, std::vector<std::string>, bool>>;
-
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
     bool studies, const nb::object& progress, const CallableArms& callables) {
     PolledMonitor monitor;
@@ -133,10 +130,10 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     RunResult out;
     bool serial = false;
     ExternalSamplers samplers;
-    for (const auto& [name, draw, numbers, uses, one_thread] : callables) {
-        serial = serial || one_thread;
-        samplers[name] = std::make_shared<CallableArm>(
-            CallableArmPlan{name, draw, numbers, {uses.begin(), uses.end()}, one_thread}, raised);
+    for (const auto& [name, arm] : samplers_of(callables)) {
+        arm->set_raised(&raised);
+        serial = serial || arm->serial();
+        samplers[name] = arm;
     }
     watched(monitor, raised, progress, serial, [&] {
         const RunPlan what = plan(experiment, {first, last});

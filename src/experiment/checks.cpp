@@ -106,9 +106,9 @@ void check_external_arms(ParseContext& context) {
         const std::array keys = {
             std::pair("exec", arm.exec), std::pair("plugin", arm.plugin), std::pair("python", arm.python)};
         const auto given = std::ranges::count_if(keys, [](const auto& key) { return key.second.has_value(); });
-        if (given + int(!arm.sampler.empty()) > 1)
+        if (given + int(!arm.sampler.empty()) + int(arm.is_combination()) > 1)
             context.report(
-                path, fmt::format("{}: expected one of sampler, exec, plugin and python, found several", path));
+                path, fmt::format("{}: expected one of sampler, kind, exec, plugin and python, found several", path));
         if (arm.python && !arm.python->empty() && python_file(*arm.python).empty() &&
             arm.python->find(':') == std::string::npos)
             context.report(path + ".python",
