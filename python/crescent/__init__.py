@@ -19,7 +19,8 @@ from ._result import CheckResult, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from .combinations import Combination, mis, mixture, ris
-from .experiments import Experiment, Film, Measured, join, load, parse, run
+from ._summaries import Summary
+from .experiments import Experiment, Film, Measured, RunInterrupted, join, load, parse, run
 
 if TYPE_CHECKING:
     from . import adapters, testing
@@ -32,7 +33,9 @@ __all__ = [
     "Film",
     "CheckResult",
     "Measured",
+    "RunInterrupted",
     "Sampler",
+    "Summary",
     "Tail",
     "Verdict",
     "View",

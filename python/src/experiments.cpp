@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "callable_arm.h"
 #include "doors.h"
@@ -59,6 +60,9 @@ struct RunResult {
     Attributes attributes;  // of the films' files
     std::vector<std::pair<RunKey, Film>> films;
     std::vector<ReferenceFilm> references;
+    /// (arm, highest N, s, samples, seconds of wall-clock time) of each job; not pickled, as it varies between equal
+    /// runs.
+    std::vector<std::tuple<std::string, std::uint64_t, double, std::uint64_t, double>> times;
 };
 
 RunResult result_of(Measured&& m) {
@@ -67,7 +71,8 @@ RunResult result_of(Measured&& m) {
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
             {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
-        {}, {}};
+        {}, {}, {}};
+    for (const ArmTiming& t : m.timing.arms) out.times.emplace_back(t.arm, t.n, t.s, t.samples, t.seconds);
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
     for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
     return out;
@@ -123,8 +128,50 @@ void restore(RunResult& into, const State& state) {
     }
 }
 
+/// What a run has done so far.
+struct RunSoFar {
+    RunPlan plan;
+    Engine engine;
+    std::optional<Prepared> prepared;
+    std::vector<JobResult> results;
+};
+
+/// The wall-clock seconds of a job: the median over so many executions, of which the first is given.
+double median_seconds(const RunSoFar& run, const Job& job, double first, int repeats, ProgressMonitor& monitor) {
+    std::vector<double> seconds = {first};
+    for (int k = 1; k < repeats; ++k) {
+        monitor.check();
+        seconds.push_back(execute(run.plan, *run.prepared, job, run.engine, monitor, false).seconds);
+    }
+    std::ranges::sort(seconds);
+    const std::size_t half = seconds.size() / 2;
+    return seconds.size() % 2 ? seconds[half] : (seconds[half - 1] + seconds[half]) / 2;
+}
+
+/// The result of the seeds of which every job is done; empty if there is none.
+std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& run, bool studies) {
+    std::erase_if(run.results, [](const JobResult& r) { return r.stopped; });
+    int seeds = 0;
+    for (const std::uint32_t seed : run.plan.seeds) {
+        const auto of_seed = [&](const auto& jobs, auto&& seed_of_job) {
+            return std::ranges::count_if(jobs, [&](const auto& j) { return seed_of_job(j) == seed; });
+        };
+        const auto planned = of_seed(run.plan.jobs, [](const Job& j) { return j.seed; });
+        if (of_seed(run.results, [](const JobResult& r) { return r.job.seed; }) != planned) break;
+        ++seeds;
+    }
+    if (seeds == 0 || !run.prepared || run.prepared->stopped) return {};
+    const RunPlan part = plan(experiment, {run.plan.range.first, run.plan.range.first + seeds - 1});
+    std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
+    PolledMonitor monitor;
+    const Work here(&monitor);
+    return result_of(collect(
+        part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies}));
+}
+
+/// `kept` receives the result of the complete seeds if the run is interrupted.
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
-    bool studies, const nb::object& progress, const CallableArms& callables) {
+    bool studies, const nb::object& progress, const CallableArms& callables, int repeats, nb::list kept) {
     PolledMonitor monitor;
     Raised raised(monitor);
     RunResult out;
@@ -135,21 +182,33 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         serial = serial || arm->serial();
         samplers[name] = arm;
     }
-    watched(monitor, raised, progress, serial, [&] {
-        const RunPlan what = plan(experiment, {first, last});
-        const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
-        Prepared prepared = prepare(what, engine, monitor);
-        std::vector<JobResult> results;
-        for (const Job& job : what.jobs) {
+    RunSoFar run;
+    const auto work = [&] {
+        run.plan = plan(experiment, {first, last});
+        run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
+        run.prepared = prepare(run.plan, run.engine, monitor);
+        for (const Job& job : run.plan.jobs) {
             monitor.check();
-            results.push_back(execute(what, prepared, job, engine, monitor, job.seed == what.seeds.front()));
+            JobResult result =
+                execute(run.plan, *run.prepared, job, run.engine, monitor, job.seed == run.plan.seeds.front());
+            result.seconds = median_seconds(run, job, result.seconds, repeats, monitor);
+            run.results.push_back(std::move(result));
         }
         monitor.check();
-        Measured all =
-            collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent.run", studies});
+        Measured all = collect(run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor,
+            {"crescent.run", studies});
+        run.results.clear(), run.prepared.reset();
         monitor.check();
         out = result_of(std::move(all));
-    });
+    };
+    try {
+        watched(monitor, raised, progress, serial, work);
+    } catch (nb::python_error& error) {
+        if (!error.matches(PyExc_KeyboardInterrupt)) throw;
+        if (std::optional<RunResult> part = finished_seeds(experiment, run, studies))
+            kept.append(nb::cast(std::move(*part)));
+        throw;
+    }
     return out;
 }
 
@@ -233,6 +292,7 @@ void add_experiments(nb::module_& m) {
         .def_ro("json", &RunResult::json)
         .def_ro("csv", &RunResult::csv)
         .def_ro("junit", &RunResult::junit)
+        .def_ro("times", &RunResult::times)
         .def_prop_ro("films", [](nb::handle self) { return films_of(self); })
         .def_prop_ro("references", [](nb::handle self) { return references_of(self); })
         .def("write", &write_folder, "folder"_a)
@@ -247,7 +307,7 @@ void add_experiments(nb::module_& m) {
         },
         "parts"_a);
     m.def("run", &run_experiment, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a,
-        "progress"_a.none(), "callables"_a = CallableArms{});
+        "progress"_a.none(), "callables"_a, "repeats"_a, "kept"_a);
 }
 
 }  // namespace crescent::python

@@ -120,6 +120,13 @@ void check_external_arms(ParseContext& context) {
     }
 }
 
+/// Whether an arm's name is no sampler because its kind is missing or wrong, which is reported by itself.
+bool is_unfinished_combination(const ParseContext& context, const std::string& path_of_sampler) {
+    const std::string path = path_of_sampler.substr(0, path_of_sampler.rfind('.'));
+    const ArmPlan* arm = context.e.find_arm(path.substr(path.find('.') + 1));
+    return arm && (!context.is_valid(path + ".kind") || !arm->combination.of.empty());
+}
+
 /// Checks that no two arms write their films into one file.
 void check_film_files(ParseContext& context) {
     const Experiment& e = context.e;
@@ -152,6 +159,7 @@ void check_names(ParseContext& context) {
     const std::vector<std::string> arms = names_of(context.e.arms), shapes = names_of(context.e.shapes);
     for (const Reference& r : context.references) {
         const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
+        if (sampler && is_unfinished_combination(context, r.path)) continue;
         const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";

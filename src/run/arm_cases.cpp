@@ -315,8 +315,9 @@ private:
         }
         const std::string name = arm ? arm->sampler : sampler_;
         if (name == "mis-balance" || name == "mis-power") {
-            CombinationPlan plan{.kind = CombinationKind::mis, .of = {"mixture", "light-area"},
-                .heuristic = name == "mis-power" ? MisHeuristic::power : MisHeuristic::balance};
+            CombinationPlan plan;
+            plan.kind = CombinationKind::mis, plan.of = {"mixture", "light-area"};
+            plan.heuristic = name == "mis-power" ? MisHeuristic::power : MisHeuristic::balance;
             if (!built_in_) {
                 Techniques parts = {built_in_technique("mixture"), built_in_technique("light-area")};
                 built_in_ = std::make_shared<Combination>(

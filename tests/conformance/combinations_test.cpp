@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "check/check.h"
 #include "metrics/furnace.h"
+#include "render/combination.h"
 #include "render/estimator.h"
 #include "render/reference/reference.h"
 #include "run/arm_cases.h"
@@ -90,9 +91,9 @@ struct BuiltInPair {
 TEST(Combinations, HaveTheFilmsOfTheBuiltInOnes) {
     for (const auto& [built_in, declared] :
         {BuiltInPair{"mixture",
-             R"(kind = "mixture"
+             R"toml(kind = "mixture"
 of = ["phong", "cosine"]
-weights = ["min(rho_s / (rho_s + rho_d), 0.9)", "rest"])"},
+weights = ["min(rho_s / (rho_s + rho_d), 0.9)", "rest"])toml"},
             BuiltInPair{"mis-balance", "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]"},
             BuiltInPair{"mis-power", "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]\nheuristic = \"power\""},
             BuiltInPair{"mis-power",

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "render/film_metrics/bad.h"
+#include "render/film_metrics/bias_sq.h"
 #include "render/film_metrics/fireflies.h"
 #include "render/film_metrics/horizon_frac.h"
 #include "render/film_metrics/largest.h"
@@ -21,7 +22,8 @@
     metric(rmse, RmseMetric)            \
     metric(var, VarMetric)              \
     metric(rel_mse, RelMseMetric)       \
-    metric(smape, SmapeMetric)
+    metric(smape, SmapeMetric)          \
+    metric(bias_sq, BiasSqMetric)
 
 #define CRESCENT_FRAME_METRICS(metric)       \
     metric(fireflies, FirefliesMetric)       \
