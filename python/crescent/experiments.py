@@ -308,6 +308,11 @@ class Measured:
         return [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
 
     @property
+    def boxes(self) -> dict[str, tuple[int, int, int, int]]:
+        """x0, y0, x1, y1 of each region in pixels, both ends inclusive, from the bottom-left."""
+        return {name: box for name, *box in self._core.boxes}  # type: ignore[misc]
+
+    @property
     def times(self) -> dict[str, float]:
         """Seconds of wall-clock time of each arm at its highest N and the experiment's own s: the median over seeds of
         the medians over `repeats`. They vary between equal runs."""

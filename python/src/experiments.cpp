@@ -52,6 +52,9 @@ void restore_plane(const nb::dict& planes, const char* name, std::vector<T> F::*
     (film.*values).assign(from.data(), from.data() + from.size());
 }
 
+/// Name, x0, y0, x1, y1 of each region, both ends inclusive, from the bottom-left.
+using Boxes = std::vector<std::tuple<std::string, int, int, int, int>>;
+
 /// The results of a run, as plain data: texts, films and references.
 struct RunResult {
     double s = 0;  // the experiment's own
@@ -63,6 +66,7 @@ struct RunResult {
     /// (arm, highest N, s, samples, seconds of wall-clock time) of each job; not pickled, as it varies between equal
     /// runs.
     std::vector<std::tuple<std::string, std::uint64_t, double, std::uint64_t, double>> times;
+    Boxes boxes;
 };
 
 RunResult result_of(Measured&& m) {
@@ -71,7 +75,8 @@ RunResult result_of(Measured&& m) {
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
             {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
-        {}, {}, {}};
+        {}, {}, {}, {}};
+    for (const Region& r : m.experiment.regions) out.boxes.emplace_back(r.name, r.box.x0, r.box.y0, r.box.x1, r.box.y1);
     for (const ArmTiming& t : m.timing.arms) out.times.emplace_back(t.arm, t.n, t.s, t.samples, t.seconds);
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
     for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
@@ -98,17 +103,17 @@ ReferenceList references_of(nb::handle self) {
     return out;
 }
 
-using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, nb::object, nb::object>;
+using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object>;
 
 State state_of(nb::handle self) {
     const RunResult& r = nb::cast<const RunResult&>(self);
-    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, films_of(self), references_of(self)};
+    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, r.boxes, films_of(self), references_of(self)};
 }
 
 void restore(RunResult& into, const State& state) {
     RunResult* const r = new (&into) RunResult;
     nb::object films, references;
-    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, films, references) = state;
+    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, r->boxes, films, references) = state;
     for (const nb::handle entry : films) {
         const nb::tuple at = nb::cast<nb::tuple>(entry);
         const nb::dict planes = nb::cast<nb::dict>(at[4]);
@@ -253,6 +258,23 @@ Experiment settled_paths(Experiment e) {
     return e;
 }
 
+using Plane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+/// HDR-FLIP of each pixel.
+nb::object flip_of(const Plane& r0, const Plane& g0, const Plane& b0, const Plane& r, const Plane& g, const Plane& b) {
+    const auto height = r0.shape(0), width = r0.shape(1);
+    const auto image = [&](const Plane& red, const Plane& green, const Plane& blue) {
+        for (const Plane* plane : {&red, &green, &blue})
+            if (plane->shape(0) != height || plane->shape(1) != width)
+                throw nb::value_error("expected six planes of one size");
+        return FlipImage{static_cast<int>(width), static_cast<int>(height), {red.data(), red.size()},
+            {green.data(), green.size()}, {blue.data(), blue.size()}};
+    };
+    auto* values = new std::vector<float>(hdr_flip(image(r0, g0, b0), image(r, g, b), 67));
+    const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<float>*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, float>(values->data(), {height, width}, owner));
+}
+
 }  // namespace
 
 void add_experiments(nb::module_& m) {
@@ -293,11 +315,14 @@ void add_experiments(nb::module_& m) {
         .def_ro("csv", &RunResult::csv)
         .def_ro("junit", &RunResult::junit)
         .def_ro("times", &RunResult::times)
+        .def_ro("boxes", &RunResult::boxes)
         .def_prop_ro("films", [](nb::handle self) { return films_of(self); })
         .def_prop_ro("references", [](nb::handle self) { return references_of(self); })
         .def("write", &write_folder, "folder"_a)
         .def("__getstate__", [](nb::handle self) { return state_of(self); })
         .def("__setstate__", &restore);
+    m.def("flip", &flip_of, "reference_r"_a, "reference_g"_a, "reference_b"_a, "test_r"_a, "test_g"_a, "test_b"_a,
+        "HDR-FLIP of each pixel, linear Rec. 709, at 67 pixels per degree.");
     m.def("counting_metrics", &counting_metrics, "The metrics whose values are whole numbers.");
     m.def(
         "join",

@@ -31,9 +31,11 @@ void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) 
         call);
 }
 
-std::uint64_t directions_of_sample(const SamplerRef& arm) {
+SampleCost cost_of_sample(const SamplerRef& arm) {
     const Combination* combination = arm.outside ? arm.outside->as_combination() : nullptr;
-    return combination ? combination->directions() : directions_per_sample(arm.sampler);
+    if (combination) return combination->cost();
+    const std::uint64_t directions = directions_per_sample(arm.sampler);
+    return {directions, directions, directions - 1};
 }
 
 /// Converts the sums of one shading point over its film's n samples to the film's pixel.
@@ -116,7 +118,7 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
     std::vector<Film> films(n.size());
     parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
         films[r] = Film(image.width, image.height, n[r]);
-        films[r].directions = directions_of_sample(arm);
+        films[r].directions = cost_of_sample(arm).directions, films[r].evaluations = cost_of_sample(arm).f;
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));

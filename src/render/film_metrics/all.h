@@ -7,9 +7,11 @@
 
 #include "render/film_metrics/bad.h"
 #include "render/film_metrics/bias_sq.h"
+#include "render/film_metrics/f_evaluations.h"
 #include "render/film_metrics/fireflies.h"
 #include "render/film_metrics/horizon_frac.h"
 #include "render/film_metrics/largest.h"
+#include "render/film_metrics/rays.h"
 #include "render/film_metrics/rel_mse.h"
 #include "render/film_metrics/rmse.h"
 #include "render/film_metrics/rmse_frame.h"
@@ -31,5 +33,7 @@
     metric(y_mean, YMeanMetric)              \
     metric(rmse_frame, RmseFrameMetric)      \
     metric(largest, LargestMetric)           \
-    metric(bad, BadMetric)
+    metric(bad, BadMetric)                   \
+    metric(rays, RaysMetric)                 \
+    metric(f_evaluations, FEvaluationsMetric)
 // clang-format on
