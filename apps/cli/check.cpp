@@ -79,6 +79,14 @@ void check_sides(const CheckFlags& flags, const Traits& traits) {
                 "normal, z > 0 (a program for both sides declares wo=both)");
 }
 
+/// --light: f is the radiance of a light, whose irradiance is then the integral of f cos.
+void check_light(const CheckFlags& flags, const Traits& traits, bool has_f) {
+    if (flags.light && (traits.wo != Traits::WoDomain::none || !has_f))
+        throw InputError({"--light", 0, 0},
+            "expected a light: a sampler that takes no w_o and has its radiance as f (a program declares wo=none; in "
+            "Python crescent.Sampler(sample, pdf, radiance=radiance))");
+}
+
 /// Returns the w_o of --wo; empty: the default list.
 Grid grid_of(const CheckFlags& flags) {
     Grid out;
@@ -160,8 +168,10 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
         const auto adapter = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
                                     : start_pipe(flags.exec, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
+        check_light(flags, adapter->traits(), adapter->has_f());
         return make_user_cases(adapter, flags.full, grid_of(flags));
     }
+    if (flags.light) throw InputError({"--light", 0, 0}, "needs --exec or a sampler in a Python file");
     if (!flags.plugin.empty()) {
         const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
@@ -208,6 +218,7 @@ std::string command_of(const CheckFlags& f) {
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
     if (!f.sampler.empty()) out += " --sampler " + shell_word(f.sampler);
     if (f.pixels > 0) out += fmt::format(" --pixels {}", f.pixels);
+    if (f.light) out += " --light";
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
              {"--pdf-table", &f.table}, {"--against", &f.against}})

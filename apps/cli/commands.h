@@ -79,6 +79,7 @@ struct CheckFlags {
     unsigned right = 0, first = 0;  // right: number of correct samplers; 0: not requested
     int pixels = 0;                 // of an experiment; 0: the grid of w_o
     bool no_code = false;
+    bool light = false;  // f is the radiance of a light
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
     bool verbose = false;   // prints the cost
     bool describe = false;  // describes the distribution of the draws, without a verdict

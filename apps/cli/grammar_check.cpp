@@ -108,6 +108,7 @@ void add_check(CLI::App& app, Work& work) {
         ->check(whole_number(1, 4096));
     c->add_flag("--no-code", f->no_code, "refuse an experiment that names a plugin, a program or a Python file")
         ->needs(sampler);
+    c->add_flag("--light", f->light, "the sampler is a light with its radiance: compare its irradiance");
     auto* set = c->add_option("--set", f->settings,
                      "s, alpha, rho_d or rho_s; a key of the experiment; may be given again")
                     ->type_name("KEY=VALUE")

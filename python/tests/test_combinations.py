@@ -182,3 +182,24 @@ def test_a_new_sampler_by_mis_with_the_lights_in_30_lines(tmp_path):
     assert ax.collections, "a ladder of several seeds has bands"
     plot.save(ax, tmp_path / "ladder.pdf")
     assert (tmp_path / "ladder.pdf").stat().st_size > 1000
+
+
+def test_a_light_is_checked_with_its_radiance():
+    least = 0.8
+
+    def sample(u):
+        z, phi = 1 - (1 - least) * u[:, 0], 2 * np.pi * u[:, 1]
+        r = np.sqrt(1 - z * z)
+        return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), np.full(len(u), 1 / (2 * np.pi * (1 - least)))
+
+    def pdf(wi):
+        return np.where(wi[:, 2] > least, 1 / (2 * np.pi * (1 - least)), 0)
+
+    def radiance(wi):
+        return np.where(wi[:, 2] > least, 3 + wi[:, 0], 0)
+
+    assert crescent.check(crescent.Sampler(sample, pdf, radiance=radiance)).state == "right"
+    wider = crescent.check(sample, pdf, radiance=lambda wi: np.where(wi[:, 2] > 0.7, 3.0, 0), name="lamp")
+    assert wider.state == "wrong" and any("support" in name for name in wider.broken())
+    with pytest.raises(TypeError, match="a light has its radiance alone"):
+        crescent.Sampler(sample, pdf, lambda wo, wi: 1, radiance=radiance)

@@ -83,6 +83,8 @@ private:
             return fmt::format("no arm or sampler '{}': expected one of {}{}", name.substr(0, 64), listed(valid, ", "),
                 hint(name, valid));
         }
+        if (info->needs_s && !(context_.e.s() > 0))
+            return fmt::format("'{}' needs an exponent: expected a key 's' in one of the shapes", name);
         if (info->techniques > 1)
             return fmt::format("'{}' is two samplers with weights: expected its parts, mixture and light-area", name);
         return "";

@@ -363,7 +363,7 @@ const std::array<HandshakeKey, 15>& keys() {
                 return v == "f32" || v == "f64";
             }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
-        {"uses", "names from s, alpha, rho_d, rho_s and lights, separated by commas, after 'hello 3'",
+        {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas, after 'hello 3'",
             [](S v, Handshake& g) { return g.protocol == 3 && take_context_names(v, g.uses); }},
     }};
     return all;
