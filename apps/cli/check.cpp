@@ -79,6 +79,14 @@ void check_sides(const CheckFlags& flags, const Traits& traits) {
                 "normal, z > 0 (a program for both sides declares wo=both)");
 }
 
+/// --light: f is the radiance of a light, whose irradiance is then the integral of f cos.
+void check_light(const CheckFlags& flags, const Traits& traits, bool has_f) {
+    if (flags.light && (traits.wo != Traits::WoDomain::none || !has_f))
+        throw InputError({"--light", 0, 0},
+            "expected a light: a sampler that takes no w_o and has its radiance as f (a program declares wo=none; in "
+            "Python crescent.Sampler(sample, pdf, radiance=radiance))");
+}
+
 /// Returns the w_o of --wo; empty: the default list.
 Grid grid_of(const CheckFlags& flags) {
     Grid out;
@@ -132,7 +140,26 @@ int exit_of(State state) {
 
 namespace {
 
+/// An arm of an experiment: the samplers of the other arms are not started.
+std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
+    if (flags.sampler.empty())
+        throw InputError({"crescent check " + flags.arm, 0, 0},
+            "expected --sampler NAME beside an experiment: an arm of it, or a built-in sampler");
+    for (const auto& [flag, given] : {std::pair("--wo", !flags.wo.empty()), {"--against", !flags.against.empty()}})
+        if (given) throw InputError({flag, 0, 0}, "is not for an arm of an experiment");
+    const Experiment experiment = load(flags.arm, flags.settings);
+    if (flags.no_code) refuse_code(experiment);
+    return arm_cases(experiment, flags.sampler, open_external(with_arms_of(experiment, flags.sampler), flags.timeout),
+        {flags.pixels, flags.full});
+}
+
+bool is_experiment(const CheckFlags& flags) { return flags.arm.ends_with(".toml"); }
+
 std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    if (is_experiment(flags)) return cases_of_experiment(flags);
+    if (!flags.sampler.empty() || flags.pixels > 0)
+        throw InputError({flags.sampler.empty() ? "--pixels" : "--sampler", 0, 0},
+            "needs an experiment: crescent check FILE.toml --sampler NAME");
     const bool python = names_python_sampler(flags.arm);
     if (python && !flags.settings.empty())
         throw InputError({"--set " + flags.settings.front(), 0, 0},
@@ -141,8 +168,10 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
         const auto adapter = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
                                     : start_pipe(flags.exec, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
+        check_light(flags, adapter->traits(), adapter->has_f());
         return make_user_cases(adapter, flags.full, grid_of(flags));
     }
+    if (flags.light) throw InputError({"--light", 0, 0}, "needs --exec or a sampler in a Python file");
     if (!flags.plugin.empty()) {
         const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
@@ -187,6 +216,9 @@ TestSettings settings_of_list(const CheckFlags& flags) {
 std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
+    if (!f.sampler.empty()) out += " --sampler " + shell_word(f.sampler);
+    if (f.pixels > 0) out += fmt::format(" --pixels {}", f.pixels);
+    if (f.light) out += " --light";
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
              {"--pdf-table", &f.table}, {"--against", &f.against}})

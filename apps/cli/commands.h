@@ -65,7 +65,8 @@ struct SchemaFlags {
 int schema(const SchemaFlags& flags);
 
 struct CheckFlags {
-    std::string arm;                    // "": all built-in arms
+    std::string arm;                    // "": all built-in arms; an experiment: `sampler` is an arm of it
+    std::string sampler;
     std::vector<std::string> settings;  // s=128
     std::string exec, plugin, samples, table;
     std::string against;                    // a built-in arm, or a program
@@ -76,6 +77,9 @@ struct CheckFlags {
     double timeout = 0;                     // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
     unsigned right = 0, first = 0;  // right: number of correct samplers; 0: not requested
+    int pixels = 0;                 // of an experiment; 0: the grid of w_o
+    bool no_code = false;
+    bool light = false;  // f is the radiance of a light
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
     bool verbose = false;   // prints the cost
     bool describe = false;  // describes the distribution of the draws, without a verdict

@@ -95,8 +95,22 @@ void add_check(CLI::App& app, Work& work) {
     std::shared_ptr<CheckFlags> f;
     CLI::App* c = command(app, work, "check", "Check samplers alone, without a render.", check, f);
     c->footer(verdicts_in_order() + check_footer);
-    auto* arm = c->add_option("ARM", f->arm, "a built-in arm, or FILE.py:NAME; without it, all")->type_name("");
-    auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
+    auto* arm =
+        c->add_option("ARM", f->arm, "a built-in arm, FILE.py:NAME, or an experiment; without it, all")->type_name("");
+    auto* sampler = c->add_option("--sampler", f->sampler,
+                         "of an experiment: the arm to check, with its materials and lights")
+                        ->type_name("NAME")
+                        ->needs(arm)
+                        ->check(not_empty);
+    c->add_option("--pixels", f->pixels, "check it at this many pixels of the scene, not on the grid of w_o")
+        ->type_name("N")
+        ->needs(sampler)
+        ->check(whole_number(1, 4096));
+    c->add_flag("--no-code", f->no_code, "refuse an experiment that names a plugin, a program or a Python file")
+        ->needs(sampler);
+    c->add_flag("--light", f->light, "the sampler is a light with its radiance: compare its irradiance");
+    auto* set = c->add_option("--set", f->settings,
+                     "s, alpha, rho_d or rho_s; a key of the experiment; may be given again")
                     ->type_name("KEY=VALUE")
                     ->take_all()
                     ->expected(1)

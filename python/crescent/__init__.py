@@ -19,19 +19,24 @@ from ._result import CheckResult, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from ._sweep import sweep, sweep_check
-from .experiments import Experiment, Film, Measured, join, load, parse, run
+from .combinations import Combination, mis, mixture, ris
+from ._summaries import Summary
+from .experiments import Experiment, Film, Measured, RunInterrupted, join, load, parse, run
 
 if TYPE_CHECKING:
     from . import adapters, testing
 
 __all__ = [
+    "Combination",
     "Comparison",
     "Description",
     "Experiment",
     "Film",
     "CheckResult",
     "Measured",
+    "RunInterrupted",
     "Sampler",
+    "Summary",
     "Tail",
     "Verdict",
     "View",
@@ -47,8 +52,11 @@ __all__ = [
     "describe",
     "join",
     "load",
+    "mis",
+    "mixture",
     "parse",
     "pdf_of",
+    "ris",
     "run",
     "sweep",
     "sweep_check",

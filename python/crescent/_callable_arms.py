@@ -1,4 +1,4 @@
-"""Samplers in Python as arms of a run: those of ``e.samplers``, and those that an experiment names by ``python``."""
+"""Samplers in Python as arms of a run, and combinations: those of ``e.samplers``, and those that an experiment names by ``python``."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from ._check import _of_library
 from ._context import ContextCalls, arrays_of
 from ._files import names_a_file, sampler_at
 from ._sampler import Sampler
+from .combinations import Combination
 
-#: As _crescent.run takes an arm: its name, draw, random numbers, what it uses, whether it wants one thread.
-CallableArm = tuple[str, Callable[..., Any], int, list[str], bool]
+#: As _crescent.run takes an arm: its name, draw, pdf, random numbers, what it uses, whether it wants one thread.
+CallableArm = tuple[str, Callable[..., Any], Callable[..., Any] | None, int, list[str], bool]
 
 
-class Samplers(dict[str, Sampler]):
-    """Samplers by the name of their arm. A callable, or the text "FILE.py:NAME", becomes a :class:`crescent.Sampler`."""
+class Samplers(dict[str, Sampler | Combination]):
+    """Samplers by the name of their arm. A callable, or the text "FILE.py:NAME", becomes a :class:`crescent.Sampler`;
+    :func:`crescent.mis`, :func:`crescent.mixture` and :func:`crescent.ris` combine samplers by their names."""
 
     def __setitem__(self, name: str, sampler: Any) -> None:
         super().__setitem__(name, _sampler_of(name, sampler))
@@ -30,18 +32,18 @@ class Samplers(dict[str, Sampler]):
             self[name] = sampler
 
 
-def _sampler_of(name: Any, sampler: Any) -> Sampler:
+def _sampler_of(name: Any, sampler: Any) -> Sampler | Combination:
     if not isinstance(name, str) or not name:
         raise TypeError(f"samplers: {name!r} is no name of an arm: expected a text")
     if isinstance(sampler, str) and names_a_file(sampler):
         return sampler_at(sampler)
-    if isinstance(sampler, Sampler):
+    if isinstance(sampler, (Sampler, Combination)):
         return sampler
     if callable(sampler) and not isinstance(sampler, type):
         return Sampler(sampler)
     raise TypeError(
         f"samplers[{name!r}] is {type(sampler).__name__}: expected a crescent.Sampler, a callable sample(wo, u), "
-        "or the text 'FILE.py:NAME'"
+        "a combination (crescent.mis, mixture, ris), or the text 'FILE.py:NAME'"
     )
 
 
@@ -70,7 +72,15 @@ def _arm(name: str, sampler: Sampler) -> CallableArm:
     if not sampler.uses:
         s = _of_library(sampler)
         ask = _arrays.asks_sample(s.sample, title, s.wo != "none")
-        return name, lambda wo, u, context: _without_delta(ask(wo, u), title), s.u, [], s.serial
+        pdf = None if s.pdf is None else _arrays.asks_pdf(s.pdf, title, s.wo != "none")
+        return (
+            name,
+            lambda wo, u, context: _without_delta(ask(wo, u), title),
+            None if pdf is None else lambda wo, wi, context: pdf(wo, wi),
+            s.u,
+            [],
+            s.serial,
+        )
     calls = ContextCalls(sampler)
 
     def draw(wo: Array, u: Array, context: Mapping[str, Any]) -> Parts:
@@ -78,7 +88,12 @@ def _arm(name: str, sampler: Sampler) -> CallableArm:
         arrays = arrays_of(sampler.uses, context, len(u))
         return _without_delta(_arrays.draws(calls.sample(wo, u, kinds, arrays), len(u), title), title)
 
-    return name, draw, sampler.u, list(sampler.uses), calls.serial
+    def density(wo: Array, wi: Array, context: Mapping[str, Any]) -> Array:
+        kinds = tuple(context.get("kind", ()))
+        arrays = arrays_of(sampler.uses, context, len(wi))
+        return _arrays.column(calls.value(sampler.pdf, wo, wi, kinds, arrays), len(wi), f"{title}: pdf")  # type: ignore[arg-type]
+
+    return name, draw, None if sampler.pdf is None else density, sampler.u, list(sampler.uses), calls.serial
 
 
 def all_counts(arms: Iterable[Mapping[str, Any]]) -> list[int]:
@@ -86,7 +101,13 @@ def all_counts(arms: Iterable[Mapping[str, Any]]) -> list[int]:
     return sorted({n for arm in arms for n in arm["n"]})
 
 
-def callable_arms(samplers: Mapping[str, Sampler], arms: Mapping[str, Mapping[str, Any]]) -> list[CallableArm]:
+def table_of(sampler: Sampler | Combination) -> dict[str, Any]:
+    """The keys of a sampler's arm, without its sample counts."""
+    return sampler.table() if isinstance(sampler, Combination) else {"python": source_of(sampler)}
+
+
+def callable_arms(samplers: Mapping[str, Sampler | Combination], arms: Mapping[str, Mapping[str, Any]]) -> list[CallableArm]:
     """The arms of `samplers`, and those of an experiment's arms that name a sampler in Python."""
     named = {name: sampler_at(arm["python"]) for name, arm in arms.items() if "python" in arm and name not in samplers}
-    return [_arm(name, sampler) for name, sampler in {**samplers, **named}.items()]
+    callables = {name: sampler for name, sampler in samplers.items() if isinstance(sampler, Sampler)}
+    return [_arm(name, sampler) for name, sampler in {**callables, **named}.items()]

@@ -8,7 +8,8 @@ import json
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any, Unpack
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from ._files import names_a_file, sampler_at
 from ._result import CheckResult
 from ._libraries import library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
+
+if TYPE_CHECKING:
+    from .experiments import Experiment
 
 Progress = Callable[[str, float, float], None]
 
@@ -207,6 +211,28 @@ def _cases_and_title(
     return _cases(sampler, full, wo_deg), sampler.title()
 
 
+def _is_experiment(sample: Any) -> bool:
+    from .experiments import Experiment
+
+    return isinstance(sample, Experiment) or (isinstance(sample, (str, PathLike)) and fspath(sample).endswith(".toml"))
+
+
+def _cases_of_experiment(given: Any, sampler: str | None, pixels: int, full: bool) -> tuple[_crescent.CheckCases, str]:
+    """Returns the cases of an arm at pixels of its scene, and its name."""
+    from ._callable_arms import callable_arms
+    from .experiments import Experiment, load
+
+    if not _is_experiment(given):
+        raise TypeError(f"sampler is given beside {type(given).__name__}: expected an experiment, or the name of its file")
+    if not isinstance(sampler, str):
+        raise TypeError(f"sampler is {sampler!r}: expected the name of an arm, of one of e.samplers or a built-in sampler")
+    pixels = whole("pixels", pixels, 0, 4096, "expected a number of pixels, 0 for the grid of w_o")
+    e = given if isinstance(given, Experiment) else load(given)
+    with_arms = e._with_arms()
+    callables = callable_arms(e.samplers, with_arms._tree()["arms"])
+    return _crescent.cases_of_experiment(with_arms._core, sampler, pixels, full, callables), sampler
+
+
 def describe(
     sample: Callable[..., Any] | Sampler | str,
     pdf: Callable[..., Any] | None = None,
@@ -233,10 +259,12 @@ def describe(
 
 
 def check(
-    sample: Callable[..., Any] | Sampler | str,
+    sample: Callable[..., Any] | Sampler | Experiment | str,
     pdf: Callable[..., Any] | None = None,
     f: Callable[..., Any] | None = None,
     *,
+    sampler: str | None = None,
+    pixels: int = 0,
     wo_deg: Grid | None = None,
     alpha: float = 1e-3,
     seed: int = 1,
@@ -256,11 +284,24 @@ def check(
     sampler of callables are given by the fields of :class:`Sampler` as keywords: name, u, domain, wo, channels, delta,
     eta, ...
 
+    `sample` may also be an experiment, or its file: ``check(e, sampler="mine", pixels=64)`` checks that arm, one of
+    ``e.samplers`` or a built-in sampler with the materials and lights of the scene, at so many pixels in view, or with
+    ``pixels=0`` over the grid of w_o on each material.
+
     `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, instead of the grid. `alpha`: the probability
     that a correct sampler is reported as wrong, over everything in the call. `against`: a second sampler, compared with
     the first. `progress(what, done, total)` is called several times a second.
     """
-    cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    if sampler is not None or _is_experiment(sample):
+        cases, title = _cases_of_experiment(sample, sampler, pixels, full)
+        given = {"pdf": pdf, "f": f, "wo_deg": wo_deg, "against": against, "settings": settings, **known}
+        for what, value in given.items():
+            if value is not None:
+                raise TypeError(f"{what} is not for an arm of an experiment")
+    elif pixels:
+        raise TypeError("pixels are of an experiment: crescent.check(e, sampler=NAME, pixels=64)")
+    else:
+        cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
     if isinstance(against, str):
         other = _crescent.baseline_of(against, cases)

@@ -24,6 +24,8 @@ ARRAYS = {
     "alpha": ("alpha",),
     "rho_d": ("rho_d",),
     "rho_s": ("rho_s",),
+    "side": ("side",),
+    "eta": ("eta",),
     "lights": ("position", "normal", "edge_u", "edge_v", "shines", "radius", "radiance"),
 }
 
@@ -57,6 +59,8 @@ class Context:
     alpha: Any  #: [n], roughness of a GGX or Beckmann lobe
     rho_d: Any  #: [n, 3], diffuse albedo
     rho_s: Any  #: [n], albedo of the lobe
+    side: Any  #: [n], 1: w_o is on the side of the normal; scenes have no other
+    eta: Any  #: [n], index below over above; 1: scenes are opaque
     lights: _Lights
 
     def __init__(self, uses: Sequence[str], kinds: tuple[str, ...], arrays: Sequence[Any]) -> None:
@@ -170,6 +174,7 @@ def example(uses: Sequence[str], settings: Mapping[str, float], n: int) -> tuple
     surface = {**DEFAULTS, **settings}
     given: dict[str, Any] = {name: np.full(n, surface[name]) for name in ("s", "alpha", "rho_s")}
     given["rho_d"] = np.full((n, 3), surface["rho_d"])
+    given["side"] = given["eta"] = np.ones(n)
     position = np.array([0.6, 0.3, 1.8])
     given["position"] = np.broadcast_to(position, (n, 1, 3)).copy()
     given["normal"] = given["position"] / -np.linalg.norm(position)

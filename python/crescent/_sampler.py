@@ -14,12 +14,12 @@ from ._arrays import Array
 
 Domain = Literal["sphere", "hemisphere"]
 Asked = Literal["upper", "both", "none"]
-Use = Literal["s", "alpha", "rho_d", "rho_s", "lights"]
+Use = Literal["s", "alpha", "rho_d", "rho_s", "side", "eta", "lights"]
 
 
 _DOMAINS = ("sphere", "hemisphere")
 _SIDES = ("upper", "both", "none")
-_USES = ("s", "alpha", "rho_d", "rho_s", "lights")
+_USES = ("s", "alpha", "rho_d", "rho_s", "side", "eta", "lights")
 
 
 def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
@@ -43,6 +43,16 @@ def _uses(given: Any) -> tuple[str, ...]:
             hint = f"; did you mean '{near[0]}'?" if near else ""
             raise ValueError(f"uses has {name!r}: expected {', '.join(_USES)}{hint}")
     return names
+
+
+@dataclass(frozen=True)
+class _Radiance:
+    """The radiance of a light in the place of f: their integrals have the same form."""
+
+    of: Callable[..., Any]
+
+    def __call__(self, wo: Any, wi: Any) -> Any:
+        return self.of(wi)
 
 
 @dataclass(frozen=True)
@@ -71,8 +81,18 @@ class Sampler:
     #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
     array_module: Any = None
     device: Any = None  #: the device of these arrays, in that library's notation
+    #: of a light, radiance(wi[n,3]) -> [n] or [n,3], W/(sr m^2): wo is "none", and `check` compares the estimate of the
+    #: irradiance with its quadrature
+    radiance: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
+        if self.radiance is not None:
+            if not callable(self.radiance):
+                raise TypeError(f"radiance is {type(self.radiance).__name__}: expected a callable radiance(wi)")
+            if self.f is not None and not isinstance(self.f, _Radiance):
+                raise TypeError("f and radiance are given: a light has its radiance alone")
+            object.__setattr__(self, "f", _Radiance(self.radiance))
+            object.__setattr__(self, "wo", "none")
         for what, taken in (("sample", "wo, u"), ("pdf", "wo, wi"), ("f", "wo, wi")):
             call = getattr(self, what)
             if not callable(call) and (call is not None or what == "sample"):
@@ -112,6 +132,7 @@ class Known(TypedDict, total=False):
     uses: Sequence[Use]
     array_module: Any
     device: Any
+    radiance: Callable[..., Any] | None
 
 
 def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:

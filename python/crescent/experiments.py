@@ -23,8 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crescent
-from ._callable_arms import Samplers, all_counts, callable_arms, source_of
+from ._callable_arms import Samplers, all_counts, callable_arms, table_of
+from ._progress import bar
 from ._sampler import whole
+from ._summaries import Summary
 
 Progress = Callable[[str, float, float], None]
 
@@ -180,7 +182,7 @@ class Experiment:
         if not self.samplers:
             return self
         counts = all_counts(arms.values())
-        tables = {f"arms.{_quoted(n)}": {"python": source_of(s), "n": counts} for n, s in self.samplers.items()}
+        tables = {f"arms.{_quoted(n)}": {**table_of(s), "n": counts} for n, s in self.samplers.items()}
         return Experiment(_crescent.with_arms(self._core, _overrides(tables)))
 
     @property
@@ -266,6 +268,14 @@ class Films(Mapping[tuple[str, int], Film]):
         return len(self._films)
 
 
+class RunInterrupted(KeyboardInterrupt):
+    """Ctrl-C during :func:`run`."""
+
+    def __init__(self, result: Measured | None) -> None:
+        super().__init__("no seed is complete" if result is None else "the complete seeds are in .result")
+        self.result = result  #: of the seeds that are complete; None: none is
+
+
 class Measured:
     """A run: films as arrays without a copy, and every number. It can be pickled and copied."""
 
@@ -296,6 +306,27 @@ class Measured:
         """
         rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
         return [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
+
+    @property
+    def boxes(self) -> dict[str, tuple[int, int, int, int]]:
+        """x0, y0, x1, y1 of each region in pixels, both ends inclusive, from the bottom-left."""
+        return {name: box for name, *box in self._core.boxes}  # type: ignore[misc]
+
+    @property
+    def times(self) -> dict[str, float]:
+        """Seconds of wall-clock time of each arm at its highest N and the experiment's own s: the median over seeds of
+        the medians over `repeats`. They vary between equal runs."""
+        rows = [(arm, seconds) for arm, _, s, _, seconds in self._core.times if s == self.s]
+        arms = dict.fromkeys(arm for arm, _ in rows)
+        return {arm: float(np.median([t for a, t in rows if a == arm])) for arm in arms}
+
+    def metric(self, name: str, arm: str, n: int, region: str = "", s: float | None = None) -> Summary:
+        """A metric of :meth:`records`, "tail_k", "bias_sq", "flip" (of the frame's films of the first seed), or
+        "efficiency_n" and "efficiency_time": 1 / (variance of one sample) and 1 / (variance times seconds), as a mean
+        over seeds with its 95 % interval (Student's t)."""
+        from ._summaries import summary
+
+        return summary(self, name, arm, n, region, self.s if s is None else s)
 
     def to_pandas(self) -> Any:
         """The rows of :meth:`records` as a pandas.DataFrame."""
@@ -391,10 +422,16 @@ def run(
     isa: str = "",
     studies: bool = False,
     out: str | PathLike[str] | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     code: bool = True,
+    repeats: int = 1,
 ) -> Measured:
     """Runs an experiment, or the file of one.
+
+    `progress`: a callable progress(what, done, total); True or False for tqdm's bar or none; by default a bar where
+    tqdm is installed and stderr is a terminal or a notebook. `repeats`: how often each arm is run for
+    :attr:`Measured.times`, which are medians. Ctrl-C raises :class:`RunInterrupted`, a KeyboardInterrupt whose `result`
+    has the seeds that are complete; with `out` it is written there.
 
     `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and evidence too.
     `out`: a folder for metrics and films. Films have the same bits for any `threads` and `isa`.
@@ -410,16 +447,27 @@ def run(
         raise ValueError(f"seeds is {seeds!r}: expected the first and the last of the series, (1, 0) for all")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     with_arms = e._with_arms()
-    core = _crescent.run(
-        with_arms._core,
-        seeds[0],
-        seeds[1],
-        threads=threads,
-        isa=isa,
-        studies=studies,
-        progress=progress,
-        callables=callable_arms(e.samplers, with_arms._tree()["arms"]),
-    )
+    repeats = whole("repeats", repeats, 1, 1000, "expected how often each arm is run")
+    kept: list[_crescent.RunResult] = []
+    with bar(progress) as shown:
+        try:
+            core = _crescent.run(
+                with_arms._core,
+                seeds[0],
+                seeds[1],
+                threads=threads,
+                isa=isa,
+                studies=studies,
+                progress=shown,
+                callables=callable_arms(e.samplers, with_arms._tree()["arms"]),
+                repeats=repeats,
+                kept=kept,
+            )
+        except KeyboardInterrupt:
+            part = Measured(kept[0]) if kept else None
+            if part is not None and folder is not None:
+                part.write(folder)
+            raise RunInterrupted(part) from None
     measured = Measured(core)
     if folder is not None:
         measured.write(folder)

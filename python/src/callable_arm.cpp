@@ -111,6 +111,9 @@ std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, cons
     surface("s", &ExternalSurface::s);
     surface("alpha", &ExternalSurface::alpha);
     surface("rho_s", &ExternalSurface::lobe);
+    for (const char* name : {"side", "eta"})  // scenes are opaque, and seen from the side of the normal
+        if (uses.contains(name))
+            all.push_back(per_run(name, batch, rows, {}, [](std::size_t, std::size_t) { return 1.0; }));
     if (uses.contains("rho_d"))
         all.push_back(
             per_run("rho_d", batch, rows, {3}, [&](std::size_t r, std::size_t c) { return batch.runs[r].rho_d[c]; }));
@@ -121,7 +124,7 @@ std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, cons
 }  // namespace
 
 void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) const {
-    raised_.check();
+    raised_->check();
     const std::size_t rows = out.pdf.size();
     Table wo =
         per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
@@ -143,7 +146,31 @@ void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) con
         }
         if (plan_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
     } catch (...) {
-        raised_.keep();
+        raised_->keep();
+        throw Interrupted{};
+    }
+}
+
+void CallableArm::density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const {
+    raised_->check();
+    const std::size_t rows = out.size();
+    Table wo =
+        per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
+    Table directions("wi", rows, {3});
+    for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < rows; ++i) directions.column(j)[i] = component(wi[i], j);
+    std::vector<Table> tables = context_of(batch, rows, plan_.uses);
+    const Locked held;
+    try {
+        nb::dict context;
+        for (Table& table : tables) context[table.name().c_str()] = table.take();
+        if (plan_.uses.contains("lights")) put_lights(batch.lights, context);
+        const Column pdf = nb::cast<Column>(call_python(plan_.pdf, wo.take(), directions.take(), context));
+        if (pdf.shape(0) != rows) throw nb::value_error("crescent._context let an array of another shape through");
+        for (std::size_t i = 0; i < rows; ++i) out[i] = pdf(i);
+        if (plan_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
+    } catch (...) {
+        raised_->keep();
         throw Interrupted{};
     }
 }

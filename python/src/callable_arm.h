@@ -1,12 +1,18 @@
 // A vectorised Python callable as an arm of an experiment: draw(wo[n,3], u[n,k], context) -> (wi[n,3], pdf[n], ...).
 //
+// pdf(wo[n,3], wi[n,3], context) -> [n] is needed by combinations alone.
+//
 // `context` is a dict of arrays, one row a row of u: those of s, alpha, rho_d and rho_s that the sampler uses, and
 // for lights `position`, `normal`, `edge_u`, `edge_v` [n,K,3], `shines` [n,K] and the constants `kind` (a list of K
 // texts), `radius` [K] and `radiance` [K,3]. crescent/_context.py makes it from a sampler's own callable.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "watched.h"
 
@@ -14,7 +20,7 @@ namespace crescent::python {
 
 struct CallableArmPlan {
     std::string name;
-    nb::object draw;
+    nb::object draw, pdf;  // pdf may be None
     int numbers = 2;
     std::set<std::string> uses{};  // of the quantities above
     bool serial = false;           // it wants one thread, the caller's own
@@ -24,16 +30,34 @@ struct CallableArmPlan {
 /// and is raised again at its end.
 class CallableArm : public ExternalSampler {
 public:
-    CallableArm(CallableArmPlan plan, Raised& raised) : plan_(std::move(plan)), raised_(raised) {}
+    explicit CallableArm(CallableArmPlan plan) : plan_(std::move(plan)), has_density_(!plan_.pdf.is_none()) {}
+    /// Receives exceptions of the callables; must be set during a run or a check.
+    void set_raised(Raised* raised) const { raised_ = raised; }
+    bool serial() const { return plan_.serial; }
     std::string name() const override { return plan_.name; }
     int numbers() const override { return plan_.numbers; }
     std::size_t batch_rows() const override { return 32768; }
     bool uses_lights() const override { return plan_.uses.contains("lights"); }
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override;
+    bool has_density() const override { return has_density_; }
+    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override;
 
 private:
     CallableArmPlan plan_;
-    Raised& raised_;
+    bool has_density_;  // the lock need not be held to tell
+    mutable Raised* raised_ = nullptr;
 };
+
+/// (arm, draw, pdf, numbers, uses, serial) of each arm whose sampler is a callable.
+using CallableArms = std::vector<std::tuple<std::string, nb::object, nb::object, int, std::vector<std::string>, bool>>;
+
+/// The samplers of these arms.
+inline std::map<std::string, std::shared_ptr<const CallableArm>> samplers_of(const CallableArms& callables) {
+    std::map<std::string, std::shared_ptr<const CallableArm>> out;
+    for (const auto& [name, draw, pdf, numbers, uses, one_thread] : callables)
+        out[name] = std::make_shared<CallableArm>(
+            CallableArmPlan{name, draw, pdf, numbers, {uses.begin(), uses.end()}, one_thread});
+    return out;
+}
 
 }  // namespace crescent::python

@@ -4,8 +4,10 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "callable_arm.h"
 #include "callables.h"
 #include "doors.h"
 
@@ -18,7 +20,8 @@ using Adapter = std::shared_ptr<const SamplerAdapter>;
 /// CheckCases over w_o, and the sampler in them.
 struct CheckCases {
     std::vector<CheckCase> all;
-    Adapter adapter;  // null: a built-in sampler
+    Adapter adapter;                                         // null: a built-in sampler, or an arm of an experiment
+    std::vector<std::shared_ptr<const CallableArm>> arms{};  // of an experiment: those with callables
     std::size_t size() const {
         std::size_t checked = 0;
         for (const CheckCase& t : all) checked += !t.baseline;
@@ -50,6 +53,17 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     return {make_user_cases(adapter, full, grid), adapter};
 }
 
+CheckCases of_experiment(
+    const Experiment& experiment, const std::string& sampler, int pixels, bool full, const CallableArms& callables) {
+    CheckCases out;
+    ExternalSamplers samplers;
+    for (const auto& [name, arm] : samplers_of(callables)) samplers[name] = arm, out.arms.push_back(arm);
+    const Work here;
+    out.all = arm_cases(
+        experiment, sampler, open_external(with_arms_of(experiment, sampler), 0, std::move(samplers)), {pixels, full});
+    return out;
+}
+
 /// What was checked of what, in words and for files.
 struct CheckRun {
     CheckResult result;
@@ -71,9 +85,11 @@ TestSettings settings_of(double alpha, std::uint32_t seed, bool full, bool accep
 void set_raised(const CheckCases& check_cases, Raised* raised) {
     if (const auto* callables = dynamic_cast<const CallableSampler*>(check_cases.adapter.get()))
         callables->set_raised(raised);
+    for (const auto& arm : check_cases.arms) arm->set_raised(raised);
 }
 
 bool is_serial(const CheckCases& check_cases) {
+    if (std::ranges::any_of(check_cases.arms, [](const auto& arm) { return arm->serial(); })) return true;
     return dynamic_cast<const CallableSampler*>(check_cases.adapter.get()) && check_cases.adapter->serial();
 }
 
@@ -230,6 +246,8 @@ void add_checking(nb::module_& m) {
     m.def("cases_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
         "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "own_random"_a,
         "eta"_a.none(), "importance"_a, "full"_a, "grid"_a);
+    m.def("cases_of_experiment", &of_experiment, "experiment"_a, "sampler"_a, "pixels"_a, "full"_a, "callables"_a,
+        "An arm of an experiment at pixels of its scene; 0: over the grid of w_o on each material.");
     m.def(
         "cases_of_arm",
         [](const std::string& arm, const Settings& settings, bool full, const Grid& grid) {

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "doors.h"
 #include "run_result.h"
@@ -20,7 +21,9 @@ RunResult result_of(Measured&& m) {
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
             {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
-        {}, {}};
+        {}, {}, {}, {}};
+    for (const Region& r : m.experiment.regions) out.boxes.emplace_back(r.name, r.box.x0, r.box.y0, r.box.x1, r.box.y1);
+    for (const ArmTiming& t : m.timing.arms) out.times.emplace_back(t.arm, t.n, t.s, t.samples, t.seconds);
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
     for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
     return out;
@@ -28,10 +31,10 @@ RunResult result_of(Measured&& m) {
 
 SamplersOfCallables samplers_of(const CallableArms& callables, Raised& raised) {
     SamplersOfCallables out;
-    for (const auto& [name, draw, numbers, uses, one_thread] : callables) {
-        out.serial = out.serial || one_thread;
-        out.samplers[name] = std::make_shared<CallableArm>(
-            CallableArmPlan{name, draw, numbers, {uses.begin(), uses.end()}, one_thread}, raised);
+    for (const auto& [name, arm] : samplers_of(callables)) {
+        arm->set_raised(&raised);
+        out.serial = out.serial || arm->serial();
+        out.samplers[name] = arm;
     }
     return out;
 }
@@ -64,17 +67,18 @@ ReferenceList references_of(nb::handle self) {
     return reference_list(nb::cast<const RunResult&>(self).references, self);
 }
 
-using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, nb::object, nb::object>;
+using State =
+    std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object>;
 
 State state_of(nb::handle self) {
     const RunResult& r = nb::cast<const RunResult&>(self);
-    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, films_of(self), references_of(self)};
+    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, r.boxes, films_of(self), references_of(self)};
 }
 
 void restore(RunResult& into, const State& state) {
     RunResult* const r = new (&into) RunResult;
     nb::object films, references;
-    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, films, references) = state;
+    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, r->boxes, films, references) = state;
     for (const nb::handle entry : films) {
         const nb::tuple at = nb::cast<nb::tuple>(entry);
         const nb::dict planes = nb::cast<nb::dict>(at[4]);
@@ -88,27 +92,81 @@ void restore(RunResult& into, const State& state) {
     restore_references(nb::cast<nb::list>(references), r->references);
 }
 
+/// What a run has done so far.
+struct RunSoFar {
+    RunPlan plan;
+    Engine engine;
+    std::optional<Prepared> prepared;
+    std::vector<JobResult> results;
+};
+
+/// The wall-clock seconds of a job: the median over so many executions, of which the first is given.
+double median_seconds(const RunSoFar& run, const Job& job, double first, int repeats, ProgressMonitor& monitor) {
+    std::vector<double> seconds = {first};
+    for (int k = 1; k < repeats; ++k) {
+        monitor.check();
+        seconds.push_back(execute(run.plan, *run.prepared, job, run.engine, monitor, false).seconds);
+    }
+    std::ranges::sort(seconds);
+    const std::size_t half = seconds.size() / 2;
+    return seconds.size() % 2 ? seconds[half] : (seconds[half - 1] + seconds[half]) / 2;
+}
+
+/// The result of the seeds of which every job is done; empty if there is none.
+std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& run, bool studies) {
+    std::erase_if(run.results, [](const JobResult& r) { return r.stopped; });
+    int seeds = 0;
+    for (const std::uint32_t seed : run.plan.seeds) {
+        const auto of_seed = [&](const auto& jobs, auto&& seed_of_job) {
+            return std::ranges::count_if(jobs, [&](const auto& j) { return seed_of_job(j) == seed; });
+        };
+        const auto planned = of_seed(run.plan.jobs, [](const Job& j) { return j.seed; });
+        if (of_seed(run.results, [](const JobResult& r) { return r.job.seed; }) != planned) break;
+        ++seeds;
+    }
+    if (seeds == 0 || !run.prepared || run.prepared->stopped) return {};
+    const RunPlan part = plan(experiment, {run.plan.range.first, run.plan.range.first + seeds - 1});
+    std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
+    PolledMonitor monitor;
+    const Work here(&monitor);
+    return result_of(collect(
+        part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies}));
+}
+
+/// `kept` receives the result of the complete seeds if the run is interrupted.
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
-    bool studies, const nb::object& progress, const CallableArms& callables) {
+    bool studies, const nb::object& progress, const CallableArms& callables, int repeats, nb::list kept) {
     PolledMonitor monitor;
     Raised raised(monitor);
     RunResult out;
     const auto [samplers, serial] = samplers_of(callables, raised);
-    watched(monitor, raised, progress, serial, [&] {
-        const RunPlan what = plan(experiment, {first, last});
-        const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
-        Prepared prepared = prepare(what, engine, monitor);
-        std::vector<JobResult> results;
-        for (const Job& job : what.jobs) {
+    RunSoFar run;
+    const auto work = [&] {
+        run.plan = plan(experiment, {first, last});
+        run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
+        run.prepared = prepare(run.plan, run.engine, monitor);
+        for (const Job& job : run.plan.jobs) {
             monitor.check();
-            results.push_back(execute(what, prepared, job, engine, monitor, job.seed == what.seeds.front()));
+            JobResult result =
+                execute(run.plan, *run.prepared, job, run.engine, monitor, job.seed == run.plan.seeds.front());
+            result.seconds = median_seconds(run, job, result.seconds, repeats, monitor);
+            run.results.push_back(std::move(result));
         }
         monitor.check();
-        Measured all =
-            collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent.run", studies});
+        Measured all = collect(
+            run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies});
+        run.results.clear(), run.prepared.reset();
         monitor.check();
         out = result_of(std::move(all));
-    });
+    };
+    try {
+        watched(monitor, raised, progress, serial, work);
+    } catch (nb::python_error& error) {
+        if (!error.matches(PyExc_KeyboardInterrupt)) throw;
+        if (std::optional<RunResult> part = finished_seeds(experiment, run, studies))
+            kept.append(nb::cast(std::move(*part)));
+        throw;
+    }
     return out;
 }
 
@@ -153,6 +211,23 @@ Experiment settled_paths(Experiment e) {
     return e;
 }
 
+using Plane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+/// HDR-FLIP of each pixel.
+nb::object flip_of(const Plane& r0, const Plane& g0, const Plane& b0, const Plane& r, const Plane& g, const Plane& b) {
+    const auto height = r0.shape(0), width = r0.shape(1);
+    const auto image = [&](const Plane& red, const Plane& green, const Plane& blue) {
+        for (const Plane* plane : {&red, &green, &blue})
+            if (plane->shape(0) != height || plane->shape(1) != width)
+                throw nb::value_error("expected six planes of one size");
+        return FlipImage{static_cast<int>(width), static_cast<int>(height), {red.data(), red.size()},
+            {green.data(), green.size()}, {blue.data(), blue.size()}};
+    };
+    auto* values = new std::vector<float>(hdr_flip(image(r0, g0, b0), image(r, g, b), 67));
+    const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<float>*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, float>(values->data(), {height, width}, owner));
+}
+
 }  // namespace
 
 void add_experiments(nb::module_& m) {
@@ -192,11 +267,15 @@ void add_experiments(nb::module_& m) {
         .def_ro("json", &RunResult::json)
         .def_ro("csv", &RunResult::csv)
         .def_ro("junit", &RunResult::junit)
+        .def_ro("times", &RunResult::times)
+        .def_ro("boxes", &RunResult::boxes)
         .def_prop_ro("films", [](nb::handle self) { return films_of(self); })
         .def_prop_ro("references", [](nb::handle self) { return references_of(self); })
         .def("write", &write_folder, "folder"_a)
         .def("__getstate__", [](nb::handle self) { return state_of(self); })
         .def("__setstate__", &restore);
+    m.def("flip", &flip_of, "reference_r"_a, "reference_g"_a, "reference_b"_a, "test_r"_a, "test_g"_a, "test_b"_a,
+        "HDR-FLIP of each pixel, linear Rec. 709, at 67 pixels per degree.");
     m.def("counting_metrics", &counting_metrics, "The metrics whose values are whole numbers.");
     m.def(
         "join",
@@ -206,7 +285,7 @@ void add_experiments(nb::module_& m) {
         },
         "parts"_a);
     m.def("run", &run_experiment, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a,
-        "progress"_a.none(), "callables"_a = CallableArms{});
+        "progress"_a.none(), "callables"_a, "repeats"_a, "kept"_a);
 }
 
 }  // namespace crescent::python

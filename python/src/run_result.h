@@ -56,6 +56,9 @@ inline void restore_references(const nb::list& from, std::vector<ReferenceFilm>&
     }
 }
 
+/// Name, x0, y0, x1, y1 of each region, both ends inclusive, from the bottom-left.
+using Boxes = std::vector<std::tuple<std::string, int, int, int, int>>;
+
 /// The results of a run, as plain data: texts, films and references.
 struct RunResult {
     double s = 0;  // the experiment's own
@@ -64,12 +67,13 @@ struct RunResult {
     Attributes attributes;  // of the films' files
     std::vector<std::pair<RunKey, Film>> films;
     std::vector<ReferenceFilm> references;
+    /// (arm, highest N, s, samples, seconds of wall-clock time) of each job; not pickled, as it varies between equal
+    /// runs.
+    std::vector<std::tuple<std::string, std::uint64_t, double, std::uint64_t, double>> times;
+    Boxes boxes;
 };
 
 RunResult result_of(Measured&& m);
-
-/// (arm, draw, numbers, uses, serial) of each arm whose sampler is a callable, see callable_arm.h.
-using CallableArms = std::vector<std::tuple<std::string, nb::object, int, std::vector<std::string>, bool>>;
 
 /// The callables as samplers, and whether one of them requires the caller's thread.
 struct SamplersOfCallables {

@@ -26,6 +26,7 @@ int crescent_sampler_serial(void);
  * columns, Phong exponent s, GGX roughness alpha, luminance of the diffuse albedo, specular albedo.
  *   s, alpha, rho_s  1 column each
  *   rho_d            3 columns, the diffuse albedo by channel
+ *   side, eta        1 column each: 1, as scenes are opaque and seen from the side of the normal
  *   lights           1 column, the number of lights, then a crescent_light for each; the same number in all rows */
 const char* crescent_sampler_uses(void);
 

@@ -106,9 +106,9 @@ void check_external_arms(ParseContext& context) {
         const std::array keys = {
             std::pair("exec", arm.exec), std::pair("plugin", arm.plugin), std::pair("python", arm.python)};
         const auto given = std::ranges::count_if(keys, [](const auto& key) { return key.second.has_value(); });
-        if (given + int(!arm.sampler.empty()) > 1)
+        if (given + int(!arm.sampler.empty()) + int(arm.is_combination()) > 1)
             context.report(
-                path, fmt::format("{}: expected one of sampler, exec, plugin and python, found several", path));
+                path, fmt::format("{}: expected one of sampler, kind, exec, plugin and python, found several", path));
         if (arm.python && !arm.python->empty() && python_file(*arm.python).empty() &&
             arm.python->find(':') == std::string::npos)
             context.report(path + ".python",
@@ -118,6 +118,13 @@ void check_external_arms(ParseContext& context) {
             if (text && text->empty())
                 context.report(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
     }
+}
+
+/// Whether an arm's name is no sampler because its kind is missing or wrong, which is reported by itself.
+bool is_unfinished_combination(const ParseContext& context, const std::string& path_of_sampler) {
+    const std::string path = path_of_sampler.substr(0, path_of_sampler.rfind('.'));
+    const ArmPlan* arm = context.e.find_arm(path.substr(path.find('.') + 1));
+    return arm && (!context.is_valid(path + ".kind") || !arm->combination.of.empty());
 }
 
 /// Checks that no two arms write their films into one file.
@@ -152,6 +159,7 @@ void check_names(ParseContext& context) {
     const std::vector<std::string> arms = names_of(context.e.arms), shapes = names_of(context.e.shapes);
     for (const Reference& r : context.references) {
         const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
+        if (sampler && is_unfinished_combination(context, r.path)) continue;
         const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";

@@ -16,6 +16,7 @@
 #include "base/vec.h"
 #include "experiment/assertion.h"
 #include "output/tone_map.h"
+#include "samplers/combination_plan.h"
 #include "scene/scene_data.h"
 
 namespace crescent::inline experiment {
@@ -103,7 +104,9 @@ struct ArmPlan {
     SourceLocation at;
     // A command, the file of a shared library, a sampler in Python as "FILE.py:NAME" or "module:NAME".
     std::optional<std::string> exec = {}, plugin = {}, python = {};
+    CombinationPlan combination = {};  // of other arms and samplers
     bool is_external() const { return exec || plugin || python; }
+    bool is_combination() const { return combination.kind.has_value(); }
 };
 
 /// The exponent control: `arm` repeated at each s, which changes the pdf, the BRDF and the reference.

@@ -139,7 +139,9 @@ std::string example(const Key& key) {
         case Type::color: return "[1, 1, 1]";
         case Type::direction: return "[0, 0.6, 0.8]";
         case Type::numbers: return "[1.5, 2]";
-        case Type::integers: return "[1, 2]";
+        case Type::integers:
+        case Type::counts: return "[1, 2]";
+        case Type::formulas: return "[0.5, \"rest\"]";
         case Type::box: return "[0, 0, 0, 0]";
         case Type::sampler: return "\"cosine\"";
         case Type::arm: return "\"nobody\"";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <charconv>
 #include <cmath>
 
 #include "experiment/sampler_files.h"
@@ -43,6 +44,16 @@ std::string toml(const Key& key, const Value& value) {
         case Type::sampler:
         case Type::arm:
         case Type::shape: return toml_text(value.text);
+        case Type::formulas: {
+            std::string out;
+            for (const std::string& text : value.texts) {
+                double x = 0;
+                const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+                const bool is_number = error == std::errc{} && end == text.data() + text.size();
+                out += (out.empty() ? "" : ", ") + (is_number ? number(x) : toml_text(text));
+            }
+            return "[" + out + "]";
+        }
         case Type::texts: {
             std::string out;
             for (const std::string& text : value.texts) out += (out.empty() ? "" : ", ") + toml_text(text);
@@ -57,7 +68,9 @@ std::string toml(const Key& key, const Value& value) {
 bool is_given(const Key& key, const Value& value) {
     if (key.type == Type::sampler) return !value.text.empty();
     if (key.need != Requirement::optional) return true;
-    if (key.type == Type::integers || key.type == Type::numbers) return !value.numbers.empty();
+    if (key.type == Type::integers || key.type == Type::numbers || key.type == Type::counts)
+        return !value.numbers.empty();
+    if (key.type == Type::formulas || key.type == Type::texts) return !value.texts.empty();
     return (key.type != Type::integer && key.type != Type::number) || value.number != 0;
 }
 

@@ -56,6 +56,15 @@ Json type_of(const Key& key) {
         case Type::box: return list(number(key, true), 4);
         case Type::numbers: return one_or_more(number(key, false));
         case Type::integers: return one_or_more(number(key, true));
+        case Type::counts:
+            return {{"anyOf",
+                {number(key, true),
+                    {{"type", "array"}, {"items", number(key, true)}, {"minItems", 1}, {"maxItems", most_schema_items}}}}};
+        case Type::formulas:
+            return {{"type", "array"},
+                {"items",
+                    {{"anyOf", {{{"type", "number"}}, {{"type", "string"}, {"maxLength", most_schema_characters}}}}}},
+                {"minItems", 1}, {"maxItems", most_schema_items}};
     }
     return {};
 }

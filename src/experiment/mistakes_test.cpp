@@ -96,6 +96,35 @@ TEST_P(AMistake, IsFoundWhereItStandsInWordsThatHelp) {
     }
 }
 
+/// Appended to the file: their first line is 53.
+const Mistake combinations[] = {
+    {"", "[arms.both]\nkind = \"mix\"\nof = [\"cosine\", \"phong\"]\n", 54, 8, "did you mean 'mis'?"},
+    {"", "[arms.both]\nkind = \"mixture\"\nof = [\"cosine\", \"fong\"]\n", 55, 17, "did you mean 'phong'?"},
+    {"", "[arms.both]\nkind = \"mixture\"\nof = [\"cosine\", \"phong\"]\nweights = [0.5, 0.25]\n", 56, 11,
+        "expected weights from 0 to 1 whose sum is one, found 0.5, 0.25 with sum 0.75"},
+    {"", "[arms.both]\nkind = \"mixture\"\nof = [\"cosine\", \"phong\"]\nweights = [1.5, -0.5]\n", 56, 11,
+        "expected weights from 0 to 1"},
+    {"", "[arms.both]\nkind = \"mixture\"\nof = [\"cosine\", \"phong\"]\nweights = [1]\n", 56, 11,
+        "expected 2 weights, one for each of 'of', found 1"},
+    {"", "[arms.both]\nkind = \"mixture\"\nof = [\"cosine\", \"phong\"]\nweights = [\"roh_s\", \"rest\"]\n", 56, 11,
+        "did you mean 'rho_s'?"},
+    {"", "[arms.both]\nkind = \"mixture\"\nof = [\"cosine\", \"phong\"]\nweights = [\"p1\", \"rest\"]\n", 56, 11,
+        "unknown name 'p1'"},
+    {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\", \"phong\"]\nweights = [\"p1/(p1+p2)\", \"p2/p1\"]\n", 56, 11,
+        "whose sum is one"},
+    {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\", \"phong\"]\nheuristic = \"power\"\nweights = [0.5, 0.5]\n", 57,
+        11, "expected weights or a heuristic, found both"},
+    {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\", \"mis-power\"]\n", 55, 17, "is two samplers with weights"},
+    {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\", \"both\"]\n", 55, 17, "found the arm itself"},
+    {"", "[arms.both]\nkind = \"ris\"\nof = [\"cosine\"]\n", 53, 7, "missing key 'candidates'"},
+    {"", "[arms.both]\nkind = \"ris\"\nof = [\"cosine\"]\ncandidates = 4\ntarget = \"prodct\"\n", 57, 10,
+        "did you mean 'product'?"},
+    {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\", \"phong\"]\nprobabilities = [0.5, 0.5]\n", 56, 17,
+        "expected draw = \"one\""},
+    {"", "[arms.both]\nof = [\"cosine\", \"phong\"]\n", 54, 6, "expected a kind beside it"},
+    {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\"]\n", 55, 6, "expected 2 to 16 samplers, found 1"},
+};
+
 const Mistake keys_and_types[] = {
     {"seed = 5", "sead = 5", 1, 1, "did you mean 'seed'?"},
     {"radius = 0.5", "radius = 0.5\nradis = 1", 15, 1, "unknown key 'radis' in [shapes.ball]"},
@@ -223,6 +252,7 @@ const Mistake checks[] = {
         "[[assertions]]\nname = \"a\"\ncheck = \"bad(phong) == 0\"\n[[assertions]]\nname = \"a\"\ncheck", 55, 8,
         "the first is at x.toml:52:8"},
 };
+INSTANTIATE_TEST_SUITE_P(Combinations, AMistake, testing::ValuesIn(combinations));
 INSTANTIATE_TEST_SUITE_P(KeysAndTypes, AMistake, testing::ValuesIn(keys_and_types));
 INSTANTIATE_TEST_SUITE_P(Values, AMistake, testing::ValuesIn(values));
 INSTANTIATE_TEST_SUITE_P(Names, AMistake, testing::ValuesIn(names));

@@ -10,6 +10,7 @@
 #include <map>
 #include <tuple>
 
+#include "experiment/combination_checks.h"
 #include "experiment/experiment.h"
 #include "experiment/queries.h"
 #include "experiment/sampler_files.h"
@@ -123,7 +124,7 @@ private:
     void default_value(const Key& key, const std::string& path, void* object) {
         if (key.type == Type::sampler) {  // the arm's own name, unless exec or plugin is given
             const auto& arm = *static_cast<const ArmPlan*>(object);
-            if (arm.is_external()) return;
+            if (arm.is_external() || arm.is_combination()) return;
             Node name;
             name.kind = Node::Kind::text;
             name.text = static_cast<const ArmPlan*>(object)->name;
@@ -380,6 +381,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     check_geometry(context);
     check_names(context);
     resolve_runs(context);
+    check_combinations(context);
     resolve_assertions(context);
     Experiment& e = context.e;
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();

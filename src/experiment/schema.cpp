@@ -20,7 +20,8 @@ std::string bounds(const Key& key) {
         case Type::color:
         case Type::gray:
         case Type::numbers:
-        case Type::integers: return to_string(key.range);
+        case Type::integers:
+        case Type::counts: return to_string(key.range);
         default: return "";
     }
 }
@@ -40,6 +41,8 @@ std::string noun(const Key& key) {
         case Type::gray: return "a number, or 3 numbers [r, g, b],";
         case Type::numbers: return "ascending numbers";
         case Type::integers: return "ascending integers";
+        case Type::counts: return "integers";
+        case Type::formulas: return "a list of numbers or formulas";
         case Type::box: return "4 integers [x0, y0, x1, y1]";
         case Type::sampler: return "the name of a sampler";
         case Type::arm: return "the name of an arm";

@@ -31,6 +31,8 @@ enum class Type {
     gray,       // a number, or 3 of a colour
     numbers,    // ascending, a bare number is a list of one
     integers,   // ascending, a bare integer is a list of one
+    counts,     // integers in any order, a bare integer is a list of one
+    formulas,   // numbers, or texts with formulas, see samplers/weight_formula.h
     box,        // pixels x0, y0, x1, y1, both ends inclusive, origin bottom-left
     sampler,
     arm,

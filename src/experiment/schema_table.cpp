@@ -105,6 +105,12 @@ Section fill() {
         {}};
 }
 
+/// The words of an enumeration, in its order; `last` is its last value. A value is read as the index of its word.
+template <auto last, std::size_t n> std::vector<std::string> words_to(const char* const (&words)[n]) {
+    static_assert(n == static_cast<std::size_t>(last) + 1, "an enumeration has one word for each value");
+    return {words, words + n};
+}
+
 Section arms() {
     return {"arms", Multiplicity::named, required,
         "The samplers to compare. All use the same random numbers; sample counts are prefixes of one stream.",
@@ -118,6 +124,34 @@ Section arms() {
             {"python", Type::text, none, "", optional, "none",
                 "In place of a sampler: one in Python, FILE.py:NAME beside this file; see docs/plugins.md.",
                 to<&ArmPlan::python>},
+            {"kind", Type::word, none, "", optional, "none",
+                "In place of a sampler: a combination of samplers, see docs/samplers.md.",
+                to<&ArmPlan::combination, &CombinationPlan::kind>,
+                words_to<CombinationKind::ris>({"mis", "mixture", "ris"})},
+            {"of", Type::texts, none, "", required, "", "What is combined: arms, or built-in samplers.",
+                to<&ArmPlan::combination, &CombinationPlan::of>, {}, "mis mixture ris"},
+            {"heuristic", Type::word, none, "", optional, "\"balance\"", "Weights of the directions.",
+                to<&ArmPlan::combination, &CombinationPlan::heuristic>,
+                words_to<MisHeuristic::power>({"balance", "power"}), "mis"},
+            {"draw", Type::word, none, "", optional, "\"every\"",
+                "A sample has directions of every sampler, or of one that is chosen.",
+                to<&ArmPlan::combination, &CombinationPlan::draw>, words_to<MisDraw::one>({"every", "one"}), "mis"},
+            {"weights", Type::formulas, none, "", optional, "equal; of mis: the heuristic",
+                "One of each in 'of', numbers or formulas; their sum is one.",
+                to<&ArmPlan::combination, &CombinationPlan::weights>, {}, "mis mixture"},
+            {"probabilities", Type::formulas, none, "", optional, "equal",
+                "With which draw = \"one\" chooses each; their sum is one.",
+                to<&ArmPlan::combination, &CombinationPlan::probabilities>, {}, "mis"},
+            {"samples", Type::counts, {1, 1024}, "directions", optional, "one of each",
+                "Directions of each in a sample of draw = \"every\".",
+                to<&ArmPlan::combination, &CombinationPlan::samples>, {}, "mis"},
+            {"candidates", Type::integer, {1, 4096}, "directions", required, "",
+                "Candidates of a sample, of each in 'of' in turn.",
+                to<&ArmPlan::combination, &CombinationPlan::candidates>, {}, "ris"},
+            {"target", Type::text, none, "", optional, "\"product\"",
+                "What a candidate is chosen by: \"product\" f L cos without shadows, \"brdf\" f cos, or an arm or "
+                "sampler whose density is the target.",
+                to<&ArmPlan::combination, &CombinationPlan::target>, {}, "ris"},
             {"sampler", Type::sampler, none, "", defaulted, "the arm's own name", "Which sampler it is.",
                 to<&ArmPlan::sampler>},
             {"n", Type::integers, count_range, "samples/pixel", optional, "the experiment's n",
@@ -143,12 +177,6 @@ Section regions() {
         {{"box", Type::box, pixel_range, "pixels", required, "",
             "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
         {}};
-}
-
-/// The words of an enumeration, in its order; `last` is its last value. A value is read as the index of its word.
-template <auto last, std::size_t n> std::vector<std::string> words_to(const char* const (&words)[n]) {
-    static_assert(n == static_cast<std::size_t>(last) + 1, "an enumeration has one word for each value");
-    return {words, words + n};
 }
 
 Section reference() {

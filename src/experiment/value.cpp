@@ -23,7 +23,7 @@ bool is_number(const Node& node) { return node.kind == Node::Kind::number || nod
 /// Returns how many numbers the type has; 0: a list of any length.
 std::size_t count_of(Type type) {
     if (type == Type::box) return 4;
-    return type == Type::numbers || type == Type::integers ? 0 : 3;
+    return type == Type::numbers || type == Type::integers || type == Type::counts ? 0 : 3;
 }
 
 class ValueReader {
@@ -39,6 +39,7 @@ public:
             case Type::arm:
             case Type::shape: return text(node);
             case Type::texts: return texts(node);
+            case Type::formulas: return formulas(node);
             case Type::word: return word(node);
             case Type::flag: return flag(node);
             case Type::integer:
@@ -47,6 +48,7 @@ public:
             case Type::box: return list(node) && box();
             case Type::numbers:
             case Type::integers: return list(node) && ascending(node);
+            case Type::counts: return list(node);
             case Type::point:
             case Type::color:
             case Type::gray: return list(node);
@@ -87,6 +89,17 @@ private:
         return true;
     }
 
+    /// A number becomes its shortest text.
+    bool formulas(const Node& node) {
+        if (!node.is_array() || node.members.empty() || node.members.size() > longest_list) return fail(node);
+        for (const Member& member : node.members) {
+            if (is_number(member.value)) value_.texts.push_back(fmt::format("{}", member.value.number));
+            else if (text(member.value)) value_.texts.push_back(value_.text);
+            else return false;
+        }
+        return true;
+    }
+
     bool word(const Node& node) {
         const auto it = std::find(key_.words.begin(), key_.words.end(), node.text);
         if (node.kind != Node::Kind::text || it == key_.words.end())
@@ -104,7 +117,8 @@ private:
     }
 
     bool scalar(const Node& node, double& to) {
-        const bool whole = key_.type == Type::integer || key_.type == Type::integers || key_.type == Type::box;
+        const bool whole = key_.type == Type::integer || key_.type == Type::integers || key_.type == Type::counts ||
+            key_.type == Type::box;
         if (whole ? node.kind != Node::Kind::integer : !is_number(node)) return fail(node);
         if (!std::isfinite(node.number)) return fail(node, "; numbers are finite");
         const bool ranged = key_.type != Type::box && key_.type != Type::direction;  // these two are checked as a whole

@@ -79,7 +79,7 @@ std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, Progr
     }
     if (job.outside)
         throw OutputError(
-            "the GL back end has no copy of the arm '" + job.arm + "', which is a program or a plugin: use the cpu");
+            "the GL back end has no copy of the arm '" + job.arm + "', which is not built in: use the cpu");
     return estimator_.films(scene, job.sampler, job.n, job.seed, monitor);
 }
 

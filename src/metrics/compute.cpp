@@ -52,7 +52,7 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
     const ShapeMap& shapes) {
     RunMetrics run;
     run.key = key;
-    FilmFacts facts{0, film.n, film.directions, film.invalid, experiment.firefly_k};
+    FilmFacts facts{0, film.n, film.directions, film.evaluations, film.invalid, experiment.firefly_k};
     for (const Region& region : experiment.regions) {
         RegionMetrics m;
         m.region = region.name;

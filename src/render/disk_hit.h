@@ -36,7 +36,8 @@ template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& dis
 template <class F, class D>
 CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
     if constexpr (requires { drawn.met; }) {
-        if (alone) {
+        constexpr bool aims = !requires { D::by_any; };  // every direction is aimed at a light
+        if (aims && alone) {
             v = dot(drawn.wi, disk.n);
             return drawn.met & (v < number<F>(0));
         }

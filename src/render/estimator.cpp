@@ -13,6 +13,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "render/combination.h"
 #include "render/external_lights.h"
 
 namespace crescent::inline render {
@@ -22,11 +23,19 @@ namespace {
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
     std::vector<std::byte> memory(memory_of_light * call.shading_points->light_count());
     call.memory = memory.data();
+    if (arm.outside && arm.outside->as_combination()) return estimate_combination(*arm.outside->as_combination(), call);
     if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
     kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.shading_points->lobe + 1)](
         call);
+}
+
+SampleCost cost_of_sample(const SamplerRef& arm) {
+    const Combination* combination = arm.outside ? arm.outside->as_combination() : nullptr;
+    if (combination) return combination->cost();
+    const std::uint64_t directions = directions_per_sample(arm.sampler);
+    return {directions, directions, directions - 1};
 }
 
 /// Converts the sums of one shading point over its film's n samples to the film's pixel.
@@ -109,7 +118,7 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
     std::vector<Film> films(n.size());
     parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
         films[r] = Film(image.width, image.height, n[r]);
-        films[r].directions = directions_per_sample(arm.sampler);
+        films[r].directions = cost_of_sample(arm).directions, films[r].evaluations = cost_of_sample(arm).f;
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));

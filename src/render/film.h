@@ -26,6 +26,7 @@ struct Film {
     int width = 0, height = 0;
     std::uint64_t n = 0;                    // samples per pixel
     std::uint64_t directions = 1;           // drawn per sample; 2 for a sampler with two techniques
+    std::uint64_t evaluations = 1;          // of f per sample
     std::vector<float> r, g, b;             // mean radiance, W/(sr m^2)
     std::vector<float> y;                   // mean luminance X
     std::vector<float> second_moment;       // mean of X^2

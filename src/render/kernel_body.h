@@ -92,7 +92,11 @@ template <class A, class L, class E, class F> struct Lane : E {
         const Vec2<F> u =
             odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
         F x;
-        if constexpr (requires { A::techniques; }) {
+        if constexpr (requires { A::many_directions; }) {
+            x = accumulate(to, c, brdf, arm.next->drawn, arm.next->weight), ++arm.next;
+            for (std::size_t k = 1; k < arm.count; ++k, ++arm.next)
+                x = x + accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
+        } else if constexpr (requires { A::techniques; }) {
             const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
             const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)}
                                   : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};

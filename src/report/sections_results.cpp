@@ -211,6 +211,21 @@ std::vector<Point> published_of(const Page& page, const Ladder& l) {
     return points;
 }
 
+/// The 5 % and 95 % quantiles over seeds at each N of a ladder; empty with one seed.
+struct LadderBand {
+    std::vector<double> n, low, high;
+};
+LadderBand band_of(const Page& page, const Ladder& l) {
+    LadderBand out;
+    for (const std::uint64_t n : l.n)
+        if (const SeedSpread* spread = page.find.band(l.arm, n, "rmse." + l.region, l.s);
+            spread && spread->band.seeds > 1 && spread->band.q05 > 0) {
+            out.n.push_back(static_cast<double>(n));
+            out.low.push_back(spread->band.q05), out.high.push_back(spread->band.q95);
+        }
+    return out;
+}
+
 /// Returns RMSE = c N^(-1/2) through the first point, over the whole axis.
 std::vector<Point> guide(const Point& first, const Axis& x) {
     return {{x.low, first.y * std::sqrt(first.x / x.low)}, {x.high, first.y * std::sqrt(first.x / x.high)}};
@@ -223,6 +238,11 @@ std::string ladder_chart(const Page& page, const std::string& region) {
         for (const Point& p : points_of(*l)) ns.push_back(p.x), values.push_back(p.y);
     for (const Ladder* l : all)
         for (const Point& p : published_of(page, *l)) values.push_back(p.y);
+    for (const Ladder* l : all) {
+        const LadderBand band = band_of(page, *l);
+        values.insert(values.end(), band.low.begin(), band.low.end());
+        values.insert(values.end(), band.high.begin(), band.high.end());
+    }
     Axis x = log_axis("N, samples per pixel", ns);
     x.ticks.assign(ns.begin(), ns.end());
     std::sort(x.ticks.begin(), x.ticks.end());
@@ -232,6 +252,8 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     for (const Ladder* l : all) {
         const auto points = points_of(*l);
         const std::string colour = page.colour(l->arm);
+        if (const LadderBand band = band_of(page, *l); band.n.size() > 1)
+            chart.band(band.n, band.low, band.high, colour + " faint");
         if (points.front().y > 0)
             chart.line(guide(points.front(), {x.low, x.high / 2.2, true, "", {}}), "dashed " + colour);
         chart.line(points, colour);
@@ -275,8 +297,8 @@ PageSection ladders(Page& page) {
             page.in.experiment.seeds > 1 ? "the <span class=\"v\">5–95 %</span> band of the same fit over seeds"
                                          : "the fit’s own, from its residuals; two sample counts leave none"));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
-        "RMSE against <i>N</i> at the " + page.seed_name() +
-            " seed, by region. Dashed: slope −1/2 through each arm’s first point." + published,
+        "RMSE against <i>N</i> at the " + page.seed_name() + " seed, by region" +
+            (page.in.experiment.seeds > 1 ? ", with the 5–95 % band over seeds" : "") + ". Dashed: slope −1/2 through each arm’s first point." + published,
         "metrics.json, ladders");
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }

@@ -11,6 +11,10 @@
 
 #include "base/vec.h"
 
+namespace crescent::inline render {
+class Combination;
+}  // namespace crescent::inline render
+
 namespace crescent::inline samplers {
 
 /// The data of the surface point for a sampler, in addition to wo. Files and C use the same layout.
@@ -73,11 +77,14 @@ public:
     virtual void draw(const ExternalBatch& batch, const ExternalDraws& out) const = 0;
     /// Returns whether it can evaluate the density of any direction.
     virtual bool has_density() const { return false; }
-    /// Evaluates the density of each wi, 0 if it is never drawn. Threads and exceptions as for draw().
-    virtual void density(Vec3<double> /*wo*/, const ExternalSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
+    /// Evaluates the density of each wi, 0 if it is never drawn; the batch has no u. Threads and exceptions as for
+    /// draw().
+    virtual void density(const ExternalBatch& /*batch*/, std::span<const Vec3<double>> /*wi*/,
         std::span<double> out) const {
         for (double& p : out) p = 0;
     }
+    /// Returns itself if it is a combination of samplers (render/combination.h), else null.
+    virtual const Combination* as_combination() const { return nullptr; }
 };
 
 /// The external samplers of an experiment's arms, by arm.

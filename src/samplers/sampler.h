@@ -37,6 +37,11 @@ template <class F> struct DrawnToDisk : Drawn<F> {
     MaskOf<F> met;  // wi meets it; it may still be behind another light, or hidden
 };
 
+/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1.
+template <class F> struct DrawnByAny : DrawnToDisk<F> {
+    static constexpr bool by_any = true;
+};
+
 /// A disk light as seen from the surface, in the local frame.
 template <class F> struct LocalDisk {
     Vec3<F> to_center;  // from the surface point, m

@@ -116,7 +116,7 @@ assert mean["mine"] > 0 and abs(mean["mine"] / mean["light-area"] - 1) < 0.01, m
 PY
 expect 0 "$CRESCENT" check --quiet --plugin ./lights.so --wo 30
 sed 's/"rho_d,lights"/"rho_d,lamps"/' lights.c >lamps.c && cc_shared lamps
-told 'plugin = "lamps.so"' 3 "crescent_sampler_uses gives 'rho_d,lamps': expected s, alpha, rho_d, rho_s, lights"
+told 'plugin = "lamps.so"' 3 "crescent_sampler_uses gives 'rho_d,lamps': expected s, alpha, rho_d, rho_s, side, eta, lights"
 sed 's/return CRESCENT_SAMPLER_ABI/return 1/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >first.c && cc_shared first
 sed 's|^plugin = .*|plugin = "first.so"|' mine.toml >first.toml
 expect 0 "$CRESCENT" run first.toml --out first --only metrics --quiet

@@ -12,7 +12,10 @@ namespace crescent::inline sources {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> names = {"s", "alpha", "rho_d", "rho_s", "lights"};
+constexpr std::array<std::string_view, 7> names = {"s", "alpha", "rho_d", "rho_s", "side", "eta", "lights"};
+
+// Scenes are opaque: w_o is always on the side of the normal, and no light passes through the surface.
+constexpr double side = 1, eta = 1;
 constexpr std::size_t columns_of_light = 18;
 
 /// 0 disk, 1 sphere, 2 rectangle, and the later kinds of LightKinds.
@@ -52,6 +55,8 @@ void add_context(std::span<const std::string> uses, const ExternalRun& point, st
         if (name == "s") to.push_back(point.surface.s);
         else if (name == "alpha") to.push_back(point.surface.alpha);
         else if (name == "rho_s") to.push_back(point.surface.lobe);
+        else if (name == "side") to.push_back(side);
+        else if (name == "eta") to.push_back(eta);
         else if (name == "rho_d") to.insert(to.end(), point.rho_d.begin(), point.rho_d.end());
         else {
             ensure(name == "lights", "a handshake names known quantities only");

@@ -11,7 +11,7 @@
 
 namespace crescent::inline sources {
 
-/// The quantities that a handshake may name by `uses`: "s, alpha, rho_d, rho_s, lights".
+/// The quantities that a handshake may name by `uses`: "s, alpha, rho_d, rho_s, side, eta, lights".
 std::span<const std::string_view> context_names();
 
 /// Columns of one row where the scene has so many lights.

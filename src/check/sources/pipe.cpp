@@ -57,7 +57,7 @@ public:
 
     int numbers() const override { return hello_.traits.numbers; }
     bool uses_lights() const override { return hello_.uses_lights(); }
-    bool has_density() const override { return hello_.traits.has_pdf && !hello_.uses_lights(); }
+    bool has_density() const override { return hello_.traits.has_pdf; }
 
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         const Vec3d o = asked(wo);
@@ -90,15 +90,22 @@ public:
         query_samples(in, lights, draws);
         for (std::size_t i = 0; i < draws.size(); ++i) out.wi[i] = draws[i].wi, out.pdf[i] = draws[i].pdf;
     }
-    void density(
-        Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        const std::size_t lights = batch.lights.size();
         std::vector<Pair> at;
-        for (const Vec3d& w : wi) at.push_back({wo, w});
-        std::vector<double> context;
-        const double grey = surface.diffuse;
-        add_context(hello_.uses, {wo, surface, 1, {grey, grey, grey}}, {}, {}, context);
-        values("pdf_", "pdf", "one number", at, 1, out, context, 0);
+        std::vector<double> contexts, context;
+        for (std::size_t r = 0; r < batch.runs.size(); ++r) {
+            const ExternalRun& run = batch.runs[r];
+            context.clear();
+            add_context(hello_.uses, run, batch.lights,
+                lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
+            for (std::size_t i = 0; i < run.rows; ++i) {
+                at.push_back({run.wo, wi[at.size()]});
+                contexts.insert(contexts.end(), context.begin(), context.end());
+            }
+        }
+        values("pdf_", "pdf", "one number", at, 1, out, contexts, lights);
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
         values("pdf_", "pdf", "one number", at, 1, out, example_, example_lights);
@@ -192,17 +199,21 @@ private:
         return d;
     }
 
-    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked.
+    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked. `context`: the columns
+    /// of all rows, or of each.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
         std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
-        const std::size_t given = 6 + context.size();
+        const std::size_t columns_of_context = context_columns(hello_.uses, lights), given = 6 + columns_of_context;
+        const bool each = columns_of_context > 0 && context.size() > columns_of_context;  // a context for each row
         const auto counts = [&](const Pair& p) { return !hello_.hemisphere || p.wi.z > 0; };
         std::vector<double> in;
-        for (const Pair& p : all) {
+        for (std::size_t row = 0; row < all.size(); ++row) {
+            const Pair& p = all[row];
             if (!counts(p)) continue;
             const Vec3d o = asked(p.wo);
             for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
-            in.insert(in.end(), context.begin(), context.end());
+            const auto own = std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
+            in.insert(in.end(), own.begin(), own.end());
         }
         const std::size_t count = in.size() / given;
         std::vector<double> answers(count * columns);
@@ -352,7 +363,7 @@ const std::array<HandshakeKey, 15>& keys() {
                 return v == "f32" || v == "f64";
             }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
-        {"uses", "names from s, alpha, rho_d, rho_s and lights, separated by commas, after 'hello 3'",
+        {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas, after 'hello 3'",
             [](S v, Handshake& g) { return g.protocol == 3 && take_context_names(v, g.uses); }},
     }};
     return all;

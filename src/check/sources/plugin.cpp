@@ -280,12 +280,14 @@ public:
         values('f', "crescent_sampler_f", at, surface_, out);
     }
     bool uses_lights() const override { return std::ranges::find(about_.uses, "lights") != about_.uses.end(); }
-    bool has_density() const override { return about_.pdf && !uses_lights(); }
-    void density(
-        Vec3d wo, const ExternalSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
-        std::vector<Pair> at;
-        for (const Vec3d& w : wi) at.push_back({wo, w});
-        values('p', "crescent_sampler_pdf", at, surface, out);
+    bool has_density() const override { return about_.pdf; }
+    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
+        std::vector<Vec3d> directions(wi.begin(), wi.end());
+        const Call call{"crescent_sampler_pdf", batch.runs.front().wo};
+        on_host([&](Host& host) {
+            const PluginRows block = host.ask('p', batch, doubles(directions), directions.size(), call);
+            std::copy_n(block.values, directions.size(), out.begin());
+        });
     }
 
 private:

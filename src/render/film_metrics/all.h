@@ -6,9 +6,12 @@
 #pragma once
 
 #include "render/film_metrics/bad.h"
+#include "render/film_metrics/bias_sq.h"
+#include "render/film_metrics/f_evaluations.h"
 #include "render/film_metrics/fireflies.h"
 #include "render/film_metrics/horizon_frac.h"
 #include "render/film_metrics/largest.h"
+#include "render/film_metrics/rays.h"
 #include "render/film_metrics/rel_mse.h"
 #include "render/film_metrics/rmse.h"
 #include "render/film_metrics/rmse_frame.h"
@@ -21,7 +24,8 @@
     metric(rmse, RmseMetric)            \
     metric(var, VarMetric)              \
     metric(rel_mse, RelMseMetric)       \
-    metric(smape, SmapeMetric)
+    metric(smape, SmapeMetric)          \
+    metric(bias_sq, BiasSqMetric)
 
 #define CRESCENT_FRAME_METRICS(metric)       \
     metric(fireflies, FirefliesMetric)       \
@@ -29,5 +33,7 @@
     metric(y_mean, YMeanMetric)              \
     metric(rmse_frame, RmseFrameMetric)      \
     metric(largest, LargestMetric)           \
-    metric(bad, BadMetric)
+    metric(bad, BadMetric)                   \
+    metric(rays, RaysMetric)                 \
+    metric(f_evaluations, FEvaluationsMetric)
 // clang-format on

@@ -211,10 +211,14 @@ Density::Density(const Experiment& e, const ExternalSampler& outside, double s, 
     ask_ = [&outside, wo = shading_point.wo,
                on = ExternalSurface{shading_point.s, shading_point.alpha, shading_point.diffuse, shading_point.lobe}](
                std::span<const Vec3d> wi, std::span<double> out) {
-        outside.density(wo, on, wi, out);
+        for (std::size_t first = 0; first < wi.size(); first += outside.batch_rows()) {
+            const std::size_t rows = std::min(wi.size() - first, outside.batch_rows());
+            const ExternalRun run{wo, on, rows, {on.diffuse, on.diffuse, on.diffuse}};
+            outside.density({{&run, 1}, {}}, wi.subspan(first, rows), out.subspan(first, rows));
+        }
         for (double& p : out) p = p > 0 && std::isfinite(p) ? p : 0.0;
     };
-    if (!outside.has_density()) ask_ = one_by_one([](const Vec3d&) { return 0.0; });
+    if (!outside.has_density() || outside.uses_lights()) ask_ = one_by_one([](const Vec3d&) { return 0.0; });
     find_peak();
 }
 

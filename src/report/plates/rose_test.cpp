@@ -29,7 +29,7 @@ struct ExternalCosine : ExternalSampler {
     int numbers() const override { return 2; }
     void draw(const ExternalBatch&, const ExternalDraws&) const override {}
     bool has_density() const override { return asked; }
-    void density(Vec3d, const ExternalSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
+    void density(const ExternalBatch&, std::span<const Vec3d> wi, std::span<double> out) const override {
         for (std::size_t i = 0; i < wi.size(); ++i) out[i] = std::max(wi[i].z, 0.0) / pi;
     }
 };

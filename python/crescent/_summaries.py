@@ -1,0 +1,90 @@
+"""One metric of one arm over seeds, with its interval."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._intervals import Values, t_quantile
+
+if TYPE_CHECKING:
+    from .experiments import Measured
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A metric over seeds: its mean, and the half width of the 95 % interval (None with one seed)."""
+
+    metric: str
+    arm: str
+    n: int
+    region: str
+    values: tuple[float, ...]  #: one a seed
+    heavy: bool = False  #: k-hat of the samples there is 0.5 or more: an interval means nothing
+
+    @property
+    def mean(self) -> float:
+        return float(np.mean(self.values))
+
+    @property
+    def half(self) -> float | None:
+        if len(self.values) < 2:
+            return None
+        spread = float(np.std(self.values, ddof=1)) / math.sqrt(len(self.values))
+        return t_quantile(0.975, len(self.values) - 1) * spread
+
+    def __str__(self) -> str:
+        if self.heavy:
+            return f"{self.mean:.4g} (heavy tail)"
+        return f"{self.mean:.4g}" + ("" if self.half is None else f" ± {self.half:.2g}")
+
+
+def _rows(result: Measured, meter: str, arm: str, n: int, region: str, s: float) -> list[dict[str, Any]]:
+    wanted = {"meter": meter, "arm": arm, "n": n, "region": region, "s": s}
+    return [r for r in result.records() if all(r[k] == v for k, v in wanted.items()) and r["value"] is not None]
+
+
+def _values(result: Measured, meter: str, arm: str, n: int, region: str, s: float) -> Values:
+    rows = _rows(result, meter, arm, n, region, s)
+    if not rows:
+        there = sorted({(r["meter"], r["region"]) for r in result.records() if r["arm"] == arm and r["n"] == n})
+        what = f"{meter} of {region or 'the frame'}, {arm} n={n} s={s:g}"
+        raise KeyError(f"no {what}: there are {there or 'no metrics of this arm at this n'}")
+    return np.array([r["value"] for r in rows], float)
+
+
+def _seconds_a_sample(result: Measured, arm: str, s: float) -> float:
+    """Wall-clock seconds per sample of all pixels: the median over seeds."""
+    found = [t / m for a, _, at_s, m, t in result._core.times if a == arm and at_s == s and m > 0]
+    if not found:
+        raise KeyError(f"no time of {arm} at s = {s:g}: a result that was joined, copied or pickled has none")
+    return float(np.median(found))
+
+
+def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
+    """The mean of FLIP over a region of the films of the first seed, as `crescent compare` computes it."""
+    from . import _crescent
+
+    film, reference = result.films[arm, n, s], result.references[s]
+    image = _crescent.flip(*(np.ascontiguousarray(reference[c]) for c in "rgb"), *(film.planes[c] for c in "rgb"))
+    if region:
+        x0, y0, x1, y1 = result.boxes[region]
+        image = image[y0 : y1 + 1, x0 : x1 + 1]
+    return np.array([float(np.mean(image))])
+
+
+def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Summary:
+    tail = _rows(result, "tail_k", arm, n, region, s)
+    heavy = bool(tail) and tail[0]["value"] >= 0.5 and metric not in ("tail_k", "flip")
+    if metric == "flip":
+        values = _flip(result, arm, n, region, s)
+    elif metric == "efficiency_n":
+        values = 1 / (_values(result, "var", arm, n, region, s) * n)
+    elif metric == "efficiency_time":
+        values = 1 / (_values(result, "var", arm, n, region, s) * n * _seconds_a_sample(result, arm, s))
+    else:
+        values = _values(result, metric, arm, n, region, s)
+    return Summary(metric, arm, n, region, tuple(float(v) for v in values), heavy)

@@ -1,0 +1,360 @@
+// Random numbers: the first pair of the first sampler is that of every built-in sampler, the first pair of the second
+// that of a built-in pair of samplers; further pairs come from blocks that no built-in sampler uses.
+#include "render/combination.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.h"
+
+#define CRESCENT_ISA scalar
+#include "render/kernel_body.h"
+
+namespace crescent::inline render {
+
+namespace {
+
+constexpr std::size_t batch_rows = 4096;         // directions of a batch: they stay in a cache of the processor
+constexpr std::uint32_t repeat_stride = 1024;    // blocks of one set of directions: 16 samplers, at most 4 pairs each
+constexpr std::uint32_t selection = 0x800000;    // the block that chooses among candidates
+
+/// The block of pair `pair` of repetition `repeat` of sampler k.
+std::uint32_t block_of(std::size_t k, std::size_t pair, std::size_t repeat) {
+    const auto sampler = static_cast<std::uint32_t>(k), of_pair = static_cast<std::uint32_t>(pair),
+               again = static_cast<std::uint32_t>(repeat);
+    if (repeat == 0 && pair == 0 && k < 2) return sampler;
+    return again * repeat_stride + 16 * (sampler + 1) + of_pair;
+}
+
+/// The numbers of sampler k for every row.
+std::vector<double> numbers_of(
+    const PointRows& at, const NumberBlocks& u, std::size_t k, std::size_t repeat, std::size_t count) {
+    std::vector<double> out;
+    out.reserve(at.count() * count);
+    for (std::size_t r = 0; r < at.runs.size(); ++r)
+        for (std::size_t i = 0; i < at.runs[r].rows; ++i)
+            for (std::size_t pair = 0; pair < count; pair += 2) {
+                const Vec2<float> two = u(r, i, block_of(k, pair / 2, repeat));
+                out.push_back(static_cast<double>(two.x));
+                if (pair + 1 < count) out.push_back(static_cast<double>(two.y));
+            }
+    return out;
+}
+
+WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight) {
+    WeightedDirection out;
+    out.drawn.wi = drawn.wi;
+    out.drawn.pdf.v = static_cast<float>(pdf);
+    out.drawn.disk = drawn.light, out.drawn.met = drawn.met;
+    out.weight = static_cast<float>(weight);
+    return out;
+}
+
+/// f L cos / (light of the scene) of a direction, without occlusion by bodies: the sum that X has if nothing is hidden.
+class Products {
+public:
+    Products(const ShadingPoints& points, bool with_light)
+        : points_(points), with_light_(with_light), memory_(memory_of_light * points.light_count()),
+          room_(points, memory_.data()) {}
+
+    double operator()(const PointRun& run, const PointDraw& drawn) {
+        const float cos = drawn.wi.z;
+        if (!(cos > 0)) return 0;
+        const std::size_t at = run.point;
+        const float lobe = points_.lobe < 0
+            ? 0.0f
+            : lobe_value(static_cast<LobeKind>(points_.lobe), points_.s[at], points_.alpha[at], run.wo, drawn.wi);
+        if (!with_light_)
+            return double(cos) * (double(points_.diffuse[at]) / pi + points_.rho_s_exact[at] * double(lobe));
+        const int k = light_met(run, drawn);
+        const std::size_t light = static_cast<std::size_t>(k), disks = points_.disks.size();
+        const float d = k < 0 ? points_.fill_d[at] : light < disks ? points_.disks[light].d[at]
+                                                                   : points_.others[light - disks].d[at];
+        const float s = k < 0 ? points_.fill_s[at] : light < disks ? points_.disks[light].s[at]
+                                                                   : points_.others[light - disks].s[at];
+        return double(cos) * (double(d) + double(lobe) * double(s));
+    }
+
+private:
+    int light_met(const PointRun& run, const PointDraw& drawn) {
+        if (points_.light_count() == 0) return -1;
+        if (!lights_ || at_ != run.point) lights_.emplace(points_, at_ = run.point, room_);
+        const WeightedDirection aimed = direction_of(drawn, 1, 1);
+        float nearest = 1e30f;
+        int met = -1;
+        for (std::size_t k = 0; k < points_.disks.size(); ++k) {
+            float v;
+            if (!meets_disk(lights_->facing[k], aimed.drawn, k, false, v)) continue;
+            const float t = lights_->facing[k].k / v;
+            if (is_nearer(t, nearest)) nearest = t, met = static_cast<int>(k);
+        }
+        for (std::size_t k = points_.disks.size(); k < points_.light_count(); ++k) {
+            float t;
+            if (meets_light(lights_->others[k - points_.disks.size()], aimed.drawn, k, t) && is_nearer(t, nearest))
+                nearest = t, met = static_cast<int>(k);
+        }
+        return met;
+    }
+
+    const ShadingPoints& points_;
+    bool with_light_;
+    std::vector<std::byte> memory_;
+    scalar::LightRoom<float> room_;
+    std::optional<scalar::Lights<float>> lights_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace
+
+Combination::Combination(std::string name, CombinationPlan plan, Techniques of,
+    std::shared_ptr<const Technique> target, const SourceLocation& weights_at, const SourceLocation& probabilities_at)
+    : name_(std::move(name)),
+      plan_(std::move(plan)),
+      of_(std::move(of)),
+      target_(std::move(target)),
+      weights_(plan_.weights, of_.size(), plan_.kind == CombinationKind::mis, weights_at),
+      probabilities_(plan_.probabilities, of_.size(), false, probabilities_at) {
+    if (!plan_.target) plan_.target = target_product;
+    if (plan_.samples.size() == 1) plan_.samples.assign(of_.size(), plan_.samples[0]);
+}
+
+void Combination::draw(const ExternalBatch& /*batch*/, const ExternalDraws& /*out*/) const {
+    ensure(false, "a combination is estimated at shading points");
+}
+
+std::uint64_t Combination::samples_of(std::size_t k) const { return plan_.samples.empty() ? 1 : plan_.samples[k]; }
+
+SampleCost Combination::cost() const {
+    SampleCost out;
+    const std::uint64_t others = of_.size() - 1;
+    if (plan_.kind == CombinationKind::ris) {
+        const std::uint64_t m = *plan_.candidates;
+        out.f = target_ ? 1 : m;
+        out.densities = m * (others + (target_ ? 1 : 0));
+    } else if (plan_.kind == CombinationKind::mis && plan_.draw != MisDraw::one) {
+        out.directions = 0;
+        for (std::size_t k = 0; k < of_.size(); ++k) out.directions += samples_of(k);
+        out.f = out.directions, out.densities = out.directions * others;
+    } else {
+        out.densities = others;
+    }
+    return out;
+}
+
+double Combination::share_of(std::size_t k, const FormulaInputs& in) const {
+    if (plan_.draw != MisDraw::one) return static_cast<double>(samples_of(k));
+    std::vector<double> c(of_.size());
+    probabilities_.evaluate(in, c);
+    return c[k];
+}
+
+double Combination::mis_weight(std::size_t k, FormulaInputs in, std::span<const double> p) const {
+    if (std::ranges::any_of(p, [](double v) { return !(v >= 0); })) return std::numeric_limits<double>::quiet_NaN();
+    if (!(p[k] > 0)) return 0;
+    if (!plan_.weights.empty()) {
+        std::vector<double> w(of_.size());
+        in.p = p;
+        weights_.evaluate(in, w);
+        return w[k];
+    }
+    // Relative to p[k]: a large density does not overflow.
+    const double own = share_of(k, in);
+    double sum = 0;
+    for (std::size_t j = 0; j < p.size(); ++j) {
+        const double ratio = j == k ? 1 : share_of(j, in) * p[j] / (own * p[k]);
+        sum += plan_.heuristic == MisHeuristic::power ? ratio * ratio : ratio;
+    }
+    return own > 0 ? 1 / sum : 0;
+}
+
+void Combination::sample(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
+    if (plan_.kind == CombinationKind::ris) sample_resampled(at, u, out);
+    else if (plan_.kind == CombinationKind::mis && plan_.draw != MisDraw::one) sample_every(at, u, out);
+    else sample_one(at, u, out);
+}
+
+void Combination::sample_every(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
+    const std::size_t rows = at.count(), count = directions();
+    std::vector<PointDraw> drawn(rows);
+    std::vector<Vec3<float>> wi(rows);
+    std::vector<std::vector<double>> p(of_.size(), std::vector<double>(rows));
+    std::vector<double> here(of_.size());
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < of_.size(); ++k)
+        for (std::size_t repeat = 0; repeat < samples_of(k); ++repeat, ++next) {
+            of_[k]->draw(
+                at, numbers_of(at, u, k, repeat, static_cast<std::size_t>(of_[k]->numbers())), drawn);
+            for (std::size_t i = 0; i < rows; ++i) wi[i] = drawn[i].wi, p[k][i] = drawn[i].pdf;
+            for (std::size_t j = 0; j < of_.size(); ++j)
+                if (j != k) of_[j]->density(at, wi, p[j]);
+            std::size_t row = 0;
+            for (const PointRun& run : at.runs) {
+                const FormulaInputs point = formula_inputs(at.points, run);
+                for (std::size_t i = 0; i < run.rows; ++i, ++row) {
+                    if (drawn[row].pdf == 0) {
+                        out[row * count + next] = direction_of(drawn[row], 0, 0);
+                        continue;
+                    }
+                    for (std::size_t j = 0; j < of_.size(); ++j) here[j] = p[j][row];
+                    FormulaInputs in = point;
+                    in.cos_i = double(wi[row].z);
+                    const double w = mis_weight(k, in, here) / static_cast<double>(samples_of(k));
+                    out[row * count + next] = direction_of(drawn[row], drawn[row].pdf, w);
+                }
+            }
+        }
+}
+
+void Combination::sample_one(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
+    const bool mixture = plan_.kind == CombinationKind::mixture;
+    const WeightList& shares = mixture ? weights_ : probabilities_;
+    std::size_t numbers = 2;
+    for (const auto& part : of_) numbers = std::max(numbers, static_cast<std::size_t>(part->numbers()));
+    const std::vector<double> c = weights_at(at, shares), given = numbers_of(at, u, 0, 0, numbers);
+    const Choices choices = choose(at, given, numbers, c, of_.size());
+    std::vector<PointDraw> drawn(choices.part.size());
+    std::vector<std::vector<double>> p;
+    draw_chosen(of_, at, given, numbers, choices, drawn, p);
+    std::vector<double> here(of_.size());
+    std::size_t row = 0;
+    for (std::size_t r = 0; r < at.runs.size(); ++r) {
+        FormulaInputs in = formula_inputs(at.points, at.runs[r]);
+        for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) {
+            if (drawn[row].pdf == 0) {
+                out[row] = direction_of(drawn[row], 0, 0);
+                continue;
+            }
+            const std::size_t k = choices.part[row];
+            for (std::size_t j = 0; j < of_.size(); ++j) here[j] = p[j][row];
+            if (mixture) {
+                double sum = 0;
+                for (std::size_t j = 0; j < of_.size(); ++j) sum += c[r * of_.size() + j] * here[j];
+                out[row] = direction_of(drawn[row], sum, 1);
+            } else {
+                in.cos_i = double(drawn[row].wi.z);
+                out[row] = direction_of(
+                    drawn[row], drawn[row].pdf, mis_weight(k, in, here) / c[r * of_.size() + k]);
+            }
+        }
+    }
+}
+
+void Combination::sample_resampled(
+    const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
+    const std::size_t rows = at.count(), m = static_cast<std::size_t>(*plan_.candidates), samplers = of_.size();
+    const auto candidates_of = [&](std::size_t k) { return double((m + samplers - 1 - k) / samplers); };
+    Products product(at.points, *plan_.target == target_product);
+    std::vector<PointDraw> drawn(rows), chosen(rows);
+    std::vector<Vec3<float>> wi(rows);
+    std::vector<double> p(rows), density(rows), target(rows), sum(rows), chosen_target(rows), left(rows);
+    std::size_t row = 0;
+    for (std::size_t r = 0; r < at.runs.size(); ++r)
+        for (std::size_t i = 0; i < at.runs[r].rows; ++i) left[row++] = double(u(r, i, selection).x);
+    for (std::size_t c = 0; c < m; ++c) {
+        const std::size_t k = c % samplers;
+        of_[k]->draw(at, numbers_of(at, u, k, c / samplers, static_cast<std::size_t>(of_[k]->numbers())), drawn);
+        for (std::size_t i = 0; i < rows; ++i) wi[i] = drawn[i].wi, density[i] = candidates_of(k) * drawn[i].pdf;
+        for (std::size_t j = 0; j < samplers; ++j) {
+            if (j == k) continue;
+            of_[j]->density(at, wi, p);
+            for (std::size_t i = 0; i < rows; ++i) density[i] += candidates_of(j) * p[i];
+        }
+        if (target_) target_->density(at, wi, target);
+        row = 0;
+        for (const PointRun& run : at.runs)
+            for (std::size_t i = 0; i < run.rows; ++i, ++row) {
+                if (drawn[row].pdf == 0) continue;
+                if (!target_) target[row] = product(run, drawn[row]);
+                if (target_ && !(wi[row].z > 0)) target[row] = 0;
+                // The chosen candidate is replaced with probability weight / sum; the number that decides is stretched
+                // back to (0, 1).
+                const double weight = target[row] / density[row];
+                if (weight == 0) continue;
+                sum[row] += weight;
+                const double share = weight / sum[row];
+                if (left[row] < share || !(share < 1)) {
+                    chosen[row] = drawn[row], chosen_target[row] = target[row];
+                    left[row] = left[row] / share;
+                } else {
+                    left[row] = (left[row] - share) / (1 - share);
+                }
+                left[row] = std::clamp(left[row], 0x1p-53, 1 - 0x1p-53);
+            }
+    }
+    for (row = 0; row < rows; ++row)
+        out[row] = sum[row] == 0 ? direction_of(chosen[row], 0, 0)
+                                 : direction_of(chosen[row], chosen_target[row] / sum[row], 1);
+}
+
+std::shared_ptr<const Technique> Combination::technique() const {
+    if (plan_.kind == CombinationKind::mixture) return mixture_technique(of_, weights_);
+    const bool balance = plan_.weights.empty() && plan_.heuristic != MisHeuristic::power;
+    if (plan_.kind == CombinationKind::mis && plan_.draw == MisDraw::one && balance)
+        return mixture_technique(of_, probabilities_);
+    return nullptr;
+}
+
+// ---- Directions of many shading points are made in one batch and passed to the scalar kernel one point after another.
+
+namespace {
+
+/// The arm of the kernel: hands out the directions of one sample after another.
+template <class F> struct DirectionsOfSamples {
+    static constexpr bool many_directions = true;
+    mutable const WeightedDirection* next;
+    std::size_t count;
+};
+
+using PointKernel = void (*)(const KernelCall&, std::size_t at, const WeightedDirection* first, std::size_t count);
+
+template <class L>
+void estimate_point(const KernelCall& call, std::size_t at, const WeightedDirection* first, std::size_t count) {
+    scalar::LightRoom<float> room(*call.shading_points, call.memory);
+    scalar::estimate_pack<DirectionsOfSamples<float>, L, scalar::Lights<float>, float>(
+        call, at, room, [&](const ShadingPoint<float>&) { return DirectionsOfSamples<float>{first, count}; });
+}
+
+/// [lobe + 1]
+template <template <class> class... L> constexpr std::array<PointKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
+    return {estimate_point<NoLobe<float>>, estimate_point<L<float>>...};
+}
+
+}  // namespace
+
+void estimate_combination(const Combination& combination, const KernelCall& call) {
+    const ShadingPoints& points = *call.shading_points;
+    const std::uint64_t n = call.sample_counts.back();
+    const std::size_t count = combination.directions();
+    const PointKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(points.lobe + 1)];
+    const std::uint64_t longest = std::max<std::uint64_t>(1, batch_rows / count);
+    const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest / n);
+    std::vector<PointRun> runs;
+    std::vector<WeightedDirection> part;
+    std::vector<std::vector<WeightedDirection>> directions(points_a_batch);
+    for (std::size_t i = 0; i < points.count; i += points_a_batch) {
+        const std::size_t end = std::min<std::size_t>(points.count, i + points_a_batch);
+        for (auto& of_point : directions) of_point.clear();
+        for (std::uint64_t first = 0; first < n; first += longest) {
+            if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
+            const auto rows = static_cast<std::size_t>(std::min(longest, n - first));
+            runs.clear();
+            for (std::size_t at = i; at < end; ++at)
+                runs.push_back({at, {points.wox[at], points.woy[at], points.woz[at]}, rows});
+            part.resize(runs.size() * rows * count);
+            combination.sample({points, runs},
+                [&](std::size_t run, std::size_t row, std::uint32_t block) {
+                    return simd::draw(call.seed, points.pixel[runs[run].point], first + row, block);
+                },
+                part);
+            for (std::size_t r = 0; r < runs.size(); ++r) {
+                const auto begin = part.begin() + static_cast<std::ptrdiff_t>(r * rows * count);
+                directions[r].insert(
+                    directions[r].end(), begin, begin + static_cast<std::ptrdiff_t>(rows * count));
+            }
+        }
+        for (std::size_t at = i; at < end; ++at) kernel(call, at, directions[at - i].data(), count);
+    }
+}
+
+}  // namespace crescent::inline render

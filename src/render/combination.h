@@ -1,0 +1,81 @@
+// Estimates with a combination of samplers (samplers/combination_plan.h): one sample of it is one direction or several,
+// each with its weight. Scalar code, so that films have the same bits on every instruction set.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/kernel.h"
+#include "render/technique.h"
+#include "samplers/combination_plan.h"
+#include "samplers/external_sampler.h"
+
+namespace crescent::inline render {
+
+/// One direction of a sample: X gains weight f L cos / pdf.
+struct WeightedDirection {
+    DrawnByAny<float> drawn;
+    float weight = 0;
+};
+
+/// Returns two random numbers in (0, 1) of a row of a run; each block has others.
+using NumberBlocks = std::function<Vec2<float>(std::size_t run, std::size_t row, std::uint32_t block)>;
+
+/// The directions and evaluations of one sample.
+struct SampleCost {
+    std::uint64_t directions = 1;     // that are estimated, and so also rays
+    std::uint64_t f = 1;              // evaluations of f
+    std::uint64_t densities = 0;      // evaluations of a density, apart from those of draws
+};
+
+class Combination : public ExternalSampler {
+public:
+    /// `target`: the density of ris with a sampler as target; else null. `at`: of the arm's weights and probabilities in
+    /// the experiment. Throws InputError if they cannot be read.
+    Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
+        const SourceLocation& weights_at, const SourceLocation& probabilities_at);
+
+    std::string name() const override { return name_; }
+    int numbers() const override { return 2; }
+    /// A combination is estimated at shading points, by sample().
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override;
+    const Combination* as_combination() const override { return this; }
+
+    const CombinationPlan& plan() const { return plan_; }
+    SampleCost cost() const;
+    /// Returns the number of directions of one sample.
+    std::size_t directions() const { return cost().directions; }
+
+    /// Writes directions() entries for each row.
+    void sample(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+
+    /// Returns its density if a sample is one direction that is weighted by its density; else null.
+    std::shared_ptr<const Technique> technique() const;
+
+    /// Its samplers, and the weight of a direction of sampler k, w_k, from the densities of all at it.
+    const Techniques& parts() const { return of_; }
+    double mis_weight(std::size_t k, FormulaInputs in, std::span<const double> p) const;
+
+private:
+    void sample_every(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_one(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_resampled(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    std::uint64_t samples_of(std::size_t k) const;
+    /// n_k of draw = "every", c_k of draw = "one".
+    double share_of(std::size_t k, const FormulaInputs& in) const;
+
+    std::string name_;
+    CombinationPlan plan_;
+    Techniques of_;
+    std::shared_ptr<const Technique> target_;
+    WeightList weights_, probabilities_;
+};
+
+/// Has the form of a kernel of the table.
+void estimate_combination(const Combination& combination, const KernelCall& call);
+
+}  // namespace crescent::inline render

@@ -1,0 +1,281 @@
+// Built-in samplers are constructed once a run of rows; rows of an external sampler are passed on in its own batches.
+#include "render/technique.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.h"
+#include "render/external_lights.h"
+#include "render/kernel.h"
+
+#define CRESCENT_ISA scalar
+#include "render/kernel_body.h"
+
+namespace crescent::inline render {
+
+namespace {
+
+constexpr double not_usable = std::numeric_limits<double>::quiet_NaN();
+
+/// A random number in single precision, as built-in samplers take it: in (0, 1).
+float as_float(double u) { return std::clamp(static_cast<float>(u), 0x1p-24f, 1 - 0x1p-24f); }
+
+template <template <class> class A> class BuiltInTechnique : public Technique {
+public:
+    int numbers() const override { return 2; }
+
+    void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
+        std::size_t row = 0;
+        each_run(at, [&](const A<float>& arm, const PointRun& run) {
+            for (std::size_t i = 0; i < run.rows; ++i, ++row) {
+                const auto d = arm.sample(run.wo, {as_float(u[2 * row]), as_float(u[2 * row + 1])});
+                out[row] = {d.wi, static_cast<double>(d.pdf.v)};
+                if constexpr (requires { d.met; }) out[row].light = d.disk, out[row].met = d.met;
+            }
+        });
+    }
+    void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
+        std::size_t row = 0;
+        each_run(at, [&](const A<float>& arm, const PointRun& run) {
+            for (std::size_t i = 0; i < run.rows; ++i, ++row)
+                out[row] = static_cast<double>(arm.pdf(run.wo, wi[row]).v);
+        });
+    }
+
+private:
+    template <class Work> static void each_run(const PointRows& at, Work&& work) {
+        const ShadingPoints& p = at.points;
+        std::vector<std::byte> memory(memory_of_light * p.light_count());
+        scalar::LightRoom<float> room(p, memory.data());
+        for (const PointRun& run : at.runs) {
+            const scalar::Lights<float> lights(p, run.point, room);
+            ShadingPoint<float> point{
+                run.wo, p.s[run.point], p.alpha[run.point], p.diffuse[run.point], p.rho_s[run.point]};
+            lights.show(point);
+            work(A<float>(point), run);
+        }
+    }
+};
+
+class ExternalTechnique : public Technique {
+public:
+    explicit ExternalTechnique(std::shared_ptr<const ExternalSampler> sampler) : sampler_(std::move(sampler)) {}
+    int numbers() const override { return sampler_->numbers(); }
+
+    void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
+        const auto count = static_cast<std::size_t>(numbers());
+        std::vector<Vec3<double>> wi;
+        std::vector<double> pdf;
+        in_batches(at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+            wi.resize(rows), pdf.resize(rows);
+            ExternalBatch with_numbers = batch;
+            with_numbers.u = u.subspan(first * count, rows * count);
+            sampler_->draw(with_numbers, {wi, pdf});
+            for (std::size_t i = 0; i < rows; ++i) out[first + i] = usable(wi[i], pdf[i]);
+        });
+    }
+    void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
+        std::vector<Vec3<double>> directions;
+        in_batches(at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+            directions.clear();
+            for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
+            sampler_->density(batch, directions, out.subspan(first, rows));
+        });
+        for (double& p : out)
+            if (!(p >= 0 && p <= std::numeric_limits<float>::max())) p = not_usable;
+    }
+
+private:
+    /// As in estimate_external.
+    static PointDraw usable(const Vec3<double>& wi, double p) {
+        if (p == 0) return {};
+        const bool good = std::fabs(dot(wi, wi) - 1) <= 2e-4 && p > 0 && p <= std::numeric_limits<float>::max() &&
+            static_cast<float>(p) > 0;
+        if (!good) return {{0, 0, 1}, not_usable};
+        return {as<float>(wi), p};
+    }
+
+    /// Calls work(batch, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
+    template <class Work> void in_batches(const PointRows& at, Work&& work) const {
+        const ShadingPoints& p = at.points;
+        const std::vector<ExternalLight> lights =
+            sampler_->uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
+        std::vector<ExternalRun> runs;
+        std::vector<ExternalLightAt> lights_at;
+        std::size_t first = 0, rows = 0;
+        const auto flush = [&] {
+            if (rows > 0) work(ExternalBatch{runs, {}, lights, lights_at}, first, rows);
+            first += rows, rows = 0;
+            runs.clear(), lights_at.clear();
+        };
+        for (const PointRun& run : at.runs)
+            for (std::size_t done = 0; done < run.rows;) {
+                const std::size_t part = std::min(run.rows - done, sampler_->batch_rows() - rows);
+                const Rgb& lambert = p.lambert[run.point];
+                runs.push_back({widen(run.wo),
+                    {double(p.s[run.point]), double(p.alpha[run.point]), double(p.diffuse[run.point]),
+                        p.rho_s_exact[run.point]},
+                    part, {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}});
+                if (!lights.empty()) add_lights_at(p, run.point, lights_at);
+                done += part, rows += part;
+                if (rows == sampler_->batch_rows()) flush();
+            }
+        flush();
+    }
+
+    std::shared_ptr<const ExternalSampler> sampler_;
+};
+
+class MixtureTechnique : public Technique {
+public:
+    MixtureTechnique(Techniques parts, WeightList weights) : parts_(std::move(parts)), weights_(std::move(weights)) {}
+    int numbers() const override {
+        int most = 2;
+        for (const auto& part : parts_) most = std::max(most, part->numbers());
+        return most;
+    }
+    void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
+        const auto count = static_cast<std::size_t>(numbers());
+        const std::vector<double> weights = weights_at(at, weights_);
+        const Choices choices = choose(at, u, count, weights, parts_.size());
+        std::vector<std::vector<double>> p;
+        draw_chosen(parts_, at, u, count, choices, out, p);
+        std::size_t row = 0;
+        for (std::size_t r = 0; r < at.runs.size(); ++r)
+            for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row)
+                if (out[row].pdf != 0) out[row].pdf = sum(weights, p, r, row);
+    }
+    void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
+        const std::vector<double> weights = weights_at(at, weights_);
+        std::vector<std::vector<double>> p(parts_.size(), std::vector<double>(wi.size()));
+        for (std::size_t k = 0; k < parts_.size(); ++k) parts_[k]->density(at, wi, p[k]);
+        std::size_t row = 0;
+        for (std::size_t r = 0; r < at.runs.size(); ++r)
+            for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) out[row] = sum(weights, p, r, row);
+    }
+
+private:
+    double sum(const std::vector<double>& weights, const std::vector<std::vector<double>>& p, std::size_t run,
+        std::size_t row) const {
+        double out = 0;
+        for (std::size_t k = 0; k < parts_.size(); ++k) out += weights[run * parts_.size() + k] * p[k][row];
+        return out;
+    }
+    Techniques parts_;
+    WeightList weights_;
+};
+
+}  // namespace
+
+std::size_t PointRows::count() const {
+    std::size_t rows = 0;
+    for (const PointRun& run : runs) rows += run.rows;
+    return rows;
+}
+
+std::shared_ptr<const Technique> built_in_technique(std::string_view sampler) {
+    std::shared_ptr<const Technique> out;
+    for_each_sampler(Samplers{}, [&]<template <class> class A>() {
+        if constexpr (!requires { A<float>::techniques; }) {
+            if (A<float>::name == sampler) out = std::make_shared<BuiltInTechnique<A>>();
+        }
+    });
+    ensure(out != nullptr, "the parser lets only samplers with one direction through");
+    return out;
+}
+
+std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler) {
+    if (!sampler->has_density())
+        throw OutputError(
+            "'" + sampler->name() + "' has no pdf of a direction, which a combination needs: expected a function pdf");
+    return std::make_shared<ExternalTechnique>(std::move(sampler));
+}
+
+std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList weights) {
+    return std::make_shared<MixtureTechnique>(std::move(parts), std::move(weights));
+}
+
+FormulaInputs formula_inputs(const ShadingPoints& points, const PointRun& run) {
+    FormulaInputs in;
+    in.s = double(points.s[run.point]), in.alpha = double(points.alpha[run.point]);
+    in.rho_d = double(points.diffuse[run.point]), in.rho_s = points.rho_s_exact[run.point];
+    in.cos_o = double(run.wo.z);
+    return in;
+}
+
+std::vector<double> weights_at(const PointRows& at, const WeightList& weights) {
+    std::vector<double> out(at.runs.size() * weights.size());
+    for (std::size_t r = 0; r < at.runs.size(); ++r)
+        weights.evaluate(
+            formula_inputs(at.points, at.runs[r]), std::span(out).subspan(r * weights.size(), weights.size()));
+    return out;
+}
+
+Choices choose(const PointRows& at, std::span<const double> u, std::size_t numbers, std::span<const double> weights,
+    std::size_t parts) {
+    Choices out;
+    std::size_t row = 0;
+    for (std::size_t r = 0; r < at.runs.size(); ++r) {
+        const std::span<const double> w = weights.subspan(r * parts, parts);
+        std::size_t last = 0;  // a part with weight 0 is never chosen
+        for (std::size_t k = 0; k < parts; ++k)
+            if (w[k] > 0) last = k;
+        for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) {
+            const double at_u = u[row * numbers];
+            std::size_t k = 0;
+            double below = 0;
+            while (k < last && at_u >= below + w[k]) below += w[k++];
+            const double width = k == last ? 1 - below : w[k];
+            out.part.push_back(k);
+            out.stretched.push_back(std::clamp((at_u - below) / width, 0x1p-53, 1 - 0x1p-53));
+        }
+    }
+    return out;
+}
+
+void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const double> u, std::size_t numbers,
+    const Choices& choices, std::span<PointDraw> out, std::vector<std::vector<double>>& p) {
+    const std::size_t rows = choices.part.size();
+    p.assign(parts.size(), std::vector<double>(rows));
+    std::vector<std::size_t> mine;
+    std::vector<PointRun> runs;
+    std::vector<double> numbers_of_part, densities;
+    std::vector<PointDraw> drawn;
+    std::vector<Vec3<float>> wi;
+    /// Collects the rows that have the part, or have not.
+    const auto select_rows = [&](std::size_t k, bool chosen) {
+        mine.clear(), runs.clear();
+        std::size_t row = 0;
+        for (const PointRun& run : at.runs) {
+            runs.push_back({run.point, run.wo, 0});
+            for (std::size_t i = 0; i < run.rows; ++i, ++row)
+                if ((choices.part[row] == k) == chosen && (chosen || out[row].pdf != 0))
+                    mine.push_back(row), ++runs.back().rows;
+            if (runs.back().rows == 0) runs.pop_back();
+        }
+        return !mine.empty();
+    };
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (!select_rows(k, true)) continue;
+        const auto count = static_cast<std::size_t>(parts[k]->numbers());
+        numbers_of_part.clear();
+        for (const std::size_t row : mine) {
+            numbers_of_part.push_back(choices.stretched[row]);
+            for (std::size_t j = 1; j < count; ++j) numbers_of_part.push_back(u[row * numbers + j]);
+        }
+        drawn.resize(mine.size());
+        parts[k]->draw({at.points, runs}, numbers_of_part, drawn);
+        for (std::size_t i = 0; i < mine.size(); ++i) out[mine[i]] = drawn[i], p[k][mine[i]] = drawn[i].pdf;
+    }
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (!select_rows(k, false)) continue;
+        wi.clear();
+        for (const std::size_t row : mine) wi.push_back(out[row].wi);
+        densities.resize(mine.size());
+        parts[k]->density({at.points, runs}, wi, densities);
+        for (std::size_t i = 0; i < mine.size(); ++i) p[k][mine[i]] = densities[i];
+    }
+}
+
+}  // namespace crescent::inline render

@@ -1,0 +1,76 @@
+// A sampler as a part of a combination: it draws and evaluates its density at shading points, whatever it is written
+// in. Directions are float, as in the estimator; densities in 1/sr.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "render/shading_points.h"
+#include "samplers/external_sampler.h"
+#include "samplers/sampler.h"
+#include "samplers/weight_formula.h"
+
+namespace crescent::inline render {
+
+/// Rows that follow one another at one shading point.
+struct PointRun {
+    std::size_t point;
+    Vec3<float> wo;
+    std::size_t rows;
+};
+
+/// A batch of rows at some of the shading points.
+struct PointRows {
+    const ShadingPoints& points;
+    std::span<const PointRun> runs;
+    std::size_t count() const;
+};
+
+/// A drawn direction. pdf 0: nothing was drawn; NaN: the sampler returned no usable pdf or direction.
+struct PointDraw {
+    Vec3<float> wi{0, 0, 1};
+    double pdf = 0;
+    float light = -1;  // the light at which it was aimed, disks first
+    bool met = false;  // it meets that light
+};
+
+class Technique {
+public:
+    virtual ~Technique() = default;
+    /// Returns the number of random numbers of a row, 1 to 8.
+    virtual int numbers() const = 0;
+    /// One draw a row; row i has u[i * numbers() ...], each in (0, 1). May be called by many threads.
+    virtual void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const = 0;
+    /// Evaluates the density of each row's direction, 0 where it is never drawn.
+    virtual void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const = 0;
+};
+
+using Techniques = std::vector<std::shared_ptr<const Technique>>;
+
+/// A sampler of samplers/all.h with one direction a sample, in scalar code.
+std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);
+/// Throws OutputError if the sampler cannot evaluate its density.
+std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler);
+/// p = sum_k weight_k p_k: u[0] chooses a part and is stretched back to (0, 1).
+std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList weights);
+
+/// The chosen part of each row, and its u[0] stretched to (0, 1).
+struct Choices {
+    std::vector<std::size_t> part;
+    std::vector<double> stretched;
+};
+/// `weights`: those of each run, [run][part].
+Choices choose(const PointRows& at, std::span<const double> u, std::size_t numbers, std::span<const double> weights,
+    std::size_t parts);
+/// Evaluates the weights at the point of each run, [run][part].
+std::vector<double> weights_at(const PointRows& at, const WeightList& weights);
+/// The quantities of a formula at the point of a run.
+FormulaInputs formula_inputs(const ShadingPoints& points, const PointRun& run);
+
+/// Draws each row by its chosen part. p[part][row] receives the density of every part at the direction.
+void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const double> u, std::size_t numbers,
+    const Choices& choices, std::span<PointDraw> out, std::vector<std::vector<double>>& p);
+
+}  // namespace crescent::inline render

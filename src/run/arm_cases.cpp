@@ -1,0 +1,381 @@
+// A case holds the shading points of one pixel, whose lights and material are those of the films, in single precision.
+// Occlusion is left out: a shadow is no property of a sampler.
+#include "run/arm_cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/errors.h"
+#include "base/text.h"
+#include "check/sources/builtin.h"
+#include "check/sources/cases.h"
+#include "math/functions.h"
+#include "math/simd/random.h"
+#include "render/combination.h"
+#include "render/external_lights.h"
+#include "render/shading_points.h"
+#include "samplers/info.h"
+
+namespace crescent::inline runs {
+
+namespace {
+
+/// The shading points of one pixel.
+using Point = std::shared_ptr<const ShadingPoints>;
+
+/// What all samplers at one point share: f of its surface.
+class AtPoint : public InProcessAdapter {
+public:
+    AtPoint(std::string name, Point point, bool limited)
+        : name_(std::move(name)), point_(std::move(point)), limited_(limited) {
+        surface_ = {point_->lobe < 0 ? LobeKind::none : static_cast<LobeKind>(point_->lobe),
+            double(point_->diffuse[0]), point_->lobe < 0 ? 0 : point_->rho_s_exact[0], double(point_->s[0]),
+            double(point_->alpha[0])};
+    }
+    std::string name() const override { return name_; }
+    bool limited() const override { return limited_; }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    }
+
+protected:
+    static constexpr std::size_t most_rows = 8192;
+
+    const ShadingPoints& points() const { return *point_; }
+
+    /// Calls work(rows, first, count) for consecutive parts of pairs, a run for each w_o.
+    template <class Work> void in_batches(std::span<const Pair> at, Work&& work) const {
+        std::vector<PointRun> runs;
+        std::vector<Vec3<float>> wi;
+        for (std::size_t first = 0; first < at.size(); first += most_rows) {
+            const std::size_t rows = std::min(most_rows, at.size() - first);
+            runs.clear(), wi.clear();
+            for (const Pair& pair : at.subspan(first, rows)) {
+                const Vec3<float> wo = as<float>(pair.wo);
+                const bool same = !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y &&
+                    runs.back().wo.z == wo.z;
+                if (!same) runs.push_back({0, wo, 0});
+                ++runs.back().rows;
+                wi.push_back(as<float>(pair.wi));
+            }
+            work(PointRows{points(), runs}, std::span<const Vec3<float>>(wi), first);
+        }
+        if (limited_) count(at.size());
+    }
+    void density_of(const Technique& technique, std::span<const Pair> at, std::span<double> out) const {
+        in_batches(at, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
+            technique.density(rows, wi, out.subspan(first, wi.size()));
+        });
+    }
+    void draw_with(const Technique& technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const {
+        const auto count_of = static_cast<std::size_t>(technique.numbers());
+        std::vector<double> numbers;
+        std::vector<PointDraw> drawn;
+        for (std::size_t first = 0; first < u.size(); first += most_rows) {
+            const std::size_t rows = std::min(most_rows, u.size() - first);
+            numbers.clear(), drawn.assign(rows, {});
+            for (const PrimarySample& row : u.subspan(first, rows))
+                for (std::size_t k = 0; k < count_of; ++k) numbers.push_back(row[static_cast<int>(k)]);
+            const PointRun run{0, as<float>(wo), rows};
+            technique.draw({points(), {&run, 1}}, numbers, drawn);
+            for (std::size_t i = 0; i < rows; ++i) out[first + i] = {widen(drawn[i].wi), drawn[i].pdf};
+        }
+        if (limited_) count(u.size());
+    }
+
+private:
+    std::string name_;
+    Point point_;
+    SurfaceSetup surface_;
+    bool limited_;
+};
+
+/// A sampler with one density.
+class OneTechnique : public AtPoint {
+public:
+    OneTechnique(std::string name, Point point, bool limited, std::shared_ptr<const Technique> technique)
+        : AtPoint(std::move(name), std::move(point), limited), technique_(std::move(technique)) {}
+    Traits traits() const override { return {.numbers = technique_->numbers()}; }
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        draw_with(*technique_, wo, u, out);
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override { density_of(*technique_, at, out); }
+
+private:
+    std::shared_ptr<const Technique> technique_;
+};
+
+/// Multiple importance sampling: the densities of its samplers, each with its weights.
+class WeightedTechniques : public AtPoint {
+public:
+    WeightedTechniques(
+        std::string name, Point point, bool limited, std::shared_ptr<const Combination> combination)
+        : AtPoint(std::move(name), std::move(point), limited), combination_(std::move(combination)) {}
+    Traits traits() const override {
+        int numbers = 2;
+        for (const auto& part : combination_->parts()) numbers = std::max(numbers, part->numbers());
+        return {.numbers = numbers};
+    }
+    int techniques() const override { return static_cast<int>(combination_->parts().size()); }
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        draw_with(part(t), wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { density_of(part(t), at, out); }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        const std::size_t parts = combination_->parts().size();
+        std::vector<std::vector<double>> p(parts, std::vector<double>(at.size()));
+        for (std::size_t k = 0; k < parts; ++k) density_of(*combination_->parts()[k], at, p[k]);
+        std::vector<double> here(parts);
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            for (std::size_t k = 0; k < parts; ++k) here[k] = p[k][i];
+            FormulaInputs in = formula_inputs(points(), {0, as<float>(at[i].wo), 1});
+            in.cos_i = at[i].wi.z;
+            out[i] = combination_->mis_weight(static_cast<std::size_t>(t), in, here);
+        }
+    }
+
+private:
+    const Technique& part(int t) const { return *combination_->parts()[static_cast<std::size_t>(t)]; }
+    std::shared_ptr<const Combination> combination_;
+};
+
+/// Resampled importance sampling: no density of a direction, but its weight f cos W. Its candidates use random numbers
+/// that are hashed from the two of a sample.
+class Resampled : public AtPoint {
+public:
+    Resampled(std::string name, Point point, bool limited, std::shared_ptr<const Combination> combination)
+        : AtPoint(std::move(name), std::move(point), limited), combination_(std::move(combination)) {}
+    Traits traits() const override { return {.has_pdf = false}; }
+    void pdf(int, std::span<const Pair>, std::span<double> out) const override { std::ranges::fill(out, 0); }
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        std::vector<WeightedDirection> drawn;
+        std::vector<Pair> at;
+        std::vector<double> value;
+        const std::size_t rows_a_batch = 512;
+        for (std::size_t first = 0; first < u.size(); first += rows_a_batch) {
+            const std::size_t rows = std::min(rows_a_batch, u.size() - first);
+            drawn.assign(rows, {}), at.clear(), value.resize(rows);
+            const PointRun run{0, as<float>(wo), rows};
+            combination_->sample({points(), {&run, 1}},
+                [&](std::size_t, std::size_t row, std::uint32_t block) { return hashed(u[first + row], block); },
+                drawn);
+            for (const WeightedDirection& d : drawn) at.push_back({wo, widen(d.drawn.wi)});
+            f(at, value);
+            for (std::size_t i = 0; i < rows; ++i) {
+                const double p = double(drawn[i].drawn.pdf.v);
+                Draw& d = out[first + i] = {at[i].wi, p == 0 ? 0.0 : 1.0};
+                d.weight = p == 0 ? 0 : value[i] * std::max(d.wi.z, 0.0) * double(drawn[i].weight) / p;
+            }
+        }
+        if (limited()) count(u.size() * static_cast<std::size_t>(*combination_->plan().candidates));
+    }
+
+private:
+    static Vec2<float> hashed(const PrimarySample& u, std::uint32_t block) {
+        const auto x = std::bit_cast<std::uint64_t>(u.x), y = std::bit_cast<std::uint64_t>(u.y);
+        const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v ^ (v >> 32)); };
+        const auto h = simd::pcg4d(simd::Vec4u<std::uint32_t>{low(x), low(y), block,
+            static_cast<std::uint32_t>(x >> 32) ^ static_cast<std::uint32_t>(y >> 29)});
+        return {simd::unit_float<float>(h.x), simd::unit_float<float>(h.y)};
+    }
+    std::shared_ptr<const Combination> combination_;
+};
+
+/// The lights that shine on a point, for the integrals of a check; their radiance is its luminance.
+CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
+    CaseLighting out;
+    out.fill = luminance(scene.fill());
+    const std::vector<ExternalLight> lights = lights_of(points);
+    std::vector<ExternalLightAt> at;
+    add_lights_at(points, 0, at);
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+        if (!at[k].shines) continue;
+        const double radiance = luminance(lights[k].radiance);
+        const Vec3d c = at[k].center, n = at[k].normal, u = at[k].edge_u, v = at[k].edge_v;
+        if (dot(u, u) > 0) {
+            out.area_lights.push_back(
+                {radiance, lights::Rectangle{c - u - v, 2.0 * u, 2.0 * v, true}});
+        } else if (dot(n, n) > 0) {  // a disk; a side that shines faces the point
+            out.disks.push_back({radiance, c, dot(c, n) < 0 ? n : n * -1.0, lights[k].radius});
+        } else {
+            out.area_lights.push_back({radiance, lights::Sphere{c, lights[k].radius}});
+        }
+    }
+    return out;
+}
+
+class Cases {
+public:
+    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside)
+        : scene_(experiment), experiment_(experiment), sampler_(std::move(sampler)), outside_(outside) {}
+
+    std::vector<CheckCase> at_pixels(int count) {
+        const std::vector<std::uint32_t> seen = geometry_pixels();
+        for (int k = 0; k < count && static_cast<std::size_t>(k) < seen.size(); ++k) {
+            const std::uint64_t all = seen.size(), many = std::min<std::uint64_t>(all, std::uint64_t(count));
+            const Point point = point_of(seen[(2 * std::uint64_t(k) + 1) * all / (2 * many)]);
+            const Vec3d wo{double(point->wox[0]), double(point->woy[0]), double(point->woz[0])};
+            if (!(wo.z > 0)) continue;
+            add(point, wo, math::acos(std::min(wo.z, 1.0)) * 180 / pi, turn_of(wo));
+        }
+        return std::move(cases_);
+    }
+
+    std::vector<CheckCase> on_grid(bool full) {
+        for (const std::uint32_t pixel : middle_of_each_shape()) {
+            const Point point = point_of(pixel);
+            for (const auto& [theta, azimuth] : wo_grid(full)) add(point, tilt(theta, azimuth), theta, azimuth);
+        }
+        return std::move(cases_);
+    }
+
+private:
+    static double turn_of(Vec3d w) {
+        const double turn = math::atan2(w.y, w.x) * 180 / pi;
+        return turn < 0 ? turn + 360 : turn;
+    }
+
+    std::vector<std::uint32_t> geometry_pixels() const {
+        const Image& image = scene_.image();
+        std::vector<std::uint32_t> out;
+        for (int j = 0; j < image.height; ++j)
+            for (int i = 0; i < image.width; ++i)
+                if (scene_.primary(i, j)) out.push_back(static_cast<std::uint32_t>(j * image.width + i));
+        if (out.empty())
+            throw InputError(experiment_.place_of("camera"),
+                "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+        return out;
+    }
+
+    /// The middle one of the pixels of each shape in view, in the order of the scene's shapes.
+    std::vector<std::uint32_t> middle_of_each_shape() const {
+        const Image& image = scene_.image();
+        std::map<int, std::vector<std::uint32_t>> of_shape;
+        for (const std::uint32_t pixel : geometry_pixels()) {
+            const int i = static_cast<int>(pixel) % image.width, j = static_cast<int>(pixel) / image.width;
+            of_shape[static_cast<int>(scene_.primary(i, j)->shape)].push_back(pixel);
+        }
+        std::vector<std::uint32_t> out;
+        for (const auto& [shape, pixels] : of_shape) out.push_back(pixels[pixels.size() / 2]);
+        return out;
+    }
+
+    Point point_of(std::uint32_t pixel) const {
+        const Image& image = scene_.image();
+        const int i = static_cast<int>(pixel) % image.width, j = static_cast<int>(pixel) / image.width;
+        for (ShadingPoints& group : shading_points_of(scene_, {i, j, i + 1, j + 1}, nullptr))
+            if (group.count == 1) return std::make_shared<const ShadingPoints>(std::move(group));
+        throw Bug(std::source_location::current(), "a geometry pixel has a shading point");
+    }
+
+    void add(const Point& point, Vec3d wo, double theta, double azimuth) {
+        const Image& image = scene_.image();
+        const std::uint32_t pixel = point->pixel[0], width = static_cast<std::uint32_t>(image.width);
+        const LobeInfo* lobe = point->lobe < 0 ? nullptr : &lobe_info(static_cast<LobeKind>(point->lobe));
+        CheckCase t;
+        t.brdf = experiment_.shapes[point->shape[0]].name;
+        t.lighting = fmt::format("pixel {} {}", pixel % width, pixel / width);
+        t.wo = wo;
+        const auto rounded = [](double v) { return std::round(v * 1e4) / 1e4; };
+        t.theta_deg = rounded(theta), t.azimuth_deg = theta > 0 ? rounded(azimuth) : 0;
+        if (lobe && lobe->parameter == LobeParameter::s) t.parameters.emplace_back("s", double(point->s[0]));
+        if (lobe && lobe->parameter == LobeParameter::alpha)
+            t.parameters.emplace_back("alpha", double(point->alpha[0]));
+        t.light = lighting_at(scene_, *point);
+        for (const char* peer : {"uniform", "cosine"}) {
+            if (sampler_ == peer) continue;
+            t.arm = peer, t.baseline = true;
+            t.adapter = std::make_shared<OneTechnique>(peer, point, false, built_in_technique(peer));
+            peers_.push_back(t);
+        }
+        t.arm = sampler_, t.baseline = false;
+        t.adapter = adapter_at(point);
+        cases_.push_back(std::move(t));
+        std::ranges::move(peers_, std::back_inserter(cases_));
+        peers_.clear();
+    }
+
+    std::shared_ptr<const SamplerAdapter> adapter_at(const Point& point) const {
+        const ArmPlan* arm = experiment_.find_arm(sampler_);
+        if (const auto own = outside_.find(sampler_); own != outside_.end()) {
+            const bool limited = calls_code(*arm);
+            if (own->second->as_combination()) {
+                const std::shared_ptr<const Combination> c(own->second, own->second->as_combination());
+                if (c->plan().kind == CombinationKind::ris)
+                    return std::make_shared<Resampled>(sampler_, point, limited, c);
+                if (const auto technique = c->technique())
+                    return std::make_shared<OneTechnique>(sampler_, point, limited, technique);
+                return std::make_shared<WeightedTechniques>(sampler_, point, limited, c);
+            }
+            return std::make_shared<OneTechnique>(sampler_, point, limited, external_technique(own->second));
+        }
+        const std::string name = arm ? arm->sampler : sampler_;
+        if (name == "mis-balance" || name == "mis-power") {
+            CombinationPlan plan;
+            plan.kind = CombinationKind::mis, plan.of = {"mixture", "light-area"};
+            plan.heuristic = name == "mis-power" ? MisHeuristic::power : MisHeuristic::balance;
+            if (!built_in_) {
+                Techniques parts = {built_in_technique("mixture"), built_in_technique("light-area")};
+                built_in_ = std::make_shared<Combination>(
+                    name, plan, std::move(parts), nullptr, SourceLocation{}, SourceLocation{});
+            }
+            return std::make_shared<WeightedTechniques>(sampler_, point, false, built_in_);
+        }
+        return std::make_shared<OneTechnique>(sampler_, point, false, built_in_technique(name));
+    }
+
+    /// Whether any part of an arm is a program, a library or Python.
+    bool calls_code(const ArmPlan& arm) const {
+        if (arm.is_external()) return true;
+        return std::ranges::any_of(arm.combination.of, [&](const std::string& name) {
+            const ArmPlan* part = experiment_.find_arm(name);
+            return part && (part->is_external() || (part->is_combination() && calls_code(*part)));
+        });
+    }
+
+    Scene scene_;
+    const Experiment& experiment_;
+    std::string sampler_;
+    const ExternalSamplers& outside_;
+    std::vector<CheckCase> cases_, peers_;
+    mutable std::shared_ptr<const Combination> built_in_;
+};
+
+}  // namespace
+
+Experiment with_arms_of(Experiment experiment, const std::string& sampler) {
+    std::vector<std::string> needed = {sampler};
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+        const ArmPlan* arm = experiment.find_arm(needed[i]);
+        if (!arm) continue;
+        std::vector<std::string> parts = arm->combination.of;
+        if (arm->combination.target) parts.push_back(*arm->combination.target);
+        for (std::string& part : parts)
+            if (std::ranges::find(needed, part) == needed.end()) needed.push_back(std::move(part));
+    }
+    std::erase_if(experiment.arms,
+        [&](const ArmPlan& arm) { return std::ranges::find(needed, arm.name) == needed.end(); });
+    return experiment;
+}
+
+std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string& sampler,
+    const ExternalSamplers& outside, const ArmCasesPlan& plan) {
+    const std::vector<std::string> built_in = sampler_names();
+    if (!experiment.find_arm(sampler) && std::ranges::find(built_in, sampler) == built_in.end()) {
+        std::vector<std::string> valid;
+        for (const ArmPlan& arm : experiment.arms) valid.push_back(arm.name);
+        for (const std::string& name : built_in)
+            if (std::ranges::find(valid, name) == valid.end()) valid.push_back(name);
+        throw InputError({"--sampler " + sampler, 0, 0},
+            fmt::format("no arm or sampler '{}' in {}: expected one of {}{}", printable(sampler, 64), experiment.file,
+                fmt::join(valid, ", "), did_you_mean(sampler, valid)));
+    }
+    Cases cases(experiment, sampler, outside);
+    return plan.pixels > 0 ? cases.at_pixels(plan.pixels) : cases.on_grid(plan.full);
+}
+
+}  // namespace crescent::inline runs

@@ -1,0 +1,28 @@
+// Cases of `crescent check` for an arm of an experiment: at pixels of its scene, and over the grid of w_o on each
+// material in view. The sampler receives what it receives in a run: the material, the lights, w_o.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "check/sources/sampler_adapter.h"
+#include "experiment/experiment.h"
+#include "samplers/external_sampler.h"
+
+namespace crescent::inline runs {
+
+/// Where an arm is checked.
+struct ArmCasesPlan {
+    int pixels = 0;     // geometry pixels, evenly spread over those in view; 0: the grid of w_o on each material
+    bool full = false;  // 16 w_o of the grid in place of 8
+};
+
+/// Returns the experiment with this arm and the arms that it combines alone.
+Experiment with_arms_of(Experiment experiment, const std::string& sampler);
+
+/// `sampler`: an arm of the experiment, or a built-in sampler. `outside`: what open_external() returned for it; it must
+/// live as long as the cases. Throws InputError if there is no such arm, or nothing is in view.
+std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string& sampler,
+    const ExternalSamplers& outside, const ArmCasesPlan& plan);
+
+}  // namespace crescent::inline runs
