@@ -5,13 +5,13 @@ import { Model } from "./model";
 /** The charts of the model's measurements, unless it opens something else meanwhile. */
 export async function showLadders(root: HTMLElement, model: Model): Promise<void> {
   const { described, shown } = model;
-  await model.turns.pass();
-  if (described !== model.described) return;
-  root.replaceChildren(...described.regions.map(({ name }) => {
+  const charts = await Promise.all(described.regions.map(async ({ name }) => {
     const series = shown.map((s) => ({
       arm: s.name,
       points: s.sampleCounts.map((r) => [r.n, Number(r.metrics.metrics[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)),
     }));
-    return el("figure", { class: "narrow" }, made(model.api.say("ladder_chart", { region: name, series })));
+    return model.chart(() => described === model.described, { region: name, series });
   }));
+  if (described !== model.described || charts.some((chart) => chart === undefined)) return;
+  root.replaceChildren(...charts.map((chart) => el("figure", { class: "narrow" }, made(chart!))));
 }

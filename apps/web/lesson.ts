@@ -7,6 +7,7 @@ import { el, made, minus } from "./dom";
 import { furnacePanel } from "./furnace";
 import { Lesson, lessons } from "./lessons";
 import { Model } from "./model";
+import { html } from "./text";
 
 export interface Lessons {
   root: HTMLElement;
@@ -59,7 +60,7 @@ function question(lesson: Lesson, asker: Asker, given: string | undefined, take:
 const unsaid = "The lines above say what was found; this lesson has no sentence for it.";
 
 /** Words with formulas, formatted by the core. */
-const set = (model: Model, words: string): DocumentFragment => made(model.api.say("html", words));
+const set = (words: string): DocumentFragment => made(html(words));
 
 /** An answer in the words of the question. */
 function worded({ ask }: Lesson, value: string): string {
@@ -69,11 +70,11 @@ function worded({ ask }: Lesson, value: string): string {
   return y1 ? `the box from (${x0}, ${y0}) to (${x1}, ${y1})` : value === "overlap" ? "none is the noisiest: the intervals of the seeds overlap" : `${value} is the noisiest`;
 }
 
-function revealed(model: Model, lesson: Lesson, answer: string, found: Found, commands: string[]): HTMLElement {
+function revealed(lesson: Lesson, answer: string, found: Found, commands: string[]): HTMLElement {
   const again = commands.length > 0 ? [el("p", { class: "again" }, "The same numbers from the program: ", ...commands.flatMap((words, k) => [k > 0 ? ", " : "", el("code", {}, words)]))] : [];
   return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
     el("p", {}, "You said ", el("b", {}, worded(lesson, answer)), "; measured here: ", el("b", {}, worded(lesson, found.answer)), "."),
-    el("ul", {}, ...found.lines.map((line) => el("li", {}, minus(line)))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? unsaid)), ...again);
+    el("ul", {}, ...found.lines.map((line) => el("li", {}, minus(line)))), el("p", { "data-kind": found.kind }, set(lesson.says[found.kind] ?? unsaid)), ...again);
 }
 
 export function showLesson(to: Lessons, lesson: Lesson, given: string | undefined): void {
@@ -84,7 +85,7 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
     result.replaceChildren(el("p", {}, "Measuring …"));
     try {
       const found = await to.asker().find(lesson, answer);
-      const shown = revealed(to.model, lesson, answer, found, to.asker().commands(lesson, answer));
+      const shown = revealed(lesson, answer, found, to.asker().commands(lesson, answer));
       const play = lesson.check ? checkPanel(to.asker(), lesson) : lesson.furnace ? furnacePanel(to.asker(), lesson) : el("p", {}, "Now play: the pictures and settings below are this lesson's.");
       result.replaceChildren(shown, play, el("p", {},
         el("button", { type: "button", id: "next", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
@@ -97,16 +98,16 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
   };
   to.root.replaceChildren(
     el("p", {}, el("a", { href: "#", onclick: (e) => { e.preventDefault(); to.go(""); } }, "All lessons")),
-    el("h2", {}, lesson.title), el("div", { class: "asking" }, el("p", {}, set(to.model, lesson.aim)),
+    el("h2", {}, lesson.title), el("div", { class: "asking" }, el("p", {}, set(lesson.aim)),
       ...(lesson.answer.by === "which" ? [samplerPictures(to.model, lesson.check!.samplers, lesson.answer.theta)] : []), question(lesson, to.asker(), given, (a) => void measure(a)), result));
   if (given !== undefined) void measure(given);
 }
 
-export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
+export function showSheet(root: HTMLElement, asker: Asker): void {
   const articles = lessons.map((lesson, k) => {
     const place = el("div", {}, el("p", {}, "Expected: being measured …")), say = el("p");
     return { lesson, place, say, article: el("article", {}, el("h3", {}, `${k + 1}. ${lesson.title}`),
-      el("p", { class: "footnote" }, `${lesson.minutes} minutes`), el("p", {}, el("b", {}, "Aim. "), set(model, lesson.aim)),
+      el("p", { class: "footnote" }, `${lesson.minutes} minutes`), el("p", {}, el("b", {}, "Aim. "), set(lesson.aim)),
       el("p", {}, el("b", {}, "Question. "), lesson.question), place, say) };
   });
   delete root.dataset["measured"];
@@ -118,7 +119,7 @@ export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
       try {
         const found = await asker.find(lesson);
         place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}${lesson.ask.kind === "region" ? ` in ${lesson.answer.by === "largest" ? lesson.answer.of[0]!.region : ""}` : ""}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, minus(line)))));
-        say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? unsaid));
+        say.replaceChildren(el("b", {}, "Say. "), set(lesson.says[found.kind] ?? unsaid));
       } catch (error) {
         place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;
       }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "parts.h"
+#include "user_sampler.h"
 
 namespace crescent::web {
 
@@ -28,9 +29,8 @@ std::string class_of(const std::string& arm) {
 }
 
 /// Merges the largest samples of a box with those of the boxes before it.
-void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
+void keep_largest(const TileBox& box, const SamplerRef& sampler, const TailPlan& plan, std::vector<float>& largest) {
     const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
-    count_work(pixels_of(box) * cost_of(sampler, tail_cost * plan.n));
     ProgressMonitor monitor;
     std::uint64_t drawn = 0;
     const std::vector<float> here =
@@ -74,37 +74,22 @@ ordered_json metrics_of(const Slot& s) {
 
 /// Film `index` -> {key, metrics: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
 CRESCENT_EXPORT(metrics)(int index)->void {
-    const auto out = std::make_shared<ordered_json>();
-    const auto hash = std::make_shared<FilmHash>();
-    Parts parts{[=] {
-        count_work(bench().pixels() * metric_cost);
-        *out = metrics_of(slot(index));
-    }};
-    for (std::size_t plane = 0; plane < slot(index).film.planes().size(); ++plane)
-        parts.emplace_back([=] {
-            count_work(bench().pixels() / hashed);
-            hash->add(slot(index).film.planes()[plane]);
-        });
-    parts.emplace_back([=] {
-        (*out)["hash"] = hash->text();
-        respond(*out);
-    });
-    begin(std::move(parts));
+    ordered_json out = metrics_of(slot(index));
+    out["hash"] = hash(slot(index).film);
+    respond(out);
 }
 
 /// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box.
 CRESCENT_EXPORT(tail)()->void {
     const ordered_json query = request();
     const Box box = requested_box(query);
-    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    const SamplerRef sampler = sampler_of(arm_of(query.at("arm").get<std::string>()));
     const TailPlan plan = tail_plan(box);
-    const auto largest = std::make_shared<std::vector<float>>();
-    Parts parts;
+    std::vector<float> largest;
     if (plan.kept > 0)
-        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
-            parts.emplace_back([=] { keep_largest(part, sampler, plan, *largest); });
-    parts.emplace_back([=] { send_tail(*largest); });
-    begin(std::move(parts));
+        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler.sampler, tail_cost * plan.n)))
+            keep_largest(part, sampler, plan, largest);
+    send_tail(largest);
 }
 
 /// {region, series: [{arm, points: [[n, rmse], ...]}]} -> RMSE against N as SVG, with N^(-1/2) from the first points.

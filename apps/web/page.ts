@@ -2,7 +2,7 @@
 import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, Api, DoorError } from "./api";
+import { Box, DoorError } from "./api";
 import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
@@ -10,8 +10,8 @@ import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
 import { Lesson, lessons, onBench } from "./lessons";
 import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
-import { Pool } from "./pool";
-import { Turns } from "./turns";
+import { Desk, Pool } from "./pool";
+import { samplers, startText } from "./text";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
@@ -43,11 +43,11 @@ export class Page implements Viewer {
 
   start(module: WebAssembly.Module, worker: string): void {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
-    const api = new Api(module), turns = new Turns(api.number("most_of_part"));
-    const pool = new Pool(module, worker, count, turns);
-    void pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); });
-    this.model = new Model(module, api, pool, turns, this);
-    this.samplers = this.model.api.ask<Sampler[]>("samplers");
+    startText(module);
+    const pool = new Pool(module, worker, count);
+    pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
+    this.model = new Model(new Desk(module, worker), pool, this);
+    this.samplers = samplers();
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
@@ -171,7 +171,7 @@ export class Page implements Viewer {
     const info = document.documentElement.dataset;
     info["first"] ??= String(Math.round(performance.now()));
     if (this.awaited && index >= 0) (info["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
-    if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
+    if (index < 0 || this.state.view === "photograph") void picture?.paint(this.model, this.state, this.top, box, () => this.pictures.includes(picture));
   }
 
   private metrics(index: number): void { this.pictures[index]?.metrics(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
@@ -196,8 +196,7 @@ export class Page implements Viewer {
     info["films"] = String(Math.round(this.model.filmsTook));
     await shown;
     if (described !== this.model.described || this.idle) return;
-    info["memory"] = `${this.model.api.size} ${this.model.pool.size}`; // of the page's instance, of the workers
-    info["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
+    info["memory"] = `${this.model.desk.size} ${this.model.pool.size}`; // of the desk's instance, of the workers
     info["took"] = String(Math.round(took));
   }
 
@@ -206,11 +205,11 @@ export class Page implements Viewer {
     const { pictures, model, seen } = this, mine = ++this.painting;
     const stands = (): boolean => mine === this.painting && pictures === this.pictures && seen === model.described;
     if (!stands()) return;
-    const top = model.referenceDone ? await model.top() : 1;
+    const top = (model.referenceDone ? await model.scales() : undefined)?.top ?? 1;
     if (!stands()) return;
     this.top = top;
     pictures.at(-1)?.legend(model, this.state, top);
-    for (const picture of pictures) await picture.repaint(model, this.state, top, stands);
+    await Promise.all(pictures.map((picture) => picture.repaint(model, this.state, top, stands)));
   }
 
   private choose(pixel: [number, number]): void {
@@ -226,6 +225,13 @@ export class Page implements Viewer {
       history.replaceState(null, "", write(this.state));
       void this.openPixel();
     });
+  }
+
+  /** The page has no second engine. */
+  private withoutWorkers(): void {
+    document.documentElement.dataset["workers"] = "0";
+    for (const id of ["bench", "lessons", "sheet"]) byId(id).hidden = true;
+    byId("wrong").replaceChildren(el("p", {}, "This browser refuses workers, in which this page computes: allow them for this file, or open it in another browser."));
   }
 
   /** A message with the next step; `all`: nothing can be shown for these settings except their command. */
@@ -251,7 +257,7 @@ export class Page implements Viewer {
     byId<HTMLDetailsElement>("controls").open = part === "lessons";
     this.choices();
     this.knobs();
-    if (part === "sheet") showSheet(byId("sheet"), this.model, this.asker());
+    if (part === "sheet") showSheet(byId("sheet"), this.asker());
     if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
   }
 
