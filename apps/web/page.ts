@@ -8,6 +8,13 @@ import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
 import { Lesson, lessons, onBench } from "./lessons";
+import { Faults } from "./faults";
+import { exercises } from "./exercises";
+import { FilmView } from "./film";
+import { packed, unpacked } from "./packed";
+import { templates } from "./templates";
+import { Work, Workshop } from "./workshop";
+import { choice } from "./controls";
 import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
 import { Desk, Pool } from "./pool";
@@ -37,6 +44,13 @@ export class Page implements Viewer {
   private idle = true; // nothing is computed while the bench is hidden
   private asRead = false; // an answered lesson that the address shows with its own settings
   private known: Asker | undefined;
+  private film!: FilmView;
+  private workshop: Workshop | undefined; // once it is opened
+  private module!: WebAssembly.Module;
+  private worker = "";
+  private template = "cosine";
+  private loaded = ""; // what the workshop shows: an exercise, packed code
+  private readonly faults = new Faults((name) => this.goTo(name), (exercise) => this.begin(exercise));
   private readonly speaker = new Speaker(byId("status"));
 
   constructor(private readonly data: Data) {}
@@ -44,17 +58,20 @@ export class Page implements Viewer {
   start(module: WebAssembly.Module, worker: string): void {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     startText(module);
+    Object.assign(this, { module, worker });
     const pool = new Pool(module, worker, count);
     pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
     this.model = new Model(new Desk(module, worker), pool, this);
     this.samplers = samplers();
+    this.film = new FilmView({ model: this.model, choose: (pixel) => this.choose(pixel), region: (box) => this.change(drawnRegion, `[${box.join(", ")}]`) }, "main-film");
+    byId("film").replaceChildren(this.film.root);
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
       const part = (event.target as HTMLElement).dataset["tab"];
       if (!part) return;
       event.preventDefault();
-      Object.assign(this.state, { lesson: "", part });
+      Object.assign(this.state, { lesson: "", exercise: "", part });
       this.turn();
       this.show();
       if (this.idle && !byId("bench").hidden) this.open();
@@ -135,6 +152,8 @@ export class Page implements Viewer {
       if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stays until it is painted over
       return picture;
     });
+    this.film.opened(d, shown);
+    this.film.select(this.state.pixel);
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
       picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
@@ -171,6 +190,7 @@ export class Page implements Viewer {
     const info = document.documentElement.dataset;
     info["first"] ??= String(Math.round(performance.now()));
     if (this.awaited && index >= 0) (info["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
+    this.film.painted(index, box);
     if (index < 0 || this.state.view === "photograph") void picture?.paint(this.model, this.state, this.top, box, () => this.pictures.includes(picture));
   }
 
@@ -180,6 +200,7 @@ export class Page implements Viewer {
   measured(): void {
     const { shown } = this.model, painted = this.model.referenceDone && this.state.view !== "photograph" ? this.repaint() : undefined;
     this.tailed();
+    const filmed = this.film.measured();
     const region = this.model.described.regions[0]?.name;
     const lines = shown.filter((s) => s.sampleCounts.length > 0).map((s) => {
       const last = s.sampleCounts.at(-1)!;
@@ -187,7 +208,7 @@ export class Page implements Viewer {
     });
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
-    void this.finished(Promise.all([painted, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
+    void this.finished(Promise.all([painted, filmed, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
   }
 
   /** Notifies the tests once everything is shown. */
@@ -216,6 +237,7 @@ export class Page implements Viewer {
     this.state.pixel = pixel;
     history.replaceState(null, "", write(this.state));
     for (const picture of this.pictures) picture.outlines(pixel);
+    this.film.select(pixel);
     void this.openPixel();
   }
 
@@ -230,7 +252,7 @@ export class Page implements Viewer {
   /** The page has no second engine. */
   private withoutWorkers(): void {
     document.documentElement.dataset["workers"] = "0";
-    for (const id of ["bench", "lessons", "sheet"]) byId(id).hidden = true;
+    for (const id of ["bench", "write", "lessons", "sheet"]) byId(id).hidden = true;
     byId("wrong").replaceChildren(el("p", {}, "This browser refuses workers, in which this page computes: allow them for this file, or open it in another browser."));
   }
 
@@ -251,14 +273,83 @@ export class Page implements Viewer {
     for (const link of document.querySelectorAll<HTMLElement>("#tabs a"))
       link.dataset["tab"] === part ? link.setAttribute("aria-current", "page") : link.removeAttribute("aria-current");
     byId("lessons").hidden = part !== "lessons";
+    byId("write").hidden = part !== "write" && part !== "faults";
     byId("sheet").hidden = part !== "sheet";
-    byId("bench").hidden = part === "sheet" || (part === "lessons" && (!lesson || !onBench(lesson) || answers[lesson.id] === undefined));
+    byId("bench").hidden = part === "sheet" || part === "write" || part === "faults" || (part === "lessons" && (!lesson || !onBench(lesson) || answers[lesson.id] === undefined));
     if (byId("bench").hidden && !this.idle) this.rest();
     byId<HTMLDetailsElement>("controls").open = part === "lessons";
     this.choices();
     this.knobs();
+    this.showWrite();
     if (part === "sheet") showSheet(byId("sheet"), this.asker());
     if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
+  }
+
+  // ---- Write a sampler, and find the fault.
+
+  private showWrite(): void {
+    const { part, exercise } = this.state, at = byId("task"), found = exercises.find(({ name }) => name === exercise);
+    const writes = part === "write" || (part === "faults" && found !== undefined);
+    if (writes && !this.workshop) {
+      this.workshop = new Workshop({
+        module: this.module, worker: this.worker, desk: this.model.desk, sources: this.data.sources, speaker: this.speaker,
+        changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
+      });
+      byId("workshop").replaceChildren(this.workshop.root);
+    }
+    byId("workshop").hidden = part !== "write";
+    if (part !== "write") this.workshop?.show(false), (this.loaded = "");
+    if (part === "faults") return found ? this.faults.show(at, found) : this.faults.list(at);
+    if (part !== "write") return;
+    at.replaceChildren(el("h2", {}, "Write a sampler"),
+      el("p", {}, "In JavaScript: ", el("code", {}, "sample(wo, u)"), " returns a direction w_i and its density, ", el("code", {}, "pdf(wo, wi)"), " the density of any direction. Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. A third argument, if the functions have one, has the surface and the lights."),
+      el("div", { class: "choices" }, choice("template", "start from", Object.entries(templates).map(([name, { title }]) => [name, title]), this.template, (value) => {
+        this.template = value;
+        Object.assign(this.state, { code: "", ground: "" });
+        this.loaded = "";
+        this.turn();
+        void this.loadCode();
+      })));
+    this.workshop!.show(true);
+    void this.loadCode();
+  }
+
+  /** The code of the address, or a template. */
+  private async loadCode(): Promise<void> {
+    const { code, ground } = this.state, { code: plain, ground: own } = templates[this.template]!;
+    if (this.loaded === (code || "template")) return;
+    this.loaded = code || "template";
+    let text = plain;
+    try {
+      if (code) text = await unpacked(code);
+    } catch {
+      byId("wrong").append(el("p", {}, "The address has a sampler's code that cannot be read: a template is open."));
+    }
+    if (this.state.part === "write") this.workshop!.load({ code: text, ground: ground || own });
+  }
+
+  /** The user has changed the code, or what it is shown on. */
+  private async written({ code, ground }: Work): Promise<void> {
+    if (this.state.part !== "write") return this.faults.forget();
+    const words = await packed(code);
+    if (this.state.part !== "write") return;
+    Object.assign(this.state, { code: words, ground });
+    this.loaded = words;
+    history.replaceState(null, "", write(this.state));
+  }
+
+  private begin(exercise: typeof exercises[number]): void {
+    byId("workshop").hidden = false;
+    this.workshop!.show(true);
+    this.faults.forget();
+    this.workshop!.load(exercise);
+  }
+
+  private goTo(exercise: string): void {
+    Object.assign(this.state, { exercise, part: "faults" });
+    this.turn();
+    this.show();
+    byId("write").querySelector<HTMLElement>("a, input, button")?.focus();
   }
 
   private rest(): void {

@@ -99,8 +99,8 @@ export class Pool {
   private ended = false;
   readonly ready: Promise<void>; // rejects if there is no worker: requests wait for it
 
-  /** `source`: the worker's script. */
-  constructor(private readonly module: WebAssembly.Module, source: string, count: number) {
+  /** `source`: the worker's script; `most`: samples of one job. */
+  constructor(private readonly module: WebAssembly.Module, source: string, count: number, private readonly most = mostSamples) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.ready = Promise.allSettled(Array.from({ length: count }, () => this.startOne(url))).then((all) => {
       URL.revokeObjectURL(url);
@@ -165,7 +165,7 @@ export class Pool {
 
   /** The picture cut into boxes, one per job, from the middle. `cost`: samples per pixel. */
   tiles(width: number, height: number, cost: number): Box[] {
-    const pixels = Math.max(1, Math.floor(mostSamples / cost));
+    const pixels = Math.max(1, Math.floor(this.most / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
     const all: Box[] = [];
     for (let y0 = 0; y0 < height; y0 += up)
