@@ -44,38 +44,22 @@ function pdf(wo, wi) {
 }
 `;
 
-const cone = `const angle = 0.0006; // of the cone about the mirror direction, rad
+const cone = `const angle = 0.21; // of the cone about the normal, rad
 const numbers = 3;
 const one = 2 * Math.sin(angle / 2) ** 2; // 1 - cos(angle)
-
-function basis(r) {
-  const h = Math.abs(r[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0];
-  const a = [r[1] * h[2] - r[2] * h[1], r[2] * h[0] - r[0] * h[2], r[0] * h[1] - r[1] * h[0]];
-  const l = Math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-  const t = [a[0] / l, a[1] / l, a[2] / l];
-  return [t, [r[1] * t[2] - r[2] * t[1], r[2] * t[0] - r[0] * t[2], r[0] * t[1] - r[1] * t[0]]];
-}
+const short = (x) => Math.round(256 * x) / 256; // as bfloat16 has numbers from 1/2 to 1
 
 // Half of the draws go into the cone, the others follow the cosine.
 function sample(wo, u) {
-  const phi = 2 * Math.PI * u[1];
-  let wi;
-  if (u[2] < 0.5) {
-    const r = [-wo[0], -wo[1], wo[2]], [t, b] = basis(r);
-    const down = u[0] * one, c = 1 - down, s = Math.sqrt(down * (2 - down)), x = s * Math.cos(phi), y = s * Math.sin(phi);
-    wi = [x * t[0] + y * b[0] + c * r[0], x * t[1] + y * b[1] + c * r[1], x * t[2] + y * b[2] + c * r[2]];
-  } else {
-    const r = Math.sqrt(u[0]);
-    wi = [r * Math.cos(phi), r * Math.sin(phi), Math.sqrt(1 - u[0])];
-  }
+  const phi = 2 * Math.PI * u[1], z = u[2] < 0.5 ? 1 - u[0] * one : Math.sqrt(1 - u[0]), r = Math.sqrt(1 - z * z);
+  const wi = [r * Math.cos(phi), r * Math.sin(phi), z];
   return { wi, pdf: pdf(wo, wi) };
 }
 
 function pdf(wo, wi) {
   if (!(wi[2] > 0)) return 0;
-  const x = wi[0] + wo[0], y = wi[1] + wo[1], z = wi[2] - wo[2];
-  const inside = (x * x + y * y + z * z) / 2 <= one;
-  return 0.5 * wi[2] / Math.PI + (inside ? 0.5 / (2 * Math.PI * one) : 0);
+  const size = 2 * Math.PI * one;
+  return 0.5 * wi[2] / Math.PI + (1 - wi[2] <= one ? 0.5 / size : 0);
 }
 `;
 
@@ -172,9 +156,9 @@ const planned: readonly Plan[] = [
   },
   {
     name: "float-cone", title: "A narrow cone", minutes: 10, ground: "lambert", right: cone,
-    task: "Half of the draws go into a very narrow cone. The size of the cone is computed in single precision, as on a GPU.",
-    repair: ["const one = 1 - Math.fround(Math.cos(angle));", "const one = 2 * Math.sin(angle / 2) ** 2;"],
-    hints: ["Zoom in by thought: how large is 1 - cos(0.0006)?", "Single precision has steps of 6e-8 below 1, and the cone has 1.8e-7.", "1 - cos x = 2 sin^2(x / 2) loses nothing."],
+    task: "Half of the draws go into a narrow cone. Its solid angle is computed in bfloat16, as some accelerators do.",
+    repair: ["size = 2 * Math.PI * (1 - short(Math.cos(angle)));", "size = 2 * Math.PI * one;"],
+    hints: ["How large is 1 - cos(0.21)?", "bfloat16 has steps of 0.004 below 1, and the cone has 0.022.", "1 - cos x = 2 sin^2(x / 2) loses nothing: it is there already, as one."],
   },
   {
     name: "mirrored-sky", title: "The sun rises in the west", minutes: 8, ground: "lambert", right: sky,
@@ -201,6 +185,6 @@ export const exercises: readonly Exercise[] = [
   {
     name: "heavy-tail", title: "Fireflies", minutes: 8, ground: "lambert", code: power,
     task: "This sampler makes fireflies. A colleague says that it must have a bug.",
-    hints: ["Which verdicts are wrong, and which only stay open?", "f cos / p near the horizon: which of the two falls faster?", "Nothing is wrong: the weight has a heavy tail, and the remedy is another density. Answer that there is no fault."],
+    hints: ["Which verdicts are wrong, and which only stay open?", "Near the horizon, which falls faster: f cos or p?", "Nothing is wrong: the weight has a heavy tail, and the remedy is another density. Answer that there is no fault."],
   },
 ];

@@ -109,6 +109,8 @@ export class Faults {
     const { predicted, state } = this.of(current.name), wrong = result.verdicts.find((v) => v.state === "wrong" || v.state === "error");
     if (!current.repair) return this.tell(wrong ? `${wrong.name} is ${wrong.state}.` : "No verdict is wrong. Is there a fault?");
     if (wrong) return this.tell(`The first wrong verdict is ${wrong.name}; you predicted ${predicted}.`);
+    const open = result.verdicts.find((v) => v.state === "inconclusive");
+    if (open) return this.tell(`Nothing is wrong, but ${open.name} is inconclusive: the exercise is solved by a sampler that is right.`);
     if (state !== "solved") this.set(current.name, { state: "solved" });
     this.tell("Solved: the check finds nothing wrong any more.");
   }

@@ -224,8 +224,11 @@ export class FilmView {
 
   private fit(): void {
     if (!this.d) return;
-    const w = this.canvas.parentElement!.clientWidth, { width, height } = this.d;
-    if (w === 0) return;
+    const room = this.root.clientWidth, { width, height } = this.d;
+    if (room === 0) return;
+    // As large as the window shows as a whole; 900 pixels at least, where there are so many.
+    const w = this.mode === "side" ? room : Math.min(room, Math.max(900, Math.round((0.8 * window.innerHeight * width) / height)));
+    this.canvas.style.width = this.wipe.style.width = `${w}px`;
     const stacked = this.mode === "side" && w < narrow, panel = this.mode === "side" && !stacked ? w / 2 : w;
     const h = Math.round((panel * height) / width) * (stacked ? 2 : 1), density = Math.min(2, window.devicePixelRatio || 1);
     this.canvas.style.height = `${h}px`;

@@ -111,6 +111,7 @@ export class Page implements Viewer {
     byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
+      if (why.kind === "worker") return this.withoutWorkers();
       const plain = fresh(state.experiment, source), { good } = this;
       const differs = (from: Opened): boolean => JSON.stringify([from.set, from.arms]) !== JSON.stringify([state.set, state.arms]);
       if (!differs(plain) || why.kind === "memory") return this.failed(why, true);
@@ -258,6 +259,7 @@ export class Page implements Viewer {
 
   /** A message with the next step; `all`: nothing can be shown for these settings except their command. */
   failed(error: DoorError, all = false): void {
+    if (error.kind === "worker") return this.withoutWorkers();
     if (all) {
       byId("command").textContent = command(this.state, this.source);
       for (const id of ["pictures", "charts", "pixel"]) byId(id).replaceChildren();

@@ -13,7 +13,12 @@ import { Described, Model, Shown, Viewer } from "./model";
 import { Desk, Pool, withUser } from "./pool";
 import { Source } from "./state";
 import { grounds } from "./templates";
-import { samplers } from "./text";
+import { figures, samplers } from "./text";
+import { evaluations, four } from "./workshop_settings";
+
+const faults: Record<string, string> = {
+  constant: "a constant factor", leak: "a share of uniform draws", cap: "a share of p that is never drawn", rotation: "a rotation", parameter: "a wrong parameter",
+};
 
 export interface Verdict {
   name: string; question: string; state: string; say: string; cause: string; theta: number; azimuth: number; states: string[]; hidden: Record<string, number | string>;
@@ -21,9 +26,7 @@ export interface Verdict {
 export interface Checked { state: string; evaluations: number; verdicts: Verdict[] }
 export interface Work { code: string; ground: string }
 
-const size = 320, draws = 1024, evaluations = 100_000; // of each w_o
-/** Where a sampler is checked, theta and azimuth in degrees. */
-const four: readonly [number, number][] = [[0, 0], [30, 0], [60, 250], [85, 75]];
+const size = 320, draws = 1024;
 const longest = { film: 5000, check: 15000 }; // ms that the code may take for one job
 const yours = "yours";
 /** What a verdict speaks of, as a picture. */
@@ -33,6 +36,14 @@ const captions: Record<string, string> = {
   pdf: "four decades of the pdf; a dot is a draw", ratio: "blue: half as many draws as the pdf implies, or fewer; orange: twice as many, or more",
   f: "four decades of f L cos; the area of a dot is the weight of the draw", lost: "where f L cos is not 0 and the pdf is",
 };
+
+/** What a right verdict could have missed: the size of each kind of fault that is found in nine of ten cases. */
+function power({ state, hidden }: Verdict): string {
+  const sizes = Object.entries(hidden).filter(([, size]) => typeof size === "number");
+  if (state !== "right" || sizes.length === 0) return "";
+  const said = sizes.map(([name, size]) => `${faults[name] ?? name} of ${name === "rotation" ? `${figures(size as number)} rad` : `${figures(100 * (size as number))} %`}`);
+  return ` In nine of ten cases it finds ${said.join(", ")}.`;
+}
 
 export interface Workplace {
   module: WebAssembly.Module; worker: string; desk: Desk; sources: Record<string, Source>; speaker: Speaker;
@@ -278,11 +289,11 @@ export class Workshop implements Viewer {
     const rows = result.verdicts.map((v) => el("tr", { "data-verdict": v.name, "data-state": v.state },
       el("th", { scope: "row" }, el("button", { type: "button", class: "plain", title: v.question, onclick: () => this.picture(v) }, v.name)),
       el("td", { class: v.state === "wrong" || v.state === "error" ? "bad" : v.state === "right" ? "good" : "" }, v.state),
-      el("td", {}, minus(v.say), ...(v.cause && !v.say.includes(v.cause) ? [` ${minus(v.cause)}`] : []))));
+      el("td", {}, minus(v.say), power(v), ...(v.cause && !v.say.includes(v.cause) ? [` ${minus(v.cause)}`] : []))));
     const first = result.verdicts.find(({ state }) => state === "wrong" || state === "error");
     this.verdicts.replaceChildren(
       el("p", {}, el("b", { "data-result": result.state }, result.state), first ? `: fix ${first.name} first. ` : ". ",
-        `${result.evaluations.toLocaleString("en")} evaluations at w_o of ${four.map(([theta]) => `${theta}°`).join(", ")} in ${(took / 1000).toFixed(1)} s. A right verdict says what it could have missed; the program, with fifteen times as many, finds less. Click a verdict for its picture.`),
+        `${result.evaluations.toLocaleString("en")} evaluations at w_o of ${four.map(([theta]) => `${theta}°`).join(", ")} in ${(took / 1000).toFixed(1)} s. A right verdict says what it could have missed; the program, with ten times as many, misses less. Click a verdict for its picture.`),
       el("table", { class: "verdicts" }, el("caption", {}, grounds[this.ground]!.words), el("tbody", {}, ...rows)));
     if (first) this.picture(first);
   }
