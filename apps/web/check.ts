@@ -44,7 +44,7 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
 }
 
 /** Paints a sampler's density and its draws when there is room for it; skipped if it is no longer on the page. */
-async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
+export async function paintDraws(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
   const wanted = (): boolean => canvas.isConnected;
   if (!wanted()) return;
   const { bytes } = await model.desk.ask({ kind: "disk", call: "density_disk", request: { sampler: value, theta, size }, size });
@@ -66,7 +66,7 @@ async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: 
 
 function picture(model: Model, option: Option, theta: number): HTMLElement {
   const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": `${option.words}: its draws` });
-  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question works without it
+  void Promise.resolve().then(() => paintDraws(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question works without it
   return el("figure", {}, canvas, el("figcaption", {}, el("b", {}, option.words)));
 }
 

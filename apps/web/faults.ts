@@ -1,6 +1,6 @@
 // Find the fault: a prediction, the workshop with the sampler, hints in three steps. Solved when check finds nothing
 // wrong; progress stays in the browser.
-import { el } from "./dom";
+import { el, minus, plusMinus } from "./dom";
 import { Exercise, exercises } from "./exercises";
 import { Checked } from "./workshop";
 
@@ -21,6 +21,34 @@ function keep(all: Kept): void {
   try {
     localStorage.setItem(key, JSON.stringify(all));
   } catch { /* it lasts as long as the page */ }
+}
+
+/** The exercises for teachers: what the check says of each before and after its repair, measured now. */
+export function faultSheet(check: (code: string, ground: string) => Promise<Checked>): HTMLElement {
+  const rows = exercises.map((exercise) => ({ exercise, before: el("td", {}, "being checked …"), after: el("td") }));
+  const first = ({ state, verdicts: all }: Checked): string => {
+    const found = all.find((v) => v.state === "wrong" || v.state === "error") ?? all.find((v) => v.state === "inconclusive");
+    return found ? `${found.name} ${found.state}: ${minus(plusMinus(found.say))}` : state;
+  };
+  const root = el("div", { id: "fault-sheet" }, el("h2", {}, "Find the fault"),
+    el("p", {}, `${exercises.length} exercises of ${exercises.reduce((sum, { minutes }) => sum + minutes, 0)} minutes in all. Let the class predict before it looks.`),
+    el("table", {}, el("thead", {}, el("tr", {}, ...["exercise", "minutes", "what the check says", "fault and repair", "then"].map((words) => el("th", { scope: "col" }, words)))),
+      el("tbody", {}, ...rows.map(({ exercise, before, after }) => el("tr", {}, el("th", { scope: "row" }, exercise.title), el("td", {}, String(exercise.minutes)), before,
+        el("td", {}, ...(exercise.repair ? [el("code", {}, exercise.repair[0].split("\n")[0]), " → ", el("code", {}, exercise.repair[1].split("\n")[0]), ". "] : []), exercise.hints[2]), after)))));
+  void (async (): Promise<void> => {
+    await Promise.resolve(); // it is on the page then
+    for (const { exercise: { code, ground, repair }, before, after } of rows) {
+      if (!root.isConnected) return;
+      try {
+        before.textContent = first(await check(code, ground));
+        after.textContent = repair ? first(await check(code.replace(repair[0], () => repair[1]), ground)) : "no fault";
+      } catch (error) {
+        before.textContent = `It could not be checked: ${error instanceof Error ? error.message : error}.`;
+      }
+    }
+    root.dataset["measured"] = "all";
+  })();
+  return root;
 }
 
 export class Faults {

@@ -78,11 +78,18 @@ CRESCENT_EXPORT(tile_buffer)(std::size_t size)->void* {
     return scratch<std::byte>().data();
 }
 
-/// Allocates the reference; its contents stay if it has the size of the image.
-CRESCENT_EXPORT(reference_buffer)()->void {
+/// Allocates film `index`, the reference for -1; its contents stay if it has the size of the image. Returns {}.
+CRESCENT_EXPORT(film_buffer)(int index)->void {
     Bench& b = bench();
-    if (b.reference.size() != b.pixels())
-        b.reference = ReferenceFilm(b.experiment.image.width, b.experiment.image.height, b.scene.s());
+    const int width = b.experiment.image.width, height = b.experiment.image.height;
+    if (index < 0) {
+        if (b.reference.size() != b.pixels()) b.reference = ReferenceFilm(width, height, b.scene.s());
+    } else {
+        const auto at = static_cast<std::size_t>(index);
+        if (b.slots.size() <= at) b.slots.resize(at + 1);
+        if (b.slots[at].film.y.size() != b.pixels()) b.slots[at].film = Film(width, height, 0);
+    }
+    respond(ordered_json::object());
 }
 
 /// Assigns film `index` to this arm at n; its old contents stay until tiles overwrite them.
@@ -120,7 +127,7 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
 }
 
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
-    ensure(bench().reference.size() == bench().pixels(), "reference_buffer() came before");
+    ensure(bench().reference.size() == bench().pixels(), "film_buffer(-1) came before");
     const TileBox box = box_of(x0, y0, x1, y1);
     put_planes(bench().reference, box, scratch<std::byte>().data());
 }

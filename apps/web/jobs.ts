@@ -11,6 +11,7 @@ export type Job =
   | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
   | { kind: "photograph"; box: Box; opening: Opening } // of the reference
+  | { kind: "strips"; arms: number[]; n: number; width: number; height: number; opening: Opening } // a picture, of each arm a strip
   | { kind: "ask"; call: string; request: unknown; opening?: Opening; given?: number[] } // opening: for another experiment
   // The rest is for the worker that assembles the films.
   | { kind: "call"; call: string; given: number[] }
@@ -39,6 +40,16 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" }>): Answer {
       const { x0, y0, x1, y1 } = job.box;
       api.number("reference_tile", x0, y0, x1, y1);
       return { bytes: [api.bytes("paint", 4 * pixelsOf(job.box), 0, -1, 0, 1, 1, x0, y0, x1, y1)] };
+    }
+    case "strips": {
+      const { arms, n, width, height } = job;
+      return { bytes: arms.map((arm, k) => {
+        const ends = [k, k + 1].map((part) => Math.round((part * width) / arms.length)), x0 = ends[0]!, x1 = ends[1]!;
+        api.give(api.bytes("tile", 4 * ((filmPlanes + 1) * (x1 - x0) * height + 1), arm, n, x0, 0, x1, height));
+        api.number("begin", 0, arm, n);
+        api.number("put", 0, x0, 0, x1, height);
+        return api.bytes("paint", 4 * (x1 - x0) * height, 0, 0, 0, 1, 1, x0, 0, x1, height);
+      }) };
     }
     case "ask":
       return { response: api.ask(job.call, job.request, ...(job.given ?? [])) };

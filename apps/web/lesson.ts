@@ -2,7 +2,7 @@
 // sheet for teachers is made of the same data and of numbers that are measured when it is opened.
 import { Asker, Found } from "./answers";
 import { boxQuestion } from "./box";
-import { checkPanel, samplerPictures } from "./check";
+import { checkPanel, paintDraws, samplerPictures } from "./check";
 import { el, made, minus } from "./dom";
 import { furnacePanel } from "./furnace";
 import { Lesson, lessons } from "./lessons";
@@ -19,13 +19,35 @@ export interface Lessons {
   say(line: string): void;
 }
 
+const wide = 240, high = 135; // pixels of a picture in the list
+
+/** What a lesson is about: the strips of its arms, or a sampler's draws over its pdf. Computed once. */
+const drawn = new Map<string, HTMLCanvasElement>();
+function lessonPicture(to: Lessons, lesson: Lesson): HTMLCanvasElement {
+  const known = drawn.get(lesson.id);
+  if (known) return known;
+  const { answer } = lesson, disk = "samplers" in answer;
+  const canvas = el("canvas", { width: disk ? 176 : wide, height: disk ? 176 : high, class: disk ? "disk" : "", role: "img", "aria-label": disk ? `draws of ${answer.samplers[0]} over its pdf` : `the gallery by ${lesson.arms.join(", ")}` });
+  drawn.set(lesson.id, canvas);
+  const paint = async (): Promise<void> => {
+    if ("samplers" in answer) return paintDraws(to.model, canvas, { value: answer.samplers[0]!, words: answer.samplers[0]! }, answer.theta);
+    let x = 0;
+    for (const strip of await to.asker().strips(lesson.arms, 16, wide, high)) {
+      canvas.getContext("2d")!.putImageData(strip, x, 0);
+      x += strip.width;
+    }
+  };
+  void Promise.resolve().then(paint).catch(() => drawn.delete(lesson.id)); // the list works without it
+  return canvas;
+}
+
 export function lessonList(to: Lessons, answers: Record<string, string>): void {
-  const items = lessons.map((lesson) => el("li", {},
+  const items = lessons.map((lesson) => el("li", {}, lessonPicture(to, lesson),
     el("a", { href: `#lesson=${lesson.id}`, "data-lesson": lesson.id, onclick: (e) => { e.preventDefault(); to.go(lesson.id); } }, lesson.title),
-    " ", el("small", {}, `${lesson.minutes} minutes${answers[lesson.id] ? ", answered" : ""}`)));
+    el("p", {}, set(lesson.aim)), el("small", {}, `${lesson.minutes} minutes${answers[lesson.id] ? ", answered" : ""}`)));
   to.root.replaceChildren(el("h2", {}, "Lessons"),
-    el("p", {}, "Each asks first, then measures, then lets you play. Answers live in the address; nothing is stored."),
-    el("ol", { class: "lesson-list" }, ...items));
+    el("p", {}, `In this order, ${lessons.reduce((sum, { minutes }) => sum + minutes, 0)} minutes in all. Each asks first, then measures, then lets you play. Answers live in the address.`),
+    el("ol", { class: "cards pictured" }, ...items));
 }
 
 function question(lesson: Lesson, asker: Asker, given: string | undefined, take: (answer: string) => void): HTMLElement {
@@ -103,7 +125,7 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
   if (given !== undefined) void measure(given);
 }
 
-export function showSheet(root: HTMLElement, asker: Asker): void {
+export function showSheet(root: HTMLElement, asker: Asker, more: HTMLElement): void {
   const articles = lessons.map((lesson, k) => {
     const place = el("div", {}, el("p", {}, "Expected: being measured …")), say = el("p");
     return { lesson, place, say, article: el("article", {}, el("h3", {}, `${k + 1}. ${lesson.title}`),
@@ -113,7 +135,7 @@ export function showSheet(root: HTMLElement, asker: Asker): void {
   delete root.dataset["measured"];
   root.replaceChildren(el("h2", {}, "For teachers"),
     el("p", {}, `${lessons.length} lessons of ${lessons.reduce((sum, l) => sum + l.minutes, 0)} minutes in all. The answers below were measured now, by this page. `,
-      el("button", { type: "button", onclick: () => window.print() }, "Print this sheet")), ...articles.map((a) => a.article));
+      el("button", { type: "button", onclick: () => window.print() }, "Print this sheet")), ...articles.map((a) => a.article), more);
   void (async (): Promise<void> => {
     for (const { lesson, place, say } of articles) {
       try {

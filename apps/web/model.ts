@@ -24,6 +24,7 @@ export interface Tail { k?: number; se?: number; heavy?: boolean; text?: string;
 /** One picture: an arm of the experiment and its results so far. */
 export interface Shown {
   arm: number; name: string; n: number; sampleCounts: { n: number; metrics: Metrics }[]; tails: Record<string, Tail>;
+  bands: Record<string, [number, number, number][]>; // by region: N, and the 5 % and 95 % quantiles of the RMSE over seeds
 }
 
 /** The listener of the model. */
@@ -32,6 +33,7 @@ export interface Viewer {
   painted(index: number, box: Box): void; // index -1: the reference
   measured(): void;
   tailed(): void;
+  spread(): void; // over seeds
   failed(error: DoorError): void;
 }
 
@@ -42,6 +44,7 @@ export interface PixelValues {
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
 const referenceAfter = 64; // sample counts up to this one are computed before it
+const seedsOfBands = 8;
 const referenceCost = 2000, filmCost = 30; // of a pixel, in samples: apps/web/parts.h
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
@@ -91,8 +94,8 @@ export class Model {
     this.pool.open({ ...opening, published: "" });
     const described = (await this.desk.ask({ kind: "ask", call: "open", request: opening })).response as Described;
     if (era !== this.era) return;
-    const shown = arms.map((name) => ({ arm: described.arms.findIndex((a) => a.name === name), name, n: 0, sampleCounts: [], tails: {} }));
-    await this.desk.ask({ kind: "call", call: "reference_buffer", given: [] });
+    const shown = arms.map((name) => ({ arm: described.arms.findIndex((a) => a.name === name), name, n: 0, sampleCounts: [], tails: {}, bands: {} }));
+    await this.desk.ask({ kind: "call", call: "film_buffer", given: [-1] });
     for (const [index, s] of shown.entries()) await this.desk.ask({ kind: "call", call: "begin", given: [index, s.arm, sampleCounts[0]!] });
     if (era !== this.era) return;
     this.described = described;
@@ -131,6 +134,7 @@ export class Model {
     this.took = performance.now() - this.startedAt;
     this.viewer.measured();
     await this.tails(era);
+    await this.bands(era);
   }
 
   private async begin(index: number, arm: number, n: number): Promise<void> { await this.desk.ask({ kind: "call", call: "begin", given: [index, arm, n] }); }
@@ -234,6 +238,23 @@ export class Model {
         s.tails[region.name] = tail;
         this.viewer.tailed();
       }
+  }
+
+  /** The spread of the RMSE over seeds, one arm, region and sample count after another, up to a limit of work. */
+  private async bands(era: number): Promise<void> {
+    const most = 4e7; // samples of one band
+    for (const region of this.described.regions) {
+      const [x0, y0, x1, y1] = region.box, pixels = (x1 - x0 + 1) * (y1 - y0 + 1);
+      for (const s of this.shown)
+        for (const { n } of s.sampleCounts) {
+          if (era !== this.era) return;
+          if (pixels * n * seedsOfBands > most || !this.described.arms[s.arm]!.sampler) continue;
+          const found = await this.ask<{ q05: number | string; q95: number | string }>("measure", { arm: s.name, n, region: region.name, box: region.box, seeds: seedsOfBands });
+          if (era !== this.era) return;
+          if (typeof found.q05 === "number" && typeof found.q95 === "number" && found.q05 > 0) (s.bands[region.name] ??= []).push([n, found.q05, found.q95]);
+        }
+      this.viewer.spread();
+    }
   }
 
   /** A request to any worker, of another experiment if one is given: such a request survives other openings. */

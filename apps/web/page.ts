@@ -8,12 +8,12 @@ import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
 import { Lesson, lessons, onBench } from "./lessons";
-import { Faults } from "./faults";
+import { Faults, faultSheet } from "./faults";
 import { exercises } from "./exercises";
 import { FilmView } from "./film";
 import { packed, unpacked } from "./packed";
 import { templates } from "./templates";
-import { Work, Workshop } from "./workshop";
+import { checkedCode, Work, Workshop } from "./workshop";
 import { choice } from "./controls";
 import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
@@ -198,6 +198,8 @@ export class Page implements Viewer {
   private metrics(index: number): void { this.pictures[index]?.metrics(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
   tailed(): void { this.model.shown.forEach((_, index) => this.metrics(index)); }
 
+  spread(): void { void showLadders(byId("charts"), this.model); }
+
   measured(): void {
     const { shown } = this.model, painted = this.model.referenceDone && this.state.view !== "photograph" ? this.repaint() : undefined;
     this.tailed();
@@ -208,7 +210,8 @@ export class Page implements Viewer {
       return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.metrics.metrics[`rmse.${region}`]!.text}` : ""}`;
     });
     this.speaker.say(lines.join("; "));
-    if (!this.model.finished) return;
+    if (this.state.pixel) this.film.select(this.state.pixel);
+    if (!this.model.finished) return void showLadders(byId("charts"), this.model);
     void this.finished(Promise.all([painted, filmed, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
   }
 
@@ -283,7 +286,7 @@ export class Page implements Viewer {
     this.choices();
     this.knobs();
     this.showWrite();
-    if (part === "sheet") showSheet(byId("sheet"), this.asker());
+    if (part === "sheet") showSheet(byId("sheet"), this.asker(), faultSheet((code, ground) => checkedCode(this.module, this.worker, code, ground)));
     if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
   }
 

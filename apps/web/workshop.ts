@@ -3,7 +3,7 @@
 // too long.
 import { Box, DoorError } from "./api";
 import { choice } from "./controls";
-import { byId, copied, el, minus, Speaker } from "./dom";
+import { byId, copied, el, minus, plusMinus, Speaker } from "./dom";
 import { Editor } from "./editor";
 import { exported, exports } from "./export";
 import { FilmView } from "./film";
@@ -244,6 +244,7 @@ export class Workshop implements Viewer {
     if (this.model.finished) document.documentElement.dataset["written"] = String(this.era);
   }
   tailed(): void {}
+  spread(): void { void showLadders(this.charts, this.model); }
   failed(error: DoorError): void { this.failedIn(this.era, error); }
 
   private controls(): void {
@@ -289,7 +290,7 @@ export class Workshop implements Viewer {
     const rows = result.verdicts.map((v) => el("tr", { "data-verdict": v.name, "data-state": v.state },
       el("th", { scope: "row" }, el("button", { type: "button", class: "plain", title: v.question, onclick: () => this.picture(v) }, v.name)),
       el("td", { class: v.state === "wrong" || v.state === "error" ? "bad" : v.state === "right" ? "good" : "" }, v.state),
-      el("td", {}, minus(v.say), power(v), ...(v.cause && !v.say.includes(v.cause) ? [` ${minus(v.cause)}`] : []))));
+      el("td", {}, minus(plusMinus(v.say)), power(v), ...(v.cause && !v.say.includes(v.cause) ? [` ${minus(plusMinus(v.cause))}`] : []))));
     const first = result.verdicts.find(({ state }) => state === "wrong" || state === "error");
     this.verdicts.replaceChildren(
       el("p", {}, el("b", { "data-result": result.state }, result.state), first ? `: fix ${first.name} first. ` : ". ",
@@ -328,6 +329,17 @@ export class Workshop implements Viewer {
   private saveExport(): void {
     const { name, text } = exported(this.format, this.editor.code);
     download(name, text);
+  }
+}
+
+/** The verdicts on some code, in a worker of its own. */
+export async function checkedCode(module: WebAssembly.Module, worker: string, code: string, ground: string): Promise<Checked> {
+  const pool = new Pool(module, withUser(worker, code).source, 1), { lobe, lambert, sharpness, light } = grounds[ground]!;
+  try {
+    const request = { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations };
+    return (await pool.ask({ kind: "ask", call: "user_checked", request })).response as Checked;
+  } finally {
+    pool.end();
   }
 }
 

@@ -244,7 +244,7 @@ groups = {
     "numbers": [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
                 a_lesson_is_confirmed, two_hundred_settings],
     "readers": [*reach.tests(page, pathlib.Path(page_path).resolve().parent), *steady.tests(page), *settings.tests(page)],
-    "writers": written.tests(page),
+    "writers": written.tests(page, pathlib.Path(page_path).resolve().parent),
 }[group]
 driver = browser.chromium()
 failed = 0

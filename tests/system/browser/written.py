@@ -15,7 +15,30 @@ FAULT = "document.getElementById('fault-line').textContent"
 LOOKED = f"{told}.code === 'runs' && {told}.looked"
 
 
-def tests(page):
+def tests(page, folder):
+    source = folder / "node_modules/axe-core/axe.min.js"
+
+    def reached_and_read(driver):
+        """The new parts at every width, light and dark: nothing scrolls sideways, axe finds nothing; the tab key goes
+        through the editor and on."""
+        for address, until in (("#part=write", f"{told}.written"), ("#part=faults", "document.querySelector('.cards')"),
+                               ("#exercise=eta-squared", "document.getElementById('predict')")):
+            browser.open_page(driver, page, address, until=until)
+            if "write" in address:
+                verdicts(driver)
+                browser.tab_to(driver, ".cm-content")
+                browser.keys(driver, Keys.TAB)
+                assert not driver.execute_script("return !!document.activeElement.closest('.cm-editor')"), "the editor is a trap"
+            for scheme in ("light", "dark"):
+                browser.media(driver, prefers_color_scheme=scheme)
+                for width, height in ((320, 568), (360, 740), (1440, 900)):
+                    browser.size(driver, width, height)
+                    wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
+                    assert wide <= 0, f"{address} at {width} px: {wide} px too wide"
+                if source.exists():
+                    found = browser.axe(driver, source.read_text())
+                    assert found == [], f"{address}, {scheme}: {found}"
+
     def write(driver, code):
         """Replaces the code, as a user pastes it."""
         driver.execute_script(f"for (const name of ['looked', 'code', 'checked', 'written']) delete {told}[name]")
@@ -153,4 +176,4 @@ def tests(page):
         assert "refuses workers" in browser.text(driver, "#wrong"), browser.text(driver, "#wrong")
         assert driver.execute_script("return document.getElementById('bench').hidden")
 
-    return [a_sampler_is_written, mistakes_have_lines, an_exercise_is_solved, the_main_film, workers_are_refused]
+    return [reached_and_read, a_sampler_is_written, mistakes_have_lines, an_exercise_is_solved, the_main_film, workers_are_refused]
