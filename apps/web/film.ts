@@ -149,7 +149,7 @@ export class FilmView {
 
   painted(index: number, box: Box): void {
     for (const layer of this.layers)
-      if (layer.index === index && (layer.kind === "film" || layer.kind === "reference" || layer.kind === "variance" || this.host.model.referenceDone)) void this.paint(layer, box);
+      if (layer.index === index && (layer.kind === "film" || layer.kind === "reference" || layer.kind === "variance" || this.host.model.referenceDone)) this.paint(layer, box).catch(() => {}); // the model reports what fails
   }
 
   /** After metrics: the scales, and what is measured by them. */
@@ -164,7 +164,7 @@ export class FilmView {
   private async repaint(): Promise<void> {
     const mine = ++this.repainting;
     await Promise.resolve();
-    if (mine === this.repainting) await Promise.all(this.layers.map((layer) => this.paint(layer)));
+    if (mine === this.repainting) await Promise.all(this.layers.map((layer) => this.paint(layer).catch(() => {})));
   }
 
   private async paint(layer: Layer, box: Box = { x0: 0, y0: 0, x1: this.d!.width, y1: this.d!.height }): Promise<void> {

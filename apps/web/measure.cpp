@@ -150,7 +150,8 @@ CRESCENT_EXPORT(firefly)()->void {
     const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
     const auto n = query.at("n").get<std::uint64_t>();
     Largest most;
-    for (const TileBox& part : parts_of(tile_of(requested_box(query)), cost_of(sampler, n))) most.look(part, sampler, n);
+    for (const TileBox& part : parts_of(tile_of(requested_box(query)), cost_of(sampler, n)))
+        most.look(part, sampler, n);
     most.send(sampler, n);
 }
 

@@ -141,16 +141,15 @@ export class Model {
 
   private async sampleCount(era: number, n: number): Promise<void> {
     if (era !== this.era) return;
-    for (const [index, s] of this.shown.entries()) void this.begin(index, s.arm, n);
-    const boxes = this.boxes(this.cost(this.shown, n));
+    const begun = this.shown.map((s, index) => this.begin(index, s.arm, n)), boxes = this.boxes(this.cost(this.shown, n));
     let left = boxes.length;
-    await Promise.all(boxes.map(async (box) => {
+    await Promise.all([...begun, ...boxes.map(async (box) => {
       if (!(await this.tile(era, this.shown.map((s, index) => [index, s.arm]), n, box))) return;
       this.shown.forEach((_, index) => this.viewer.painted(index, box));
       if (--left > 0) return;
       for (const s of this.shown) s.n = n;
       if (this.referenceDone) await this.measure(era);
-    }));
+    })]);
   }
 
   /** A sample count computed only for its metrics, in a film that no picture shows. */
@@ -158,8 +157,7 @@ export class Model {
     const spare = this.shown.length;
     for (const s of this.shown) {
       if (era !== this.era) return;
-      void this.begin(spare, s.arm, n);
-      await Promise.all(this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
+      await Promise.all([this.begin(spare, s.arm, n), ...this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box))]);
       const metrics = await this.metersOf(era, spare);
       if (!metrics) return;
       s.sampleCounts.push({ n, metrics });

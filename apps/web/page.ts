@@ -192,7 +192,7 @@ export class Page implements Viewer {
     info["first"] ??= String(Math.round(performance.now()));
     if (this.awaited && index >= 0) (info["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
     this.film.painted(index, box);
-    if (index < 0 || this.state.view === "photograph") void picture?.paint(this.model, this.state, this.top, box, () => this.pictures.includes(picture));
+    if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box, () => this.pictures.includes(picture)).catch(() => {}); // the model reports what fails
   }
 
   private metrics(index: number): void { this.pictures[index]?.metrics(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }

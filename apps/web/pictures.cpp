@@ -11,7 +11,7 @@ namespace {
 
 enum class Picture { photograph, heat, signed_map, variance };
 
-const Srgb8 background{20, 21, 23};  // where a map has no value
+const Srgb8 background{20, 21, 23};     // where a map has no value
 constexpr double variance_decades = 6;  // of the map of variances, below its top
 
 /// Two hues for two arms, each fading to the ground: t in [-1, 1].

@@ -63,8 +63,9 @@ public:
             at.push_back({disk.center, disk.normal, {}, {}, dot(disk.normal, disk.center) < 0});
         }
         const double rho_d = surface_.rho_d;
-        add_context(all_of_context, {{0, 0, 1}, {surface_.s, surface_.alpha, rho_d, surface_.rho_s}, 1, {rho_d, rho_d, rho_d}},
-            lights, at, context_);
+        add_context(all_of_context,
+            {{0, 0, 1}, {surface_.s, surface_.alpha, rho_d, surface_.rho_s}, 1, {rho_d, rho_d, rho_d}}, lights, at,
+            context_);
     }
     std::string name() const override { return "your sampler"; }
     Traits traits() const override {
@@ -77,7 +78,8 @@ public:
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         if (u.empty()) return;
         count(u.size());
-        std::vector<double> run = {wo.x, wo.y, wo.z, static_cast<double>(u.size())}, given, wi(3 * u.size()), pdf(u.size());
+        std::vector<double> run = {wo.x, wo.y, wo.z, static_cast<double>(u.size())}, given, wi(3 * u.size()),
+                            pdf(u.size());
         run.insert(run.end(), context_.begin(), context_.end());
         given.reserve(u.size() * numbers_of_sample);
         for (const PrimarySample& one : u)
@@ -207,8 +209,8 @@ CRESCENT_EXPORT(user_checked)()->void {
     respond(out);
 }
 
-/// {sampler, surface, light, wo: [one], n} -> {case, draws: [[x, y, the root of its share of the largest weight]], below:
-/// how many drew nothing or fell below the horizon, seconds: of those draws}.
+/// {sampler, surface, light, wo: [one], n} -> {case, draws: [[x, y, the root of its share of the largest weight]],
+/// below: how many drew nothing or fell below the horizon, seconds: of those draws}.
 CRESCENT_EXPORT(user_drawn)()->void {
     const ordered_json query = request();
     const CheckCase at = cases_of(query).front();
@@ -225,7 +227,10 @@ CRESCENT_EXPORT(user_drawn)()->void {
     ordered_json out = {{"case", at.text()}, {"draws", ordered_json::array()}};
     std::size_t below = 0;
     for (std::size_t k = 0; k < draws.size(); ++k) {
-        if (!(draws[k].pdf > 0 && draws[k].wi.z > 0)) { ++below; continue; }
+        if (!(draws[k].pdf > 0 && draws[k].wi.z > 0)) {
+            ++below;
+            continue;
+        }
         ordered_json one = disk.place(draws[k].wi);
         one.push_back(largest > 0 && std::isfinite(weight[k]) ? std::sqrt(weight[k] / largest) : 0);
         out["draws"].push_back(std::move(one));
@@ -235,8 +240,8 @@ CRESCENT_EXPORT(user_drawn)()->void {
 }
 
 /// {sampler, surface, light, wo: [one], what, size} -> a picture for disk(). what: "pdf", the density; "f", f L cos;
-/// "lost", f L cos where the density is 0; "ratio", how many of 2^17 draws fell into each bin, over how many the density
-/// implies.
+/// "lost", f L cos where the density is 0; "ratio", how many of 2^17 draws fell into each bin, over how many the
+/// density implies.
 CRESCENT_EXPORT(user_disk)()->void {
     const ordered_json query = request();
     const CheckCase at = cases_of(query).front();
@@ -265,12 +270,14 @@ CRESCENT_EXPORT(user_disk)()->void {
             const ordered_json place = disk.place(d.wi);
             ++counts[static_cast<std::size_t>(bin(place[1].get<double>()) * bins + bin(place[0].get<double>()))];
         }
-        constexpr int fine = 6;  // points of a bin, each way
+        constexpr int fine = 6;                                             // points of a bin, each way
         const double area = 2 * (2.0 / bins / fine) * (2.0 / bins / fine);  // sr; the disk's radius is 1
         for (int j = 0; j < bins * fine; ++j)
             for (int i = 0; i < bins * fine; ++i)
-                if (const auto wi = disk.direction((2.0 * i + 1) / (bins * fine) - 1, (2.0 * j + 1) / (bins * fine) - 1))
-                    due[static_cast<std::size_t>((j / fine) * bins + i / fine)] += pdf(*wi) * area * static_cast<double>(n);
+                if (const auto wi =
+                        disk.direction((2.0 * i + 1) / (bins * fine) - 1, (2.0 * j + 1) / (bins * fine) - 1))
+                    due[static_cast<std::size_t>((j / fine) * bins + i / fine)] +=
+                        pdf(*wi) * area * static_cast<double>(n);
         return paint_ratio(disk, size, [&](double x, double y) {
             const auto k = static_cast<std::size_t>(bin(y) * bins + bin(x));
             return counts[k] + due[k] < 25 ? 1 : counts[k] / std::max(due[k], 1.0);  // too few to tell
