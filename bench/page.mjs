@@ -54,5 +54,5 @@ for (let turn = 0; turn < times; ++turn) {
   }
 }
 for (const row of Object.values(best)) console.log(JSON.stringify(row));
-for (let response = api.say("prepare_reference"); response.includes("more"); response = api.say("go_on"));
+api.say("prepare_reference");
 console.log(JSON.stringify({ commit, engine: `node ${process.version}, V8 ${process.versions.v8}`, reference: page("reference_tile", []) }));

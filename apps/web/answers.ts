@@ -27,6 +27,15 @@ export class Asker {
   /** The reference's picture, box by box as it is computed. */
   photograph(put: (box: Box, bytes: ArrayBuffer) => void): void { void this.model.photograph(this.opening, this.size, put); }
 
+  /** The arms of a lesson as strips of one small picture. */
+  async strips(arms: readonly string[], n: number, width: number, height: number): Promise<ImageData[]> {
+    const all = [...builtIn, ...arms.filter((arm) => !builtIn.includes(arm))]; // as the experiment has them, and then those that are set
+    const scene = this.opening.text.split(/^(?=\[)/m).filter((part) => !/^\[+(exponent|furnaces|plates|assertions|regions)/.test(part)).join("").replace(/^(published|note_evidence).*$/gm, "");
+    const opening = { ...this.opening, text: scene, set: [`image.width=${width}`, `image.height=${height}`, ...all.slice(builtIn.length).map((arm) => `arms.${arm}.n=[${n}]`)] };
+    const { bytes } = await this.model.pool.ask({ kind: "strips", arms: arms.map((arm) => all.indexOf(arm)), n, width, height, opening }, true);
+    return bytes!.map((one) => new ImageData(new Uint8ClampedArray(one), one.byteLength / 4 / height, height));
+  }
+
   private opened(set: readonly string[], arms: readonly string[]): Opening {
     const extra = [...new Set(arms)].filter((arm) => !builtIn.includes(arm)).map((arm) => `arms.${arm}.n=[16, 64]`);
     return { ...this.opening, set: [...set, ...extra] };

@@ -1,8 +1,9 @@
 // One instance of the WebAssembly module, as apps/web/api.h describes it. All computation happens in the module.
 
-/** The kinds of error of the core: "input" is the user's mistake, "memory" and "bug" are not. */
+/** The kinds of error: "input" is the user's mistake, "user" one in the user's sampler; "memory" and "bug" are not. */
 export class DoorError extends Error {
-  constructor(readonly kind: string, text: string) {
+  /** `lines`: places in the script of a worker, line and column, of an error in the user's sampler. */
+  constructor(readonly kind: string, text: string, readonly lines?: [number, number][]) {
     super(text);
   }
 
@@ -17,7 +18,7 @@ export class DoorError extends Error {
 export interface Box { x0: number; y0: number; x1: number; y1: number }
 export const pixelsOf = (b: Box): number => (b.x1 - b.x0) * (b.y1 - b.y0);
 
-type Call = (...numbers: number[]) => number;
+export type Call = (...numbers: number[]) => number;
 const text = new TextDecoder();
 
 /** The part of WASI that the C++ library needs: no files, no real clock, no input. */
@@ -43,26 +44,24 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
 }
 
-const unwinding = 1, rewinding = 2; // returned by asyncify_get_state()
+/** What the module calls of the user's sampler, apps/web/user_sampler.cpp. */
+export type UserCalls = (memory: () => WebAssembly.Memory) => { user_sample: Call; user_pdf: Call };
+const noUser: UserCalls = () => {
+  const none: Call = () => { throw new DoorError("bug", "there is no sampler of the user here"); };
+  return { user_sample: none, user_pdf: none };
+};
 
 export class Api {
   private readonly calls: Record<string, Call>;
   private readonly memory: WebAssembly.Memory;
-  private paused: (() => number) | undefined; // continues a call that left the module, apps/web/pause.h
-  private room = 0; // where that call keeps its locals
 
-  constructor(module: WebAssembly.Module) {
+  constructor(module: WebAssembly.Module, user: UserCalls = noUser) {
     const memory = (): WebAssembly.Memory => this.memory;
     const failed = (kind: number, kindSize: number, at: number, size: number): never => {
       throw new DoorError(this.words(kind, kindSize), this.words(at, size));
     };
     const system = wasi(memory);
-    const pause = (): void => {
-      const call = this.calls;
-      if (call["asyncify_get_state"]!() === rewinding) call["asyncify_stop_rewind"]!();
-      else call["asyncify_start_unwind"]!((this.room = call["pause_buffer"]!()));
-    };
-    const imports: WebAssembly.Imports = { api: { failed, pause }, wasi_snapshot_preview1: {} };
+    const imports: WebAssembly.Imports = { api: { failed, ...user(memory) }, wasi_snapshot_preview1: {} };
     for (const { module: from, name } of WebAssembly.Module.imports(module))
       if (from === "wasi_snapshot_preview1") imports[from]![name] = system[name]!;
     const instance = new WebAssembly.Instance(module, imports);
@@ -81,9 +80,7 @@ export class Api {
   /** A call that takes and returns numbers. A trap becomes an error with a message. */
   number(name: string, ...given: number[]): number {
     try {
-      const info = this.calls[name]!(...given);
-      if (this.calls["asyncify_get_state"]!() === unwinding) this.pauseIn(name, given);
-      return info;
+      return this.calls[name]!(...given);
     } catch (error) {
       if (error instanceof DoorError) throw error;
       const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
@@ -91,30 +88,16 @@ export class Api {
     }
   }
 
-  private pauseIn(name: string, given: number[]): void {
-    this.calls["asyncify_stop_unwind"]!();
-    this.paused = (): number => {
-      this.paused = undefined;
-      this.calls["asyncify_start_rewind"]!(this.room);
-      return this.number(name, ...given);
-    };
-  }
-
-  /** Whether a call is paused: only its continuation may be called then. */
-  get waits(): boolean { return this.paused !== undefined; }
-
   private request(request: unknown): void {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
     const at = this.number("request_buffer", bytes.length);
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
   }
 
-  /** A call that returns text. A paused one reports that more is left, like a request in parts. */
+  /** A call that returns text. */
   say(name: string, request?: unknown, ...given: number[]): string {
     if (request !== undefined) this.request(request);
-    if (this.paused && name === "go_on") this.paused();
-    else this.number(name, ...given);
-    if (this.paused) return '{"more":1}';
+    this.number(name, ...given);
     return this.words(this.number("response_data"), this.number("response_size"));
   }
 
@@ -126,12 +109,6 @@ export class Api {
   bytes(name: string, size: number, ...given: number[]): ArrayBuffer {
     const at = this.number(name, ...given);
     return this.memory.buffer.slice(at, at + size);
-  }
-
-  /** The same with a text request. */
-  bytesAbout(name: string, request: unknown, size: number, ...given: number[]): ArrayBuffer {
-    this.request(request);
-    return this.bytes(name, size, ...given);
   }
 
   /** Copies bytes into the module, for the next call. */

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "disk.h"
-#include "pause.h"
 #include "tests/known_samplers/faulty/planted.h"
 
 namespace crescent::web {
@@ -41,8 +40,7 @@ ordered_json verdict_fields(const Verdict& v) {
 CRESCENT_EXPORT(checked)()->void {
     const ordered_json query = request();
     const std::string name = query.at("sampler").get<std::string>();
-    std::vector<CheckCase> check_cases = cases_named(name, query.at("theta").get<double>());
-    for (CheckCase& t : check_cases) t.adapter = paused(t.adapter);
+    const std::vector<CheckCase> check_cases = cases_named(name, query.at("theta").get<double>());
     ProgressMonitor monitor;
     TestSettings settings = TestSettings::quick();
     if (query.contains("evaluations"))
@@ -87,13 +85,12 @@ CRESCENT_EXPORT(density_disk)()->void {
     const ordered_json query = request();
     const CheckCase check_case =
         cases_named(query.at("sampler").get<std::string>(), query.at("theta").get<double>()).front();
-    begin(painted(
-        Disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z}), query.at("size").get<int>(), [=](Vec3d wi) {
-            const Pair at{check_case.wo, wi};
-            double p = 0;
-            check_case.adapter->exact_pdf(0, {&at, 1}, {&p, 1});
-            return p;
-        }));
+    paint_disk(Disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z}), query.at("size").get<int>(), [&](Vec3d wi) {
+        const Pair at{check_case.wo, wi};
+        double p = 0;
+        check_case.adapter->exact_pdf(0, {&at, 1}, {&p, 1});
+        return p;
+    });
 }
 
 }  // namespace crescent::web

@@ -44,11 +44,13 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
 }
 
 /** Paints a sampler's density and its draws when there is room for it; skipped if it is no longer on the page. */
-async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
+export async function paintDraws(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
   const wanted = (): boolean => canvas.isConnected;
-  const density = await model.disk(wanted, "density_disk", { sampler: value, theta }, size);
-  const drawn = await model.parts<{ draws: [number, number][]; case: string }>(wanted, "drawn", { sampler: value, theta, n: draws });
-  if (!density || !drawn) return;
+  if (!wanted()) return;
+  const { bytes } = await model.desk.ask({ kind: "disk", call: "density_disk", request: { sampler: value, theta, size }, size });
+  const drawn = (await model.desk.ask({ kind: "ask", call: "drawn", request: { sampler: value, theta, n: draws } })).response as { draws: [number, number][]; case: string };
+  if (!wanted()) return;
+  const density = new ImageData(new Uint8ClampedArray(bytes![0]!), size, size);
   canvas.setAttribute("aria-label", `${words}: ${drawn.draws.length} draws over the density that it claims, ${drawn.case}`);
   const pen = canvas.getContext("2d")!;
   pen.putImageData(density, 0, 0);
@@ -64,7 +66,7 @@ async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: 
 
 function picture(model: Model, option: Option, theta: number): HTMLElement {
   const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": `${option.words}: its draws` });
-  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question works without it
+  void Promise.resolve().then(() => paintDraws(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question works without it
   return el("figure", {}, canvas, el("figcaption", {}, el("b", {}, option.words)));
 }
 

@@ -33,7 +33,10 @@ private:
 };
 
 /// Returns a picture of a disk `size` pixels across, for disk(): values in turbo colours on a logarithmic scale of four
-/// decades below the largest. The parts of a request, parts.h; the last one returns {}.
-Parts painted(const Disk& disk, int size, const std::function<double(Vec3d)>& value);
+/// decades below the largest. Responds {}.
+void paint_disk(const Disk& disk, int size, const std::function<double(Vec3d)>& value);
+
+/// The same of ratios at places of the disk: two hues, full at a half and at twice, neither at 1.
+void paint_ratio(const Disk& disk, int size, const std::function<double(double x, double y)>& ratio);
 
 }  // namespace crescent::web

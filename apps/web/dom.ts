@@ -24,6 +24,9 @@ export function made(markup: string): DocumentFragment {
 /** Numbers in words with their minus sign; commands, which are typed, keep the hyphen. */
 export const minus = (words: string): string => words.replace(/(^|[\s(=,[±])-(?=\.?\d)/g, "$1−");
 
+/** The sign that the program writes as +-. */
+export const plusMinus = (words: string): string => words.replaceAll("+-", "±");
+
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "parts.h"
+#include "user_sampler.h"
 
 namespace crescent::web {
 
@@ -28,25 +29,6 @@ template <class F> void put_planes(F& film, const TileBox& box, const std::byte*
         from += pixels_of(box) * 4;
     }
 }
-/// Allocates the reference, plane by plane.
-void reference_room() {
-    using Plane = std::vector<float> ReferenceFilm::*;
-    Parts parts;
-    for (const Plane plane :
-        {&ReferenceFilm::r, &ReferenceFilm::g, &ReferenceFilm::b, &ReferenceFilm::error, &ReferenceFilm::y})
-        parts.emplace_back([=] {
-            count_work(bench().pixels() / hashed);
-            (bench().reference.*plane).resize(bench().pixels());
-        });
-    parts.emplace_back([] {
-        ReferenceFilm& film = bench().reference;
-        film.width = bench().experiment.image.width, film.height = bench().experiment.image.height;
-        film.s = bench().scene.s();
-        respond(ordered_json::object());
-    });
-    begin(std::move(parts));
-}
-
 template <class F> std::vector<std::byte>& all_planes(F& film) {
     std::vector<std::byte>& out = scratch<std::byte>();
     out.clear();
@@ -61,7 +43,7 @@ template <class F> std::vector<std::byte>& all_planes(F& film) {
 CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const void* {
     Bench& b = bench();
     const TileBox box = box_of(x0, y0, x1, y1);
-    const std::string& sampler = b.experiment.arms.at(static_cast<std::size_t>(arm)).sampler;
+    const SamplerRef sampler = sampler_of(b.experiment.arms.at(static_cast<std::size_t>(arm)));
     Film film = film_over(box, sampler, static_cast<std::uint64_t>(n), b.experiment.seed);
     std::vector<std::byte>& out = all_planes(film);
     std::vector<std::int32_t> tail;
@@ -96,30 +78,18 @@ CRESCENT_EXPORT(tile_buffer)(std::size_t size)->void* {
     return scratch<std::byte>().data();
 }
 
-/// Allocates film `index`, plane by plane, instead of all at once in begin(); -1 is the reference. Returns {} when it
-/// is done.
+/// Allocates film `index`, the reference for -1; its contents stay if it has the size of the image. Returns {}.
 CRESCENT_EXPORT(film_buffer)(int index)->void {
-    if (index < 0) return reference_room();
     Bench& b = bench();
-    const auto at = static_cast<std::size_t>(index);
-    if (b.slots.size() <= at) b.slots.resize(at + 1);
-    Parts parts;
-    const auto need = [&](auto plane) {
-        if ((b.slots[at].film.*plane).size() == b.pixels()) return;
-        parts.emplace_back([=] {
-            count_work(bench().pixels() / hashed);
-            (slot(index).film.*plane).assign(bench().pixels(), 0);
-        });
-    };
-    for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::second_moment, &Film::var, &Film::largest})
-        need(plane);
-    for (const auto plane : {&Film::horizon, &Film::light_hits}) need(plane);
-    parts.emplace_back([=] {
-        slot(index).film.width = bench().experiment.image.width,
-        slot(index).film.height = bench().experiment.image.height;
-        respond(ordered_json::object());
-    });
-    begin(std::move(parts));
+    const int width = b.experiment.image.width, height = b.experiment.image.height;
+    if (index < 0) {
+        if (b.reference.size() != b.pixels()) b.reference = ReferenceFilm(width, height, b.scene.s());
+    } else {
+        const auto at = static_cast<std::size_t>(index);
+        if (b.slots.size() <= at) b.slots.resize(at + 1);
+        if (b.slots[at].film.y.size() != b.pixels()) b.slots[at].film = Film(width, height, 0);
+    }
+    respond(ordered_json::object());
 }
 
 /// Assigns film `index` to this arm at n; its old contents stay until tiles overwrite them.
@@ -141,7 +111,6 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     Bench& b = bench();
     Film& film = slot(index).film;
     const TileBox box = box_of(x0, y0, x1, y1);
-    count_work(pixels_of(box) * put_cost);
     const std::byte* from = scratch<std::byte>().data();
     put_planes(film, box, from);
     const std::byte* rest = from + pixels_of(box) * 4 * film.planes().size();
@@ -160,7 +129,6 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
     ensure(bench().reference.size() == bench().pixels(), "film_buffer(-1) came before");
     const TileBox box = box_of(x0, y0, x1, y1);
-    count_work(pixels_of(box) * put_cost);
     put_planes(bench().reference, box, scratch<std::byte>().data());
 }
 

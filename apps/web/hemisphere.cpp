@@ -42,9 +42,7 @@ std::string mean_chart(const std::vector<double>& mean, std::optional<double> re
     return chart.str();
 }
 
-constexpr std::uint64_t draw_cost = 400;  // cost of reporting one draw, in samples of a pixel
-
-/// The response for a pixel, part by part.
+/// The response for a pixel.
 struct OpenPixelReply {
     std::shared_ptr<const OpenPixel> open;
     Disk view;
@@ -55,7 +53,6 @@ struct OpenPixelReply {
     std::uint64_t under = 0;
 
     void draw(const std::string& sampler, std::uint64_t n) {
-        count_work(n * directions_per_sample(sampler));
         all = open->samples(sampler, n, bench().experiment.seed);
         const auto most = std::ranges::max_element(all, {}, &PixelSample::x);
         if (most != all.end() && most->x > 0) largest = &*most;
@@ -63,9 +60,8 @@ struct OpenPixelReply {
         out = {{"shape", bench().experiment.shapes.at(shape).name}, {"mirror", view.place(open->mirror())},
             {"draws", ordered_json::array()}};
     }
-    void describe_draws(std::size_t from, std::size_t to) {
-        count_work((to - from) * draw_cost);
-        for (const PixelSample& s : std::span(all).subspan(from, to - from)) {
+    void describe_draws() {
+        for (const PixelSample& s : all) {
             if (s.wi.z <= 0) ++under;
             ordered_json at = view.place({s.wi.x, s.wi.y, s.wi.z});
             at.push_back(
@@ -103,21 +99,13 @@ CRESCENT_EXPORT(pixel)()->void {
     const int i = query.at("i").get<int>(), j = query.at("j").get<int>();
     const std::shared_ptr<const OpenPixel> open = open_pixel(i, j);
     if (!open) return respond(ordered_json::object());
-    const auto of = std::make_shared<OpenPixelReply>(
-        OpenPixelReply{open, Disk(open->mirror()), query.at("css").get<std::string>(), {}});
-    const auto n = query.at("n").get<std::uint64_t>();
-    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    OpenPixelReply reply{open, Disk(open->mirror()), query.at("css").get<std::string>(), {}};
+    reply.draw(arm_of(query.at("arm").get<std::string>()).sampler, query.at("n").get<std::uint64_t>());
+    reply.describe_draws();
+    const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
     const bool known = query.at("reference").get<bool>();
-    Parts parts{[=] { of->draw(sampler, n); }};
-    const std::size_t draws = n * directions_per_sample(sampler), block = most_of_part / draw_cost;
-    for (std::size_t from = 0; from < draws; from += block)
-        parts.emplace_back([=] { of->describe_draws(from, std::min(draws, from + block)); });
-    parts.emplace_back([=] {
-        const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
-        of->describe_mean(known ? std::optional<double>(bench().reference.y.at(at)) : std::nullopt);
-    });
-    parts.emplace_back([=] { of->send(); });
-    begin(std::move(parts));
+    reply.describe_mean(known ? std::optional<double>(bench().reference.y.at(at)) : std::nullopt);
+    reply.send();
 }
 
 /// {i, j, arm, what, size} -> the picture of a hemisphere for disk(), `size` pixels across: f L cos, or if `what` is
@@ -126,12 +114,12 @@ CRESCENT_EXPORT(hemisphere)()->void {
     const ordered_json query = request();
     const std::shared_ptr<const OpenPixel> open = open_pixel(query.at("i").get<int>(), query.at("j").get<int>());
     const int size = query.at("size").get<int>();
-    if (!open) return begin(painted(Disk({0, 0, 1}), size, [](Vec3d) { return 0; }));
+    if (!open) return paint_disk(Disk({0, 0, 1}), size, [](Vec3d) { return 0; });
     const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
     const bool pdf = query.at("what").get<std::string>() == "pdf";
-    begin(painted(Disk(open->mirror()), size, [=](Vec3d wi) {
+    paint_disk(Disk(open->mirror()), size, [&](Vec3d wi) {
         return pdf ? open->pdf(sampler, wi) : open->f(wi, open->disk_met(wi)) * open->light(wi) * wi.z;
-    }));
+    });
 }
 
 }  // namespace crescent::web

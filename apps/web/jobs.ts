@@ -1,17 +1,28 @@
-// The jobs of a worker, and their execution in any instance: the same code in a worker and on the page's own thread.
-import { Box, Api, DoorError, pixelsOf } from "./api";
+// The jobs of a worker, and their execution.
+import { Api, Box, DoorError, pixelsOf, UserCalls } from "./api";
 
 export interface Opening { file: string; text: string; set: string[]; published: string }
+
+/** What is painted of a film: apps/web/pictures.cpp. */
+export interface Paint { picture: number; index: number; other: number; top: number; times: number }
 
 export type Job =
   | { kind: "open"; opening: Opening }
   | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
   | { kind: "photograph"; box: Box; opening: Opening } // of the reference
-  | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: for another experiment
+  | { kind: "strips"; arms: number[]; n: number; width: number; height: number; opening: Opening } // a picture, of each arm a strip
+  | { kind: "ask"; call: string; request: unknown; opening?: Opening; given?: number[] } // opening: for another experiment
+  // The rest is for the worker that assembles the films.
+  | { kind: "call"; call: string; given: number[] }
+  | { kind: "words"; call: string; request: unknown } // an answer that is no JSON
+  | { kind: "put"; films: number[]; box: Box; bytes: ArrayBuffer[] } // tiles of films; of the reference, -1
+  | { kind: "paint"; paint: Paint; box: Box }
+  | { kind: "disk"; call: string; request: unknown; size: number };
 
 export type Answer = { bytes?: ArrayBuffer[]; response?: unknown };
-export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string }; size?: number }; // size: of its instance
+export interface Fault { kind: string; text: string; lines?: [number, number][] } // lines: of the places in the script where it happened
+export type Reply = { id: number; answer?: Answer; error?: Fault; size?: number }; // size: of its instance
 
 const filmPlanes = 9, referencePlanes = 5;
 
@@ -28,14 +39,44 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" }>): Answer {
     case "photograph": {
       const { x0, y0, x1, y1 } = job.box;
       api.number("reference_tile", x0, y0, x1, y1);
-      return { bytes: [api.bytes("paint", 4 * pixelsOf(job.box), 0, -1, 0, 1, x0, y0, x1, y1)] };
+      return { bytes: [api.bytes("paint", 4 * pixelsOf(job.box), 0, -1, 0, 1, 1, x0, y0, x1, y1)] };
+    }
+    case "strips": {
+      const { arms, n, width, height } = job;
+      return { bytes: arms.map((arm, k) => {
+        const ends = [k, k + 1].map((part) => Math.round((part * width) / arms.length)), x0 = ends[0]!, x1 = ends[1]!;
+        api.give(api.bytes("tile", 4 * ((filmPlanes + 1) * (x1 - x0) * height + 1), arm, n, x0, 0, x1, height));
+        api.number("begin", 0, arm, n);
+        api.number("put", 0, x0, 0, x1, height);
+        return api.bytes("paint", 4 * (x1 - x0) * height, 0, 0, 0, 1, 1, x0, 0, x1, height);
+      }) };
     }
     case "ask":
-      return { response: api.ask(job.call, job.request) };
+      return { response: api.ask(job.call, job.request, ...(job.given ?? [])) };
+    case "words":
+      return { response: api.say(job.call, job.request) };
+    case "call":
+      api.number(job.call, ...job.given);
+      return {};
+    case "put": {
+      const { x0, y0, x1, y1 } = job.box;
+      job.bytes.forEach((bytes, k) => {
+        api.give(bytes);
+        if (job.films[k]! < 0) api.number("put_reference", x0, y0, x1, y1);
+        else api.number("put", job.films[k]!, x0, y0, x1, y1);
+      });
+      return {};
+    }
+    case "paint": {
+      const { x0, y0, x1, y1 } = job.box, { picture, index, other, top, times } = job.paint;
+      return { bytes: [api.bytes("paint", 4 * pixelsOf(job.box), picture, index, other, top, times, x0, y0, x1, y1)] };
+    }
+    case "disk":
+      api.ask(job.call, job.request);
+      return { bytes: [api.bytes("disk", 4 * job.size * job.size)] };
   }
 }
 
-const goesOn = (answer: Answer): boolean => typeof answer.response === "object" && answer.response !== null && "more" in answer.response;
 const readsReference = (job: Job): boolean => job.kind === "reference" || job.kind === "photograph";
 
 /** An instance that opens the experiment of a job, and opens it again after a failure. */
@@ -43,92 +84,49 @@ export class Answering {
   private api: Api;
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the api
-  private ready = false; // ready to compute its reference
-  private steps: (() => Answer)[] = []; // of the current job: the last step returns its answer
-  private goes = false; // the first of them has parts left
-  worked = 0; // the work of the last part, in samples, and of the largest so far
-  most = 0;
+  private ready = false; // to compute its reference
 
   /** `kept`: the number of pixels for which it keeps the hits of primary rays. */
-  constructor(private readonly module: WebAssembly.Module, private readonly kept = 0) { this.api = this.made(); }
+  constructor(private readonly module: WebAssembly.Module, private readonly kept: number, private readonly user?: { calls: UserCalls; numbers: number; context: boolean }) {
+    this.api = this.made();
+  }
 
   private made(): Api {
-    const api = new Api(this.module);
+    const { user } = this, api = new Api(this.module, user?.calls);
     api.number("keep_points", this.kept);
+    if (user) api.number("user_takes", user.numbers, user.context ? 1 : 0);
     return api;
   }
 
   get size(): number { return this.api.size; }
 
-  /** All parts of a job. */
   answer(job: Job): Answer {
-    let answer = this.begin(job);
-    while (!answer) answer = this.goOn();
-    return answer;
-  }
-
-  /** The experiment of jobs that name no opening. */
-  about(opening: Opening): void { this.last = opening; }
-
-  /** The first part of a job; undefined if more are left. Unfinished parts from before are dropped. */
-  begin(job: Job): Answer | undefined {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
-    if (this.api.waits) this.renew();
-    this.goes = false;
-    this.steps = [];
-    const known = !about || about === this.here || JSON.stringify(about) === JSON.stringify(this.here);
-    if (!known) this.steps.push(() => this.open(about));
-    if (readsReference(job) && !(known && this.ready)) this.steps.push(() => this.prepare());
-    this.steps.push(() => (job.kind === "open" ? {} : perform(this.api, job)));
-    return this.goOn();
-  }
-
-  /** The next part of the current job. */
-  goOn(): Answer | undefined {
-    return this.part(() => {
-      const answer = this.goes ? { response: this.api.ask("go_on") } : this.steps[0]!();
-      this.goes = goesOn(answer);
-      if (this.goes) return undefined;
-      this.steps.shift();
-      return this.steps.length === 0 ? answer : undefined;
-    });
-  }
-
-  private open(about: Opening): Answer {
-    this.here = undefined;
-    this.ready = false;
-    this.api.ask("open", about);
-    this.here = about;
-    return {};
-  }
-
-  private prepare(): Answer {
-    this.ready = true;
-    return { response: this.api.ask("prepare_reference") };
-  }
-
-  private part(work: () => Answer | undefined): Answer | undefined {
-    this.worked = 0;
     try {
-      const answer = work();
-      this.worked = this.api.number("worked");
-      this.most = Math.max(this.most, this.worked);
-      return answer;
+      if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) this.open(about);
+      if (readsReference(job) && !this.ready) {
+        this.api.ask("prepare_reference");
+        this.ready = true;
+      }
+      return job.kind === "open" ? {} : perform(this.api, job);
     } catch (error) {
-      this.renew();
+      this.api = this.made(); // a failed call leaves its instance in an intermediate state
+      this.here = undefined;
+      this.ready = false;
       throw error;
     }
   }
 
-  private renew(): void {
-    this.api = this.made();
+  private open(about: Opening): void {
     this.here = undefined;
     this.ready = false;
+    this.api.ask("open", about);
+    this.here = about;
   }
 }
 
-export function failure(error: unknown): { kind: string; text: string } {
-  if (error instanceof DoorError) return { kind: error.kind, text: error.message };
+export function failure(error: unknown): Fault {
+  if (error instanceof DoorError) return { kind: error.kind, text: error.message, ...(error.lines ? { lines: error.lines } : {}) };
   return { kind: "bug", text: String(error) };
 }

@@ -18,7 +18,7 @@ double rms_of(const std::vector<double>& a, const std::vector<double>& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// RMSE of an arm over a box on several seeds, accumulated part by part.
+/// RMSE of an arm over a box on several seeds.
 struct Measuring {
     explicit Measuring(const ordered_json& query)
         : box(tile_of(requested_box(query))),
@@ -74,7 +74,7 @@ public:
     std::vector<std::vector<double>> y;  // by seed
 };
 
-/// The largest sample of a box, part by part; among equal ones, the first from the bottom-left.
+/// The largest sample of a box; among equal ones, the first from the bottom-left.
 struct Largest {
     float x = 0;
     int i = 0, j = 0;
@@ -105,20 +105,15 @@ struct Largest {
 struct Furnaces {
     explicit Furnaces(std::string of) : name(std::move(of)) {}
 
-    void draw(FurnacePlan plan, std::uint64_t n) {
+    void add(FurnacePlan plan, std::uint64_t n) {
         plan.n = n;
-        count_work(n * furnace_cost);
         ProgressMonitor monitor;
-        draws = draw_furnace(bench().experiment, plan, "", monitor);
-    }
-    void read() {
-        count_work(draws.samples.size() * furnace_cost);
-        add(read_furnace(std::move(draws)));
+        describe(read_furnace(draw_furnace(bench().experiment, plan, "", monitor)));
     }
     void send() const { respond(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}}); }
 
 private:
-    void add(const FurnaceResult& f) {
+    void describe(const FurnaceResult& f) {
         const double off = std::fabs(f.measured - f.expected), rounding = std::ldexp(f.expected * double(f.n), -24);
         std::string words = f.name;
         std::ranges::replace(words, '_', ' ');
@@ -131,7 +126,6 @@ private:
         else if (off > 4 * f.se) why = "bug";
     }
     std::string name, why = "none";
-    FurnaceDraws draws;  // of the furnace that is next
     ordered_json lines = ordered_json::array();
 };
 
@@ -141,13 +135,12 @@ private:
 /// that is not the arm's; mean: of the reference's Y; met: the share of directions that met a light.
 CRESCENT_EXPORT(measure)()->void {
     const ordered_json query = request();
-    const auto m = std::make_shared<Measuring>(query);
-    Parts parts{prepare_reference};
-    for (const TileBox& part : parts_of(m->box, reference_cost)) parts.emplace_back([=] { m->add_reference(part); });
-    for (const TileBox& part : parts_of(m->box, cost_of(m->sampler, m->n)))
-        for (std::size_t k = 0; k < m->y.size(); ++k) parts.emplace_back([=] { m->add_film(part, k); });
-    parts.emplace_back([=] { m->send(); });
-    begin(std::move(parts));
+    Measuring m(query);
+    prepare_reference();
+    for (const TileBox& part : parts_of(m.box, reference_cost)) m.add_reference(part);
+    for (const TileBox& part : parts_of(m.box, cost_of(m.sampler, m.n)))
+        for (std::size_t k = 0; k < m.y.size(); ++k) m.add_film(part, k);
+    m.send();
 }
 
 /// {arm, n, box} -> the largest sample of a box: the factors of X = f L cos / p, which factor is the largest, its
@@ -156,12 +149,10 @@ CRESCENT_EXPORT(firefly)()->void {
     const ordered_json query = request();
     const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
     const auto n = query.at("n").get<std::uint64_t>();
-    const auto most = std::make_shared<Largest>();
-    Parts parts;
+    Largest most;
     for (const TileBox& part : parts_of(tile_of(requested_box(query)), cost_of(sampler, n)))
-        parts.emplace_back([=] { most->look(part, sampler, n); });
-    parts.emplace_back([=] { most->send(sampler, n); });
-    begin(std::move(parts));
+        most.look(part, sampler, n);
+    most.send(sampler, n);
 }
 
 /// {n, name} -> the value of that furnace of the experiment at n samples and why; a line for each furnace. tail: it
@@ -171,14 +162,9 @@ CRESCENT_EXPORT(firefly)()->void {
 CRESCENT_EXPORT(furnaces_of)()->void {
     const ordered_json query = request();
     const auto n = query.at("n").get<std::uint64_t>();
-    const auto found = std::make_shared<Furnaces>(query.at("name").get<std::string>());
-    Parts parts;
-    for (const FurnacePlan& plan : bench().experiment.furnaces) {
-        parts.emplace_back([=] { found->draw(plan, n); });
-        parts.emplace_back([=] { found->read(); });
-    }
-    parts.emplace_back([=] { found->send(); });
-    begin(std::move(parts));
+    Furnaces found(query.at("name").get<std::string>());
+    for (const FurnacePlan& plan : bench().experiment.furnaces) found.add(plan, n);
+    found.send();
 }
 
 }  // namespace crescent::web

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "parts.h"
+#include "user_sampler.h"
 
 namespace crescent::web {
 
@@ -28,9 +29,8 @@ std::string class_of(const std::string& arm) {
 }
 
 /// Merges the largest samples of a box with those of the boxes before it.
-void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
+void keep_largest(const TileBox& box, const SamplerRef& sampler, const TailPlan& plan, std::vector<float>& largest) {
     const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
-    count_work(pixels_of(box) * cost_of(sampler, tail_cost * plan.n));
     ProgressMonitor monitor;
     std::uint64_t drawn = 0;
     const std::vector<float> here =
@@ -74,45 +74,33 @@ ordered_json metrics_of(const Slot& s) {
 
 /// Film `index` -> {key, metrics: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
 CRESCENT_EXPORT(metrics)(int index)->void {
-    const auto out = std::make_shared<ordered_json>();
-    const auto hash = std::make_shared<FilmHash>();
-    Parts parts{[=] {
-        count_work(bench().pixels() * metric_cost);
-        *out = metrics_of(slot(index));
-    }};
-    for (std::size_t plane = 0; plane < slot(index).film.planes().size(); ++plane)
-        parts.emplace_back([=] {
-            count_work(bench().pixels() / hashed);
-            hash->add(slot(index).film.planes()[plane]);
-        });
-    parts.emplace_back([=] {
-        (*out)["hash"] = hash->text();
-        respond(*out);
-    });
-    begin(std::move(parts));
+    ordered_json out = metrics_of(slot(index));
+    out["hash"] = hash(slot(index).film);
+    respond(out);
 }
 
 /// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box.
 CRESCENT_EXPORT(tail)()->void {
     const ordered_json query = request();
     const Box box = requested_box(query);
-    const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
+    const SamplerRef sampler = sampler_of(arm_of(query.at("arm").get<std::string>()));
     const TailPlan plan = tail_plan(box);
-    const auto largest = std::make_shared<std::vector<float>>();
-    Parts parts;
+    std::vector<float> largest;
     if (plan.kept > 0)
-        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
-            parts.emplace_back([=] { keep_largest(part, sampler, plan, *largest); });
-    parts.emplace_back([=] { send_tail(*largest); });
-    begin(std::move(parts));
+        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler.sampler, tail_cost * plan.n)))
+            keep_largest(part, sampler, plan, largest);
+    send_tail(largest);
 }
 
-/// {region, series: [{arm, points: [[n, rmse], ...]}]} -> RMSE against N as SVG, with N^(-1/2) from the first points.
+/// {region, series: [{arm, points: [[n, rmse], ...], band: [[n, low, high], ...]}]} -> RMSE against N as SVG, with
+/// N^(-1/2) from the first points.
 CRESCENT_EXPORT(ladder_chart)()->void {
     const ordered_json query = request();
     std::vector<double> ns, values;
     for (const auto& series : query.at("series"))
         for (const auto& p : series.at("points")) ns.push_back(p.at(0)), values.push_back(p.at(1));
+    for (const auto& series : query.at("series"))
+        for (const auto& b : series.at("band")) values.push_back(b.at(1)), values.push_back(b.at(2));
     Axis x = log_axis("N, samples per pixel", ns);
     x.ticks = ns;
     std::ranges::sort(x.ticks);
@@ -129,6 +117,9 @@ CRESCENT_EXPORT(ladder_chart)()->void {
         for (const auto& p : series.at("points")) points.push_back({p.at(0), p.at(1)});
         if (points.empty()) continue;
         const auto arm = series.at("arm").get<std::string>();
+        std::vector<double> at, low, high;
+        for (const auto& b : series.at("band")) at.push_back(b.at(0)), low.push_back(b.at(1)), high.push_back(b.at(2));
+        if (at.size() > 1) chart.band(at, low, high, "band " + class_of(arm));
         const Point first = points.front();
         if (first.y > 0) chart.line({first, {last, first.y * std::sqrt(first.x / last)}}, "dashed " + class_of(arm));
         chart.line(points, class_of(arm));

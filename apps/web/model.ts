@@ -1,9 +1,8 @@
 // The state behind the pictures: the experiment with its settings, its films at growing sample counts, its reference,
-// its metrics. One instance of the module on the page's own thread assembles the tiles; workers compute them.
-import { Box, Api, DoorError, pixelsOf } from "./api";
-import { Opening } from "./jobs";
-import { Pool } from "./pool";
-import { Turns } from "./turns";
+// its metrics. Workers compute the tiles; one of them, the desk, assembles and paints them.
+import { Box, DoorError } from "./api";
+import { Answer, Opening, Paint } from "./jobs";
+import { Desk, Pool } from "./pool";
 
 export interface Arm {
   name: string; sampler: string; n: number[]; techniques: number; summary: string; formula: string; misses: string;
@@ -25,6 +24,7 @@ export interface Tail { k?: number; se?: number; heavy?: boolean; text?: string;
 /** One picture: an arm of the experiment and its results so far. */
 export interface Shown {
   arm: number; name: string; n: number; sampleCounts: { n: number; metrics: Metrics }[]; tails: Record<string, Tail>;
+  bands: Record<string, [number, number, number][]>; // by region: N, and the 5 % and 95 % quantiles of the RMSE over seeds
 }
 
 /** The listener of the model. */
@@ -33,15 +33,22 @@ export interface Viewer {
   painted(index: number, box: Box): void; // index -1: the reference
   measured(): void;
   tailed(): void;
+  spread(): void; // over seeds
   failed(error: DoorError): void;
+}
+
+/** One pixel of all films. */
+export interface PixelValues {
+  shape: string; reference?: string; films: { y: string; error?: string; se: string; n: number; zero: string; met: string }[];
 }
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
 const referenceAfter = 64; // sample counts up to this one are computed before it
+const seedsOfBands = 8;
+const referenceCost = 2000, filmCost = 30; // of a pixel, in samples: apps/web/parts.h
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
-  api: Api;
   described!: Described;
   shown: Shown[] = [];
   referenceDone = false;
@@ -49,42 +56,33 @@ export class Model {
   startedAt = 0;
   took = 0; // ms to the last metric, and to the last film
   filmsTook = 0;
-  private readonly most: number; // samples of one part, and the cost of a pixel: of the reference; of a film, without its samples
-  private readonly referenceCost: number;
-  private readonly filmCost: number;
   private era = 0;
-  private asking: Promise<unknown> = Promise.resolve(); // requests in parts, one after another
+  private opening = false; // the desk is between two experiments
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
-  /** `api`: an instance of the module for the page's own thread. */
-  constructor(private readonly module: WebAssembly.Module, api: Api, readonly pool: Pool, readonly turns: Turns, private readonly viewer: Viewer) {
-    this.api = api;
-    this.most = this.api.number("most_of_part");
-    this.referenceCost = this.api.number("reference_cost");
-    this.filmCost = this.api.number("film_cost");
-  }
+  constructor(readonly desk: Desk, public pool: Pool, private readonly viewer: Viewer) {}
 
   private boxes(cost: number, [width, height]: readonly [number, number] = [this.described.width, this.described.height]): Box[] {
-    return this.pool.tiles(width, height, cost, this.most);
+    return this.pool.tiles(width, height, cost);
   }
   private cost(shown: Shown[], n: number): number {
-    return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques + this.filmCost, 0);
+    return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques + filmCost, 0);
   }
 
-  /** A call in parts, each in a turn that has room: one request after another. `take` is applied to the result before
-   *  the next. Undefined if it is no longer wanted. */
-  parts<T, R = T>(wanted: () => boolean, call: string, request?: unknown, given: number[] = [], take = (answer: T): R => answer as unknown as R): Promise<R | undefined> {
-    const done = this.asking.then(async () => {
-      for (let next = call; ; next = "go_on") {
-        await this.turns.pass();
-        if (!wanted()) return undefined;
-        const response = next === call ? this.api.ask<T | { more: number }>(call, request, ...given) : this.api.ask<T | { more: number }>(next);
-        this.turns.count(this.api.number("worked"));
-        if (!(response as object).hasOwnProperty("more")) return take(response as T);
-      }
-    });
-    this.asking = done.catch(() => {}); // the caller has the error
-    return done;
+  /** A request to the desk, of the experiment that is open; undefined if it is no longer wanted. */
+  private async wanted(still: () => boolean, ask: () => Promise<Answer>): Promise<Answer | undefined> {
+    if (this.opening || !still()) return undefined;
+    const answer = await ask();
+    return !this.opening && still() ? answer : undefined;
+  }
+
+  async parts<T>(still: () => boolean, call: string, request?: unknown, given: number[] = []): Promise<T | undefined> {
+    return (await this.wanted(still, () => this.desk.ask({ kind: "ask", call, request, given })))?.response as T | undefined;
+  }
+
+  /** RMSE against N as SVG. */
+  async chart(still: () => boolean, request: unknown): Promise<string | undefined> {
+    return (await this.wanted(still, () => this.desk.ask({ kind: "words", call: "ladder_chart", request })))?.response as string | undefined;
   }
 
   /** Opens, and begins to compute up to n samples per pixel of these arms; throws DoorError for invalid settings. */
@@ -92,25 +90,21 @@ export class Model {
     const era = ++this.era, sampleCounts = [...ladder.filter((sampleCount) => sampleCount > 1 && sampleCount < n), n];
     this.startedAt = performance.now();
     this.finished = this.referenceDone = false;
+    this.opening = true;
     this.pool.open({ ...opening, published: "" });
-    try {
-      this.described = this.api.ask<Described>("open", opening);
-      this.shown = arms.map((name) => {
-        const arm = this.described.arms.findIndex((a) => a.name === name);
-        return { arm, name, n: 0, sampleCounts: [], tails: {} };
-      });
-      for (const [index, s] of this.shown.entries()) {
-        if (!(await this.room(era, index))) return;
-        this.api.number("begin", index, s.arm, sampleCounts[0]!);
-      }
-    } catch (error) {
-      this.api = new Api(this.module); // a failed call leaves its instance in an intermediate state
-      throw error;
-    }
-    this.viewer.opened(this.described, this.shown);
-    await this.pool.ready;
+    const described = (await this.desk.ask({ kind: "ask", call: "open", request: opening })).response as Described;
     if (era !== this.era) return;
+    const shown = arms.map((name) => ({ arm: described.arms.findIndex((a) => a.name === name), name, n: 0, sampleCounts: [], tails: {}, bands: {} }));
+    await this.desk.ask({ kind: "call", call: "film_buffer", given: [-1] });
+    for (const [index, s] of shown.entries()) await this.desk.ask({ kind: "call", call: "begin", given: [index, s.arm, sampleCounts[0]!] });
+    if (era !== this.era) return;
+    this.described = described;
+    this.shown = shown;
+    this.opening = false;
+    this.viewer.opened(this.described, this.shown);
     try {
+      await this.pool.ready;
+      if (era !== this.era) return;
       await this.compute(era, opening, sampleCounts);
     } catch (error) {
       if (era === this.era) this.viewer.failed(error instanceof DoorError ? error : new DoorError("bug", String(error)));
@@ -120,6 +114,7 @@ export class Model {
   /** Drops the work in progress. */
   stop(): void {
     ++this.era;
+    this.opening = true;
     this.pool.cancel();
   }
 
@@ -139,32 +134,30 @@ export class Model {
     this.took = performance.now() - this.startedAt;
     this.viewer.measured();
     await this.tails(era);
+    await this.bands(era);
   }
+
+  private async begin(index: number, arm: number, n: number): Promise<void> { await this.desk.ask({ kind: "call", call: "begin", given: [index, arm, n] }); }
 
   private async sampleCount(era: number, n: number): Promise<void> {
     if (era !== this.era) return;
-    this.shown.forEach((s, index) => this.api.number("begin", index, s.arm, n));
-    const boxes = this.boxes(this.cost(this.shown, n));
+    const begun = this.shown.map((s, index) => this.begin(index, s.arm, n)), boxes = this.boxes(this.cost(this.shown, n));
     let left = boxes.length;
-    await Promise.all(boxes.map(async (box) => {
+    await Promise.all([...begun, ...boxes.map(async (box) => {
       if (!(await this.tile(era, this.shown.map((s, index) => [index, s.arm]), n, box))) return;
       this.shown.forEach((_, index) => this.viewer.painted(index, box));
       if (--left > 0) return;
       for (const s of this.shown) s.n = n;
       if (this.referenceDone) await this.measure(era);
-    }));
+    })]);
   }
-
-  /** The memory of a film, of the reference for -1; undefined if something else was opened meanwhile. */
-  private room(era: number, film: number): Promise<object | undefined> { return this.parts<object>(() => era === this.era, "film_buffer", undefined, [film]); }
 
   /** A sample count computed only for its metrics, in a film that no picture shows. */
   private async again(era: number, n: number): Promise<void> {
     const spare = this.shown.length;
     for (const s of this.shown) {
-      if (!(await this.room(era, spare))) return;
-      this.api.number("begin", spare, s.arm, n);
-      await Promise.all(this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
+      if (era !== this.era) return;
+      await Promise.all([this.begin(spare, s.arm, n), ...this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box))]);
       const metrics = await this.metersOf(era, spare);
       if (!metrics) return;
       s.sampleCounts.push({ n, metrics });
@@ -176,33 +169,31 @@ export class Model {
   private async tile(era: number, films: [number, number][], n: number, box: Box): Promise<boolean> {
     const { bytes } = await this.pool.ask({ kind: "tile", arms: films.map(([, arm]) => arm), n, box });
     if (era !== this.era || !bytes) return false;
-    films.forEach(([film], k) => {
-      this.api.give(bytes[k]!);
-      this.api.number("put", film, box.x0, box.y0, box.x1, box.y1);
-    });
-    this.turns.count(this.api.number("worked"));
-    return true;
+    await this.desk.ask({ kind: "put", films: films.map(([film]) => film), box, bytes }, bytes);
+    return era === this.era;
   }
 
   private metersOf(era: number, film: number): Promise<Metrics | undefined> { return this.parts<Metrics>(() => era === this.era, "metrics", undefined, [film]); }
 
   /** The metrics of every arm at the sample count that is complete. */
   private async measure(era: number): Promise<void> {
+    const counts = this.shown.map((s) => s.n);
     const all = await Promise.all(this.shown.map((_, index) => this.metersOf(era, index)));
-    if (era !== this.era) return;
-    this.shown.forEach((s, index) => s.sampleCounts.push({ n: s.n, metrics: all[index]! }));
+    if (era !== this.era || all.some((metrics) => !metrics)) return;
+    this.shown.forEach((s, index) => s.sampleCounts.push({ n: counts[index]!, metrics: all[index]! }));
     this.viewer.measured();
   }
 
-  /** The end of the scale of maps. */
-  async top(): Promise<number> {
+  /** The ends of the scales of maps: of |Y - Y_ref|, and of the variance. */
+  async scales(): Promise<{ top: number; variance: number } | undefined> {
     const { era } = this;
-    return (await this.parts<{ top: number }>(() => era === this.era, "scale", undefined, [this.shown.length]))?.top ?? 1;
+    return this.parts(() => era === this.era, "scale", undefined, [this.shown.length]);
   }
 
   /** A disk that `call` paints, RGBA, `size` pixels across. */
-  disk(wanted: () => boolean, call: string, request: Record<string, unknown>, size: number): Promise<ImageData | undefined> {
-    return this.parts(wanted, call, { ...request, size }, [], () => new ImageData(new Uint8ClampedArray(this.api.bytes("disk", 4 * size * size)), size, size));
+  async disk(still: () => boolean, call: string, request: Record<string, unknown>, size: number): Promise<ImageData | undefined> {
+    const answer = await this.wanted(still, () => this.desk.ask({ kind: "disk", call, request: { ...request, size }, size }));
+    return answer && new ImageData(new Uint8ClampedArray(answer.bytes![0]!), size, size);
   }
 
   /** The reference is kept if only seeds, arms, regions or k have changed; returns whether it is complete. */
@@ -211,31 +202,23 @@ export class Model {
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
     return this.tiles.parts.length === this.referenceBoxes().length;
   }
-  private referenceBoxes(): Box[] { return this.boxes(this.referenceCost); }
+  private referenceBoxes(): Box[] { return this.boxes(referenceCost); }
 
-  /** By quadrature; the memory is copied first. */
+  /** By quadrature; what is known is copied first. */
   private async reference(era: number): Promise<void> {
     const { parts } = this.tiles;
-    if (!(await this.room(era, -1))) return;
-    const put = (box: Box, bytes: ArrayBuffer): void => {
-      this.api.give(bytes);
-      this.api.number("put_reference", box.x0, box.y0, box.x1, box.y1);
-      this.turns.count(this.api.number("worked"));
-      this.viewer.painted(-1, box);
+    const put = async (box: Box, bytes: ArrayBuffer): Promise<void> => {
+      await this.desk.ask({ kind: "put", films: [-1], box, bytes: [bytes] });
+      if (era === this.era) this.viewer.painted(-1, box);
     };
-    for (const { box, bytes } of parts) {
-      await this.turns.pass();
-      if (era !== this.era) return;
-      put(box, bytes);
-    }
     const have = new Set(parts.map(({ box }) => `${box.x0} ${box.y0}`));
     const missing = this.referenceBoxes().filter((box) => !have.has(`${box.x0} ${box.y0}`));
-    await Promise.all(missing.map(async (box) => {
+    await Promise.all([...parts.map(({ box, bytes }) => put(box, bytes)), ...missing.map(async (box) => {
       const { bytes } = await this.pool.ask({ kind: "reference", box });
       if (era !== this.era || !bytes) return;
       parts.push({ box, bytes: bytes[0]! });
-      put(box, bytes[0]!);
-    }));
+      await put(box, bytes[0]!);
+    })]);
     if (era !== this.era) return;
     this.referenceDone = true;
     if (this.shown[0]!.n > 0) await this.measure(era);
@@ -255,6 +238,23 @@ export class Model {
       }
   }
 
+  /** The spread of the RMSE over seeds, one arm, region and sample count after another, up to a limit of work. */
+  private async bands(era: number): Promise<void> {
+    const most = 4e7; // samples of one band
+    for (const region of this.described.regions) {
+      const [x0, y0, x1, y1] = region.box, pixels = (x1 - x0 + 1) * (y1 - y0 + 1);
+      for (const s of this.shown)
+        for (const { n } of s.sampleCounts) {
+          if (era !== this.era) return;
+          if (pixels * n * seedsOfBands > most || !this.described.arms[s.arm]!.sampler) continue;
+          const found = await this.ask<{ q05: number | string; q95: number | string }>("measure", { arm: s.name, n, region: region.name, box: region.box, seeds: seedsOfBands });
+          if (era !== this.era) return;
+          if (typeof found.q05 === "number" && typeof found.q95 === "number" && found.q05 > 0) (s.bands[region.name] ??= []).push([n, found.q05, found.q95]);
+        }
+      this.viewer.spread();
+    }
+  }
+
   /** A request to any worker, of another experiment if one is given: such a request survives other openings. */
   async ask<T>(call: string, request: unknown, opening?: Opening): Promise<T> {
     if (!opening) return (await this.pool.ask({ kind: "ask", call, request })).response as T;
@@ -264,15 +264,18 @@ export class Model {
   /** The reference of an experiment as a picture, RGBA of one box after another. The last request is computed first. */
   async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
     await this.pool.ready;
-    for (const box of this.boxes(this.referenceCost + this.filmCost, size).reverse()) // and its colours
+    for (const box of this.boxes(referenceCost + filmCost, size).reverse()) // and its colours
       this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
   }
 
-  /** RGBA of a box, rows from the top. */
-  pixels(picture: number, index: number, other: number, top: number, box: Box): ImageData {
-    const size = 4 * pixelsOf(box), { x0, y0, x1, y1 } = box;
-    const bytes = this.api.bytes("paint", size, picture, index, other, top, x0, y0, x1, y1);
-    this.turns.count(this.api.number("worked"));
-    return new ImageData(new Uint8ClampedArray(bytes), x1 - x0, y1 - y0);
+  /** RGBA of a box, rows from the top; undefined if it is no longer wanted. */
+  async pixels(still: () => boolean, paint: Paint, box: Box): Promise<ImageData | undefined> {
+    const answer = await this.wanted(still, () => this.desk.ask({ kind: "paint", paint, box }));
+    return answer && new ImageData(new Uint8ClampedArray(answer.bytes![0]!), box.x1 - box.x0, box.y1 - box.y0);
+  }
+
+  /** All films at one pixel. */
+  values(still: () => boolean, i: number, j: number): Promise<PixelValues | undefined> {
+    return this.parts(still, "pixel_values", { i, j, count: this.shown.length, reference: this.referenceDone });
   }
 }

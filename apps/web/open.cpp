@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "api.h"
+#include "user_sampler.h"
 
 namespace crescent::web {
 
@@ -75,6 +75,11 @@ ordered_json arms(const Experiment& e) {
     ordered_json all = ordered_json::array();
     for (const ArmPlan& arm : e.arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
+        if (!info) {
+            all.push_back({{"name", arm.name}, {"sampler", ""}, {"n", arm.n}, {"techniques", 1},
+                {"summary", "the density of the code above"}, {"formula", ""}, {"misses", ""}});
+            continue;
+        }
         all.push_back({{"name", arm.name}, {"sampler", arm.sampler}, {"n", arm.n}, {"techniques", info->techniques},
             {"summary", formula::html(info->summary)}, {"formula", formula::mathml(info->formula)},
             {"misses", missed_light(arm, e)}});
@@ -119,7 +124,7 @@ CRESCENT_EXPORT(open)()->void {
     Experiment e = parse(query.at("text").get<std::string>(), query.at("file").get<std::string>(),
         query.at("set").get<std::vector<std::string>>());
     for (const ArmPlan& arm : e.arms)
-        if (!find_arm_info(arm.sampler))
+        if (!find_arm_info(arm.sampler) && arm.exec != exec_of_page)
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
     const std::string published = query.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);

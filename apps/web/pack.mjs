@@ -62,7 +62,7 @@ const page = text(join(web, "index.html")).replace(/\{([a-z-]+)\}/g, (_, name) =
   if (!(name in parts)) throw new Error(`index.html asks for {${name}}`);
   return parts[name];
 });
-const most = 2 * 1024 * 1024;
+const most = 3_000_000;
 if (page.length > most) throw new Error(`the page has ${page.length} bytes, more than ${most}`);
 mkdirSync(dirname(out), { recursive: true });
 writeFileSync(`${out}.partial`, page);

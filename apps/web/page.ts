@@ -2,16 +2,23 @@
 import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, Api, DoorError } from "./api";
+import { Box, DoorError } from "./api";
 import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
 import { Lesson, lessons, onBench } from "./lessons";
+import { Faults, faultSheet } from "./faults";
+import { exercises } from "./exercises";
+import { FilmView } from "./film";
+import { packed, unpacked } from "./packed";
+import { templates } from "./templates";
+import { checkedCode, Work, Workshop } from "./workshop";
+import { choice } from "./controls";
 import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
-import { Pool } from "./pool";
-import { Turns } from "./turns";
+import { Desk, Pool } from "./pool";
+import { samplers, startText } from "./text";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
@@ -37,24 +44,34 @@ export class Page implements Viewer {
   private idle = true; // nothing is computed while the bench is hidden
   private asRead = false; // an answered lesson that the address shows with its own settings
   private known: Asker | undefined;
+  private film!: FilmView;
+  private workshop: Workshop | undefined; // once it is opened
+  private module!: WebAssembly.Module;
+  private worker = "";
+  private template = "cosine";
+  private loaded = ""; // what the workshop shows: an exercise, packed code
+  private readonly faults = new Faults((name) => this.goTo(name), (exercise) => this.begin(exercise));
   private readonly speaker = new Speaker(byId("status"));
 
   constructor(private readonly data: Data) {}
 
   start(module: WebAssembly.Module, worker: string): void {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
-    const api = new Api(module), turns = new Turns(api.number("most_of_part"));
-    const pool = new Pool(module, worker, count, turns);
-    void pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); });
-    this.model = new Model(module, api, pool, turns, this);
-    this.samplers = this.model.api.ask<Sampler[]>("samplers");
+    startText(module);
+    Object.assign(this, { module, worker });
+    const pool = new Pool(module, worker, count);
+    pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
+    this.model = new Model(new Desk(module, worker), pool, this);
+    this.samplers = samplers();
+    this.film = new FilmView({ model: this.model, choose: (pixel) => this.choose(pixel), region: (box) => this.change(drawnRegion, `[${box.join(", ")}]`) }, "main-film");
+    byId("film").replaceChildren(this.film.root);
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
       const part = (event.target as HTMLElement).dataset["tab"];
       if (!part) return;
       event.preventDefault();
-      Object.assign(this.state, { lesson: "", part });
+      Object.assign(this.state, { lesson: "", exercise: "", part });
       this.turn();
       this.show();
       if (this.idle && !byId("bench").hidden) this.open();
@@ -94,6 +111,7 @@ export class Page implements Viewer {
     byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
+      if (why.kind === "worker") return this.withoutWorkers();
       const plain = fresh(state.experiment, source), { good } = this;
       const differs = (from: Opened): boolean => JSON.stringify([from.set, from.arms]) !== JSON.stringify([state.set, state.arms]);
       if (!differs(plain) || why.kind === "memory") return this.failed(why, true);
@@ -135,6 +153,8 @@ export class Page implements Viewer {
       if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stays until it is painted over
       return picture;
     });
+    this.film.opened(d, shown);
+    this.film.select(this.state.pixel);
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
       picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
@@ -171,23 +191,28 @@ export class Page implements Viewer {
     const info = document.documentElement.dataset;
     info["first"] ??= String(Math.round(performance.now()));
     if (this.awaited && index >= 0) (info["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
-    if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
+    this.film.painted(index, box);
+    if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box, () => this.pictures.includes(picture)).catch(() => {}); // the model reports what fails
   }
 
   private metrics(index: number): void { this.pictures[index]?.metrics(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
   tailed(): void { this.model.shown.forEach((_, index) => this.metrics(index)); }
 
+  spread(): void { void showLadders(byId("charts"), this.model); }
+
   measured(): void {
     const { shown } = this.model, painted = this.model.referenceDone && this.state.view !== "photograph" ? this.repaint() : undefined;
     this.tailed();
+    const filmed = this.film.measured();
     const region = this.model.described.regions[0]?.name;
     const lines = shown.filter((s) => s.sampleCounts.length > 0).map((s) => {
       const last = s.sampleCounts.at(-1)!;
       return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.metrics.metrics[`rmse.${region}`]!.text}` : ""}`;
     });
     this.speaker.say(lines.join("; "));
-    if (!this.model.finished) return;
-    void this.finished(Promise.all([painted, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
+    if (this.state.pixel) this.film.select(this.state.pixel);
+    if (!this.model.finished) return void showLadders(byId("charts"), this.model);
+    void this.finished(Promise.all([painted, filmed, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
   }
 
   /** Notifies the tests once everything is shown. */
@@ -196,8 +221,7 @@ export class Page implements Viewer {
     info["films"] = String(Math.round(this.model.filmsTook));
     await shown;
     if (described !== this.model.described || this.idle) return;
-    info["memory"] = `${this.model.api.size} ${this.model.pool.size}`; // of the page's instance, of the workers
-    info["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
+    info["memory"] = `${this.model.desk.size} ${this.model.pool.size}`; // of the desk's instance, of the workers
     info["took"] = String(Math.round(took));
   }
 
@@ -206,17 +230,18 @@ export class Page implements Viewer {
     const { pictures, model, seen } = this, mine = ++this.painting;
     const stands = (): boolean => mine === this.painting && pictures === this.pictures && seen === model.described;
     if (!stands()) return;
-    const top = model.referenceDone ? await model.top() : 1;
+    const top = (model.referenceDone ? await model.scales() : undefined)?.top ?? 1;
     if (!stands()) return;
     this.top = top;
     pictures.at(-1)?.legend(model, this.state, top);
-    for (const picture of pictures) await picture.repaint(model, this.state, top, stands);
+    await Promise.all(pictures.map((picture) => picture.repaint(model, this.state, top, stands)));
   }
 
   private choose(pixel: [number, number]): void {
     this.state.pixel = pixel;
     history.replaceState(null, "", write(this.state));
     for (const picture of this.pictures) picture.outlines(pixel);
+    this.film.select(pixel);
     void this.openPixel();
   }
 
@@ -228,8 +253,16 @@ export class Page implements Viewer {
     });
   }
 
+  /** The page has no second engine. */
+  private withoutWorkers(): void {
+    document.documentElement.dataset["workers"] = "0";
+    for (const id of ["bench", "write", "lessons", "sheet"]) byId(id).hidden = true;
+    byId("wrong").replaceChildren(el("p", {}, "This browser refuses workers, in which this page computes: allow them for this file, or open it in another browser."));
+  }
+
   /** A message with the next step; `all`: nothing can be shown for these settings except their command. */
   failed(error: DoorError, all = false): void {
+    if (error.kind === "worker") return this.withoutWorkers();
     if (all) {
       byId("command").textContent = command(this.state, this.source);
       for (const id of ["pictures", "charts", "pixel"]) byId(id).replaceChildren();
@@ -245,14 +278,83 @@ export class Page implements Viewer {
     for (const link of document.querySelectorAll<HTMLElement>("#tabs a"))
       link.dataset["tab"] === part ? link.setAttribute("aria-current", "page") : link.removeAttribute("aria-current");
     byId("lessons").hidden = part !== "lessons";
+    byId("write").hidden = part !== "write" && part !== "faults";
     byId("sheet").hidden = part !== "sheet";
-    byId("bench").hidden = part === "sheet" || (part === "lessons" && (!lesson || !onBench(lesson) || answers[lesson.id] === undefined));
+    byId("bench").hidden = part === "sheet" || part === "write" || part === "faults" || (part === "lessons" && (!lesson || !onBench(lesson) || answers[lesson.id] === undefined));
     if (byId("bench").hidden && !this.idle) this.rest();
     byId<HTMLDetailsElement>("controls").open = part === "lessons";
     this.choices();
     this.knobs();
-    if (part === "sheet") showSheet(byId("sheet"), this.model, this.asker());
+    this.showWrite();
+    if (part === "sheet") showSheet(byId("sheet"), this.asker(), faultSheet((code, ground) => checkedCode(this.module, this.worker, code, ground)));
     if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
+  }
+
+  // ---- Write a sampler, and find the fault.
+
+  private showWrite(): void {
+    const { part, exercise } = this.state, at = byId("task"), found = exercises.find(({ name }) => name === exercise);
+    const writes = part === "write" || (part === "faults" && found !== undefined);
+    if (writes && !this.workshop) {
+      this.workshop = new Workshop({
+        module: this.module, worker: this.worker, desk: this.model.desk, sources: this.data.sources, speaker: this.speaker,
+        changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
+      });
+      byId("workshop").replaceChildren(this.workshop.root);
+    }
+    byId("workshop").hidden = part !== "write";
+    if (part !== "write") this.workshop?.show(false), (this.loaded = "");
+    if (part === "faults") return found ? this.faults.show(at, found) : this.faults.list(at);
+    if (part !== "write") return;
+    at.replaceChildren(el("h2", {}, "Write a sampler"),
+      el("p", {}, "In JavaScript: ", el("code", {}, "sample(wo, u)"), " returns a direction w_i and its density, ", el("code", {}, "pdf(wo, wi)"), " the density of any direction. Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. A third argument, if the functions have one, has the surface and the lights."),
+      el("div", { class: "choices" }, choice("template", "start from", Object.entries(templates).map(([name, { title }]) => [name, title]), this.template, (value) => {
+        this.template = value;
+        Object.assign(this.state, { code: "", ground: "" });
+        this.loaded = "";
+        this.turn();
+        void this.loadCode();
+      })));
+    this.workshop!.show(true);
+    void this.loadCode();
+  }
+
+  /** The code of the address, or a template. */
+  private async loadCode(): Promise<void> {
+    const { code, ground } = this.state, { code: plain, ground: own } = templates[this.template]!;
+    if (this.loaded === (code || "template")) return;
+    this.loaded = code || "template";
+    let text = plain;
+    try {
+      if (code) text = await unpacked(code);
+    } catch {
+      byId("wrong").append(el("p", {}, "The address has a sampler's code that cannot be read: a template is open."));
+    }
+    if (this.state.part === "write") this.workshop!.load({ code: text, ground: ground || own });
+  }
+
+  /** The user has changed the code, or what it is shown on. */
+  private async written({ code, ground }: Work): Promise<void> {
+    if (this.state.part !== "write") return this.faults.forget();
+    const words = await packed(code);
+    if (this.state.part !== "write") return;
+    Object.assign(this.state, { code: words, ground });
+    this.loaded = words;
+    history.replaceState(null, "", write(this.state));
+  }
+
+  private begin(exercise: typeof exercises[number]): void {
+    byId("workshop").hidden = false;
+    this.workshop!.show(true);
+    this.faults.forget();
+    this.workshop!.load(exercise);
+  }
+
+  private goTo(exercise: string): void {
+    Object.assign(this.state, { exercise, part: "faults" });
+    this.turn();
+    this.show();
+    byId("write").querySelector<HTMLElement>("a, input, button")?.focus();
   }
 
   private rest(): void {

@@ -1,20 +1,15 @@
-// A request is a list of functions, one for each call from the page; their work is counted until the page asks. Boxes
-// are cut into parts at most 64 pixels across. Shading points are kept by box for as many pixels as the page permits,
-// else for one.
+// Boxes are cut into parts at most 64 pixels across. Shading points are kept by box for as many pixels as the page
+// permits, else for one.
 #include "parts.h"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
-#include "pause.h"
-
 namespace crescent::web {
 
 namespace {
 
-double done = 0;
-Parts left;                   // the next one last
 std::size_t most_points = 0;  // kept for one experiment; about 200 bytes each
 
 std::uint64_t bad_of(const Moments& m, std::size_t count) {
@@ -41,14 +36,6 @@ std::vector<ShadingPoints>& points_seen(const TileBox& box) {
     return b.shading_points[key] = std::move(made);
 }
 
-void next_part() {
-    ensure(!left.empty(), "a question is under way");
-    const std::function<void()> part = std::move(left.back());
-    left.pop_back();
-    if (!left.empty()) respond(ordered_json{{"more", left.size()}});
-    part();
-}
-
 }  // namespace
 
 std::uint64_t pixels_of(const TileBox& b) {
@@ -62,9 +49,6 @@ Box requested_box(const ordered_json& query) {
 
 TileBox tile_of(const Box& box) { return {box.x0, box.y0, box.x1 + 1, box.y1 + 1}; }
 
-void count_work(std::uint64_t samples) { done += static_cast<double>(samples); }
-double work_of_part() { return done; }
-
 std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {
     const auto most = static_cast<int>(std::clamp<std::uint64_t>(most_of_part / cost_of_pixel, 1, 4096));
     const int across = std::min({64, most, box.x1 - box.x0}), up = std::max(1, most / across);
@@ -75,19 +59,12 @@ std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {
     return all;
 }
 
-void begin(Parts parts) {
-    left = std::move(parts);
-    std::ranges::reverse(left);
-    next_part();
-}
-
-std::uint64_t cost_of(const std::string& sampler, std::uint64_t n) {
+std::uint64_t cost_of(std::string_view sampler, std::uint64_t n) {
     return n * directions_per_sample(sampler) + film_cost;
 }
 
-Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed) {
+Film film_over(const TileBox& box, const SamplerRef& sampler, std::uint64_t n, std::uint32_t seed) {
     Film film(box.x1 - box.x0, box.y1 - box.y0, n);
-    count_work(pixels_of(box) * cost_of(sampler, n));
     for (ShadingPoints& shading_points : points_seen(box)) {
         const Moments moments = estimate_points(shading_points, sampler, n, seed, "", nullptr);
         const std::vector<std::uint32_t> of_image = shading_points.pixel;
@@ -102,32 +79,23 @@ Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, 
 void prepare_reference() {
     Bench& b = bench();
     if (b.quadrature) return;
-    b.quadrature = std::make_unique<PixelQuadrature>(
-        b.scene, std::vector{b.scene.s()}, [](std::size_t steps) { make_room(steps * step_cost); });
+    b.quadrature = std::make_unique<PixelQuadrature>(b.scene, std::vector{b.scene.s()});
 }
 
 void reference_over(const TileBox& box, ReferenceFilm& film) {
     Bench& b = bench();
     ensure(b.quadrature != nullptr, "the reference was prepared");
-    count_work(pixels_of(box) * reference_cost);
     b.quadrature->write(box, {&film, 1});
 }
 
 /// Must be called before reference_tile(); returns {} once it is done.
 CRESCENT_EXPORT(prepare_reference)()->void {
-    begin({[] {
-        prepare_reference();
-        respond(ordered_json::object());
-    }});
+    prepare_reference();
+    respond(ordered_json::object());
 }
-/// Runs the next part of the current request.
-CRESCENT_EXPORT(go_on)()->void { next_part(); }
 /// Keeps the hits of primary rays for this many pixels of an experiment, for tiles that are requested again.
 CRESCENT_EXPORT(keep_points)(double pixels)->void { most_points = static_cast<std::size_t>(pixels); }
-/// Returns the samples drawn since the last call, or work of equal cost.
-CRESCENT_EXPORT(worked)()->double { return std::exchange(done, 0.0); }
-/// The largest work of one part, and the cost of a pixel of a reference, and of a film without its samples.
-CRESCENT_EXPORT(most_of_part)()->double { return static_cast<double>(most_of_part); }
+/// The cost of a pixel of a reference, in samples, and of one of a film without its samples.
 CRESCENT_EXPORT(reference_cost)()->double { return static_cast<double>(reference_cost); }
 CRESCENT_EXPORT(film_cost)()->double { return static_cast<double>(film_cost); }
 

@@ -1,9 +1,7 @@
 // Converts films to pixels for a canvas: tone-mapped photographs, maps in turbo or in two hues. Rows run from the top,
 // four bytes per pixel: R, G, B, 255.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "disk.h"
 
@@ -11,9 +9,10 @@ namespace crescent::web {
 
 namespace {
 
-enum class Picture { photograph, heat, signed_map };
+enum class Picture { photograph, heat, signed_map, variance };
 
-const Srgb8 background{20, 21, 23};  // where a map has no value
+const Srgb8 background{20, 21, 23};     // where a map has no value
+constexpr double variance_decades = 6;  // of the map of variances, below its top
 
 /// Two hues for two arms, each fading to the ground: t in [-1, 1].
 Srgb8 two_hues(double t) {
@@ -43,8 +42,8 @@ template <class Colour> void each_pixel(const TileBox& box, std::byte* to, const
     }
 }
 
-template <class F> void photographed(const F& film, const TileBox& box, std::byte* to) {
-    const double exposure = bench().experiment.exposure;
+template <class F> void photographed(const F& film, double times, const TileBox& box, std::byte* to) {
+    const double exposure = bench().experiment.exposure * times;
     each_pixel(box, to, [&](std::size_t at) { return photograph(Rgb{film.r[at], film.g[at], film.b[at]}, exposure); });
 }
 
@@ -56,93 +55,64 @@ void mapped(Picture picture, int index, int other, double top, const TileBox& bo
     });
 }
 
+/// The variance of one sample of a pixel, (W/(sr m^2))^2.
+double sample_variance(const Slot& slot, std::size_t at) {
+    return static_cast<double>(slot.film.var[at]) * static_cast<double>(slot.film.n);
+}
+
+void variances(int index, double top, const TileBox& box, std::byte* to) {
+    const Slot& shown = slot(index);
+    each_pixel(box, to, [&](std::size_t at) {
+        const double v = sample_variance(shown, at);
+        return v > 0 ? turbo(std::clamp(1 + math::log10(v / top) / variance_decades, 0.0, 1.0)) : background;
+    });
+}
+
 std::vector<std::byte> disk_pixels;
-constexpr std::uint64_t direction_cost = 20;  // of a density or of f L, in samples of a pixel
 
-/// A disk and its values row by row from the top, -1 outside.
-struct Shade {
-    Disk disk;
-    std::size_t side;
-    std::function<double(Vec3d)> value;
-    std::vector<double> values;
-    double largest = 0;
-
-    void look(std::size_t from, std::size_t to) {
-        count_work((to - from) * side * direction_cost);
-        const auto size = static_cast<double>(side);
-        for (std::size_t k = from * side; k < to * side; ++k) {
-            const double x = (2 * double(k % side) + 1) / size - 1, y = 1 - (2 * double(k / side) + 1) / size;
-            if (const auto wi = disk.direction(x, y)) values[k] = value(*wi);
-            if (std::isfinite(values[k])) largest = std::max(largest, values[k]);
-        }
-    }
-    void colour(std::size_t from, std::size_t to) const {
-        count_work((to - from) * side * colour_cost);
-        if (from == 0) disk_pixels.assign(values.size() * 4, std::byte{0});
-        for (std::size_t k = from * side; k < to * side; ++k) {
-            if (values[k] < 0) continue;
-            const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
-            put(&disk_pixels[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
-        }
-        if (to == side) respond(ordered_json::object());
-    }
-};
-
-/// The 98th percentile of |Y - Y_ref| over the geometry pixels of some films, in parts: values by the first 16 bits of
-/// a double, which order non-negative numbers as their values do; then those of the bin of the percentile.
-class Percentile {
-public:
-    void count(int film, std::size_t from, std::size_t to) {
-        each(film, from, to, [&](double v) { ++sizes_[bin_of(v)]; });
-    }
-    void keep(int film, std::size_t from, std::size_t to) {
-        if (!found_) find();
-        each(film, from, to, [&](double v) {
-            if (bin_of(v) == bin_) kept_.push_back(v);
-        });
-    }
-    double value() {
-        if (kept_.empty()) return 1;
-        const auto place = kept_.begin() + static_cast<std::ptrdiff_t>(place_);
-        std::nth_element(kept_.begin(), place, kept_.end());
-        return *place > 0 ? *place : 1;
-    }
-
-private:
-    static std::size_t bin_of(double v) { return std::bit_cast<std::uint64_t>(v) >> 48; }
-    template <class Take> void each(int film, std::size_t from, std::size_t to, const Take& take) const {
-        count_work((to - from) * scale_cost);
-        for (std::size_t at = from; at < to; ++at) {
-            if (bench().shapes.shape[at] < 0) continue;
-            if (const double v = residual(slot(film).film, at); std::isfinite(v)) take(v);
-        }
-    }
-    /// Finds the bin of the percentile, and the rank within it.
-    void find() {
-        found_ = true;
-        const std::size_t all = std::accumulate(sizes_.begin(), sizes_.end(), std::size_t{0});
-        if (all == 0) return;
-        place_ = static_cast<std::size_t>(0.98 * static_cast<double>(all - 1));
-        while (place_ >= sizes_[bin_]) place_ -= sizes_[bin_++];
-    }
-    std::vector<std::size_t> sizes_ = std::vector<std::size_t>(1 << 16);
-    std::vector<double> kept_;
-    std::size_t bin_ = 0, place_ = 0;
-    bool found_ = false;
-};
+/// The 98th percentile of values over the geometry pixels of some films; 1 if there is none above 0.
+template <class Value> double end_of_scale(int films, const Value& value) {
+    std::vector<double> all;
+    for (int film = 0; film < films; ++film)
+        for (std::size_t at = 0; at < bench().pixels(); ++at)
+            if (bench().shapes.shape[at] >= 0)
+                if (const double v = value(slot(film), at); std::isfinite(v)) all.push_back(v);
+    if (all.empty()) return 1;
+    const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(all.size() - 1));
+    std::ranges::nth_element(all, place);
+    return *place > 0 ? *place : 1;
+}
 
 }  // namespace
 
-Parts painted(const Disk& disk, int size, const std::function<double(Vec3d)>& value) {
+void paint_disk(const Disk& disk, int size, const std::function<double(Vec3d)>& value) {
     const auto side = static_cast<std::size_t>(size);
-    const auto of = std::make_shared<Shade>(Shade{disk, side, value, std::vector<double>(side * side, -1)});
-    Parts parts;
-    const std::size_t rows = std::max<std::size_t>(1, most_of_part / direction_cost / side);
-    for (std::size_t from = 0; from < side; from += rows)
-        parts.emplace_back([=] { of->look(from, std::min(side, from + rows)); });
-    for (std::size_t from = 0; from < side; from += rows)
-        parts.emplace_back([=] { of->colour(from, std::min(side, from + rows)); });
-    return parts;
+    std::vector<double> values(side * side, -1);  // -1: outside the disk
+    double largest = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const double x = (2 * double(k % side) + 1) / size - 1, y = 1 - (2 * double(k / side) + 1) / size;
+        if (const auto wi = disk.direction(x, y)) values[k] = value(*wi);
+        if (std::isfinite(values[k])) largest = std::max(largest, values[k]);
+    }
+    disk_pixels.assign(values.size() * 4, std::byte{0});
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (values[k] < 0) continue;
+        const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
+        put(&disk_pixels[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
+    }
+    respond(ordered_json::object());
+}
+
+void paint_ratio(const Disk& disk, int size, const std::function<double(double, double)>& ratio) {
+    const auto side = static_cast<std::size_t>(size);
+    disk_pixels.assign(side * side * 4, std::byte{0});
+    for (std::size_t k = 0; k < side * side; ++k) {
+        const double x = (2 * double(k % side) + 1) / size - 1, y = 1 - (2 * double(k / side) + 1) / size;
+        if (!disk.direction(x, y)) continue;
+        const double r = ratio(x, y);
+        put(&disk_pixels[4 * k], two_hues(r > 0 ? std::clamp(math::log10(r) / math::log10(2.0), -1.0, 1.0) : -1));
+    }
+    respond(ordered_json::object());
 }
 
 /// Returns the disk that was painted last.
@@ -159,37 +129,57 @@ CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
     return out.data();
 }
 
-/// Paints the pixels of a box: of film `index`, or of the reference for -1. picture 0: its photograph; 1: |Y - Y_ref|,
-/// turbo from 0 to `top`; 2: |Y_other - Y_ref| - |Y - Y_ref| over `top`, in the first hue if `other` is nearer.
+/// Paints the pixels of a box: of film `index`, or of the reference for -1. picture 0: its photograph, at `times` the
+/// exposure of the experiment; 1: |Y - Y_ref|, turbo from 0 to `top`; 2: |Y_other - Y_ref| - |Y - Y_ref| over `top`, in
+/// the first hue if `other` is nearer; 3: the variance of one sample, six decades up to `top`.
 CRESCENT_EXPORT(paint)
-(int picture, int index, int other, double top, int x0, int y0, int x1, int y1)->const void* {
+(int picture, int index, int other, double top, double times, int x0, int y0, int x1, int y1)->const void* {
     const TileBox box{x0, y0, x1, y1};
     std::vector<std::byte>& out = scratch<std::byte>();
     out.resize(pixels_of(box) * 4);
-    count_work(pixels_of(box) * colour_cost);
-    const bool needs_reference = picture != 0 || index < 0;
+    const auto what = static_cast<Picture>(picture);
+    const bool needs_reference = what == Picture::heat || what == Picture::signed_map || index < 0;
     if (needs_reference && bench().reference.size() == 0) {
         std::fill(out.begin(), out.end(), std::byte{0});
         return out.data();
     }
-    if (picture != 0) mapped(static_cast<Picture>(picture), index, other, top, box, out.data());
-    else if (index < 0) photographed(bench().reference, box, out.data());
-    else photographed(slot(index).film, box, out.data());
+    if (what == Picture::variance) variances(index, top, box, out.data());
+    else if (what != Picture::photograph) mapped(what, index, other, top, box, out.data());
+    else if (index < 0) photographed(bench().reference, times, box, out.data());
+    else photographed(slot(index).film, times, box, out.data());
     return out.data();
 }
 
-/// Returns the end of the scale of maps, {"top": ...}: the 98th percentile of |Y - Y_ref| over the geometry pixels of
-/// the first `count` films.
+/// Returns the ends of the scales of maps of the first `count` films, {"top": |Y - Y_ref|, "variance": ...}: 98th
+/// percentiles over the geometry pixels.
 CRESCENT_EXPORT(scale)(int count)->void {
-    const auto of = std::make_shared<Percentile>();
-    const std::size_t pixels = bench().pixels(), most = most_of_part / scale_cost;
-    Parts parts;
-    for (const auto step : {&Percentile::count, &Percentile::keep})
-        for (int film = 0; film < count; ++film)
-            for (std::size_t from = 0; from < pixels; from += most)
-                parts.emplace_back([=] { ((*of).*step)(film, from, std::min(pixels, from + most)); });
-    parts.emplace_back([=] { respond(ordered_json{{"top", of->value()}}); });
-    begin(std::move(parts));
+    const auto error = [](const Slot& s, std::size_t at) { return residual(s.film, at); };
+    respond(ordered_json{{"top", end_of_scale(count, error)}, {"variance", end_of_scale(count, sample_variance)}});
+}
+
+/// {i, j, count, reference: whether it is computed} -> {shape, reference, films: [{y, error, se, n, zero, met}]} of the
+/// first `count` films at a pixel; se: the standard error of Y; zero, met: shares of the directions that fell below the
+/// horizon, and that met a light.
+CRESCENT_EXPORT(pixel_values)()->void {
+    const ordered_json query = request();
+    const Bench& b = bench();
+    const std::size_t at = query.at("j").get<std::size_t>() * b.width() + query.at("i").get<std::size_t>();
+    const bool known = query.at("reference").get<bool>() && at < b.reference.size();
+    const int shape = at < b.shapes.shape.size() ? b.shapes.shape[at] : -1;
+    ordered_json out = {{"shape", shape < 0 ? "" : b.experiment.shapes.at(static_cast<std::size_t>(shape)).name},
+        {"films", ordered_json::array()}};
+    if (known) out["reference"] = figures(double(b.reference.y[at]));
+    for (int k = 0; k < query.at("count").get<int>(); ++k) {
+        const Film& film = slot(k).film;
+        const double directions = static_cast<double>(film.n * film.directions);
+        ordered_json one = {{"y", figures(double(film.y.at(at)))}, {"n", film.n},
+            {"se", figures(std::sqrt(double(film.var.at(at))), 2)},
+            {"zero", figures(100 * double(film.horizon.at(at)) / directions, 3)},
+            {"met", figures(100 * double(film.light_hits.at(at)) / directions, 3)}};
+        if (known) one["error"] = figures(double(film.y[at]) - double(b.reference.y[at]), 3);
+        out["films"].push_back(std::move(one));
+    }
+    respond(out);
 }
 
 }  // namespace crescent::web

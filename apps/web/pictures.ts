@@ -4,9 +4,9 @@ import { el, made, minus } from "./dom";
 import { Arm, Described, Metric, Model, Shown } from "./model";
 import { byKey, Frame, Outlined, Picking } from "./frame";
 import { State } from "./state";
+import { figures, scaleBar } from "./text";
 
 const mine = "mine";
-const strip = 8; // rows that are painted at once
 
 /** One picture: index of its film, or -1 for the reference. */
 export class Picture {
@@ -38,9 +38,9 @@ export class Picture {
   /** The scale of the neighbouring maps, under the reference. */
   legend(model: Model, state: State, top: number): void {
     if (state.view === "photograph" || !model.referenceDone) return this.table.replaceChildren();
-    const heat = state.view === "heat", width = 256, end = model.api.say("figures", undefined, top);
+    const heat = state.view === "heat", width = 256, end = figures(top);
     const bar = el("canvas", { width, height: 1, class: "bar", role: "img", "aria-label": heat ? `the colours of |Y − Y_ref| from 0 to ${end}` : "the two colours of the signed maps" });
-    bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.api.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
+    bar.getContext("2d")!.putImageData(scaleBar(heat ? 1 : 2, width), 0, 0);
     const ends = heat ? ["|Y − Y_ref| = 0", end] : [`the other arm is nearer by ${end}`, `this one by ${end}`];
     this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
@@ -51,21 +51,17 @@ export class Picture {
     this.frame.outlines(this.d.regions.map((region) => ({ ...region, ...own(region.name) })), pixel);
   }
 
-  paint(model: Model, state: State, top: number, box: Box): void {
+  /** Paints a box of it, if it is still wanted when it comes. */
+  async paint(model: Model, state: State, top: number, box: Box, wanted: () => boolean): Promise<void> {
     const kind = this.index < 0 || state.view === "photograph" ? 0 : state.view === "heat" ? 1 : 2;
     const other = (this.index + 1) % model.shown.length;
     this.versus.textContent = kind !== 2 ? "" : other === this.index ? "choose a second arm to compare it with" : `compared with ${model.shown[other]!.name}`;
-    const pixels = model.pixels(kind, this.index, Math.max(other, 0), top, box);
-    this.canvas.getContext("2d")!.putImageData(pixels, box.x0, this.d.height - box.y1);
+    const pixels = await model.pixels(wanted, { picture: kind, index: this.index, other: Math.max(other, 0), top, times: 1 }, box);
+    if (pixels) this.canvas.getContext("2d")!.putImageData(pixels, box.x0, this.d.height - box.y1);
   }
 
-  /** Paints all of it, strip by strip from the top, while it is wanted. */
-  async repaint(model: Model, state: State, top: number, wanted: () => boolean): Promise<void> {
-    for (let y1 = this.d.height; y1 > 0; y1 -= strip) {
-      await model.turns.pass();
-      if (!wanted()) return;
-      this.paint(model, state, top, { x0: 0, y0: Math.max(0, y1 - strip), x1: this.d.width, y1 });
-    }
+  repaint(model: Model, state: State, top: number, wanted: () => boolean): Promise<void> {
+    return this.paint(model, state, top, { x0: 0, y0: 0, x1: this.d.width, y1: this.d.height }, wanted);
   }
 
   private beside(hash: string, program: string | undefined): (Node | string)[] {

@@ -1,8 +1,7 @@
-// Runs jobs in workers or, if a browser has none, in slices on the page's own thread. A new opening cancels all earlier
-// requests: results under way are dropped.
+// Runs jobs in workers. A new opening cancels all earlier requests: results under way are dropped. One worker, the desk,
+// assembles the films; it does its jobs in the order in which they came.
 import { Box, DoorError } from "./api";
-import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
-import { Turns } from "./turns";
+import { Answer, Fault, Job, Opening, Reply } from "./jobs";
 
 type Done = (answer: Answer) => void;
 type Failed = (error: DoorError) => void;
@@ -12,144 +11,161 @@ const boxOf = ({ job }: Waiting): string => (job.kind === "tile" ? Object.values
 
 const underWay = 2; // jobs queued per worker, so that it never waits for the page
 const side = 64; // of a tile, in pixels
+const mostSamples = 2_000_000; // of one job: a new setting has to wait for running jobs
+const patience = 20_000; // ms for a worker to start
+
+const errorOf = ({ kind, text, lines }: Fault): DoorError => new DoorError(kind, text, lines);
 
 class Hand {
   size = 0; // bytes allocated by its instance
   private readonly held = new Map<number, Waiting>();
   private next = 0;
+  private since = 0;
   constructor(private readonly worker: Worker, private readonly free: () => void) {
     worker.onmessage = ({ data }: MessageEvent): void => this.take(data as Reply);
   }
   get room(): boolean { return this.held.size < underWay; }
-  give(waiting: Waiting): void {
+  /** Since when it has been working on one job, in ms; 0: it is idle. */
+  get busy(): number { return this.held.size > 0 ? performance.now() - this.since : 0; }
+  give(waiting: Waiting, transfer: Transferable[] = []): void {
+    if (this.held.size === 0) this.since = performance.now();
     this.held.set(++this.next, waiting);
-    this.worker.postMessage({ id: this.next, job: waiting.job });
+    this.worker.postMessage({ id: this.next, job: waiting.job }, transfer);
   }
+  end(): void { this.worker.terminate(); this.held.clear(); }
   private take(reply: Reply): void {
     const waiting = this.held.get(reply.id);
     this.held.delete(reply.id);
+    this.since = performance.now();
     this.size = reply.size ?? this.size;
     if (waiting && reply.answer) waiting.done(reply.answer);
-    else if (waiting && reply.error) waiting.failed(new DoorError(reply.error.kind, reply.error.text));
+    else if (waiting && reply.error) waiting.failed(errorOf(reply.error));
     this.free();
   }
 }
 
-/** A queue without a worker: jobs in parts, one after another, each in an instance that no other job uses meanwhile. */
-class Lane {
-  readonly answering: Answering;
-  queue: Waiting[] = [];
-  private current: Waiting | undefined;
-  constructor(module: WebAssembly.Module) { this.answering = new Answering(module); }
-
-  get busy(): boolean { return this.current !== undefined || this.queue.length > 0; }
-  drop(): void { this.queue = []; this.current = undefined; }
-
-  /** Does one part of a job. Returns its work, in samples. */
-  part(): number {
-    const fresh = this.current === undefined, waiting = (this.current ??= this.queue.shift()!);
+/** Starts a worker with an instance of the module. Rejects if the browser refuses, or with the fault of the user's code. */
+function started(module: WebAssembly.Module, url: string, free: () => void): Promise<Hand> {
+  return new Promise((resolve, reject) => {
+    const late = setTimeout(() => reject(new DoorError("worker", "a worker did not start")), patience);
+    const failed = (error: DoorError): void => { clearTimeout(late); reject(error); };
     try {
-      const answer = fresh ? this.answering.begin(waiting.job) : this.answering.goOn();
-      if (!answer) return this.answering.worked;
-      this.current = undefined;
-      waiting.done(answer);
+      const worker = new Worker(url);
+      worker.onerror = (event): void => {
+        event.preventDefault();
+        failed(new DoorError(event.lineno ? "user" : "worker", event.message, [[event.lineno, event.colno]]));
+      };
+      worker.onmessage = ({ data }: MessageEvent): void => {
+        clearTimeout(late);
+        const { error } = data as Reply;
+        if (error) return failed(errorOf(error));
+        resolve(new Hand(worker, free));
+      };
+      worker.postMessage(module);
     } catch (error) {
-      this.current = undefined;
-      const { kind, text } = failure(error);
-      waiting.failed(new DoorError(kind, text));
+      failed(new DoorError("worker", String(error)));
     }
-    return this.answering.worked;
+  });
+}
+
+/** The worker that assembles films. */
+export class Desk {
+  private hand: Promise<Hand>;
+  constructor(module: WebAssembly.Module, source: string) {
+    const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    this.hand = started(module, url, () => {}).finally(() => URL.revokeObjectURL(url));
+    this.hand.catch(() => {}); // the pool has none either
   }
+  size = 0;
+  async ask(job: Job, transfer: Transferable[] = []): Promise<Answer> {
+    const hand = await this.hand;
+    return new Promise((done, failed) => hand.give({ job, lasting: true, done: (answer) => { this.size = hand.size; done(answer); }, failed }, transfer));
+  }
+}
+
+/** The user's code behind the script of a worker: see apps/web/user.ts. `first`: the line of the script before its first. */
+export function withUser(source: string, code: string): { source: string; first: number } {
+  const before = `${source}\ncrescentUser(() => { "use strict";\n`;
+  const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
+  return { source: `${before}${code}\n;return { ${names.join(", ")} }; });`, first: before.split("\n").length - 1 };
 }
 
 export class Pool {
   private hands: Hand[] = [];
-  private alone: { lasting: Lane; passing: Lane } | undefined; // an opening in between does not break a lasting request
   private queue: Waiting[] = [];
   private kept: Kept = new Map();
   private opened: Opening | undefined;
   private era = 0;
-  private slicing = false;
-  private settled = false;
-  readonly ready: Promise<void>; // resolved once it is known whether there are workers: requests wait for it
+  private ended = false;
+  readonly ready: Promise<void>; // rejects if there is no worker: requests wait for it
 
-  /** `source`: the worker's script. */
-  constructor(module: WebAssembly.Module, source: string, count: number, private readonly turns: Turns) {
+  /** `source`: the worker's script; `most`: samples of one job. */
+  constructor(private readonly module: WebAssembly.Module, source: string, count: number, private readonly most = mostSamples) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    this.ready = Promise.all(Array.from({ length: count }, () => this.startOne(module, url))).then((started) => {
+    this.ready = Promise.allSettled(Array.from({ length: count }, () => this.startOne(url))).then((all) => {
       URL.revokeObjectURL(url);
-      if (!started.some(Boolean)) {
-        this.alone = { lasting: new Lane(module), passing: new Lane(module) };
-        if (this.opened) this.alone.passing.answering.about(this.opened);
-      }
-      this.settled = true;
+      const [first] = all;
+      if (this.hands.length === 0 && !this.ended) throw first?.status === "rejected" ? first.reason : new DoorError("worker", "no worker");
     });
+    this.ready.catch(() => {});
   }
 
-  private startOne(module: WebAssembly.Module, url: string): Promise<boolean> {
-    return new Promise((resolve) => {
-      const late = setTimeout(() => resolve(false), 4000);
-      const settle = (good: boolean): void => { clearTimeout(late); resolve(good); };
-      try {
-        const worker = new Worker(url);
-        worker.onerror = (event): void => { event.preventDefault(); settle(false); };
-        worker.onmessage = (): void => {
-          const hand = new Hand(worker, () => this.pump());
-          if (this.opened) this.openIn(hand, this.opened);
-          this.hands.push(hand);
-          settle(true);
-        };
-        worker.postMessage(module);
-      } catch {
-        settle(false);
-      }
-    });
+  private async startOne(url: string): Promise<void> {
+    const hand = await started(this.module, url, () => this.pump());
+    if (this.ended) return hand.end();
+    if (this.opened) this.openIn(hand, this.opened);
+    this.hands.push(hand);
+    this.pump();
   }
 
-  /** The number of workers; 0: slices of the page's own thread. */
   get workers(): number { return this.hands.length; }
+  /** The longest time that one of the workers has been at a job, ms. */
+  get busy(): number { return Math.max(0, ...this.hands.map((hand) => hand.busy)); }
 
   /** Drops all requests except lasting ones. */
   cancel(): void {
     ++this.era;
     this.queue = this.queue.filter((waiting) => waiting.lasting);
-    this.alone?.passing.drop();
   }
 
-  /** Bytes allocated by the instances of all workers; the largest part done without workers, in samples. */
+  /** Ends all workers: nothing is answered any more. */
+  end(): void {
+    this.ended = true;
+    this.queue = [];
+    for (const hand of this.hands) hand.end();
+    this.hands = [];
+  }
+
+  /** Bytes allocated by the instances of all workers. */
   get size(): number { return this.hands.reduce((sum, hand) => sum + hand.size, 0); }
-  get most(): number { return Math.max(this.alone?.lasting.answering.most ?? 0, this.alone?.passing.answering.most ?? 0); }
 
   /** Every instance opens this experiment; earlier requests are dropped. */
   open(opening: Opening): void {
     this.cancel();
     this.opened = opening;
-    if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that needs it
     this.kept.clear();
     for (const hand of this.hands) this.openIn(hand, opening);
   }
-  private openIn(hand: Hand, opening: Opening): void { // what they reject is rejected on the page's own thread too
+  private openIn(hand: Hand, opening: Opening): void { // what they reject, the desk rejects too
     hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 
   /** `lasting`: the request survives other openings, and comes before all others. */
   async ask(job: Job, lasting = false): Promise<Answer> {
     const era = this.era;
-    if (!this.settled) await this.ready;
+    await this.ready;
     return new Promise((resolve, reject) => {
       const here = (): boolean => lasting || era === this.era;
       const waiting: Waiting = { job, lasting, done: (a) => here() && resolve(a), failed: (e) => here() && reject(e) };
-      const queue = this.alone ? this.alone[lasting ? "lasting" : "passing"].queue : this.queue;
-      if (lasting) queue.unshift(waiting);
-      else queue.push(waiting);
+      if (lasting) this.queue.unshift(waiting);
+      else this.queue.push(waiting);
       this.pump();
     });
   }
 
-  /** The picture cut into boxes, one per job. `cost`: samples per pixel. A job has at most `most` samples, or in a worker
-   *  twenty times as many, because a new setting has to wait for running jobs. */
-  tiles(width: number, height: number, cost: number, most: number): Box[] {
-    const pixels = Math.max(1, Math.floor((this.alone ? most : 20 * most) / cost));
+  /** The picture cut into boxes, one per job, from the middle. `cost`: samples per pixel. */
+  tiles(width: number, height: number, cost: number): Box[] {
+    const pixels = Math.max(1, Math.floor(this.most / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
     const all: Box[] = [];
     for (let y0 = 0; y0 < height; y0 += up)
@@ -160,10 +176,6 @@ export class Pool {
   }
 
   private pump(): void {
-    if (this.alone) {
-      void this.slices();
-      return;
-    }
     for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.nextFor(hand));
   }
   /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another
@@ -175,17 +187,4 @@ export class Pool {
     return waiting!;
   }
   private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
-
-  /** Runs parts of jobs, as many in each turn as it has room for. */
-  private async slices(): Promise<void> {
-    if (this.slicing) return;
-    this.slicing = true;
-    const { lasting, passing } = this.alone!, info = document.documentElement.dataset;
-    while (lasting.busy || passing.busy) {
-      await this.turns.pass();
-      if (lasting.busy || passing.busy) this.turns.count((lasting.busy ? lasting : passing).part());
-      info["part"] = String(this.most);
-    }
-    this.slicing = false;
-  }
 }

@@ -1,14 +1,17 @@
 // The state in the address, and the command line that gives the same numbers. The address is data: an invalid part is
 // replaced by its default, with a message.
 import { Lesson, lessons } from "./lessons";
+import { exercises } from "./exercises";
 import { ladder, Region } from "./model";
+import { grounds } from "./templates";
 
 export interface Source {
   file: string; title: string; text: string; published: string; arms: Record<string, number[]>; regions: Region[];
   size: [number, number]; quadrature: boolean;
   films: Record<string, string>; // the program's hashes, by "ARM n=N s=S"
 }
-export type Part = "bench" | "lessons" | "sheet";
+export type Part = "bench" | "write" | "faults" | "lessons" | "sheet";
+const parts: readonly Part[] = ["bench", "write", "faults", "lessons", "sheet"];
 
 export interface State {
   experiment: string;
@@ -21,11 +24,14 @@ export interface State {
   part: Part;
   lesson: string;
   answers: Record<string, string>; // lesson -> answer
+  exercise: string;
+  code: string; // of the user's sampler, packed.ts; "": that of a template
+  ground: string; // its surface, templates.ts
 }
 
 const path = /^(?!__)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){0,3}$/;
 const own = /^(n|arms\.[^.]+\.n|reference\.kind)$/; // set by the page itself
-const keys = ["experiment", "arms", "n", "view", "set", "pixel", "arm", "part", "lesson", "answer"];
+const keys = ["experiment", "arms", "n", "view", "set", "pixel", "arm", "part", "lesson", "answer", "exercise", "code", "ground"];
 const number = "-?(\\d+\\.?\\d*|\\.\\d+)([eE][-+]?\\d{1,3})?";
 const value = new RegExp(`^(${number}|\\[ *${number}( *, *${number}){0,7} *\\]|"[a-z-]{1,40}")$`);
 
@@ -33,7 +39,7 @@ export function fresh(experiment: string, source: Source): State {
   const arms = Object.keys(source.arms).slice(0, 3), sampleCounts = source.arms[arms[0]!]!;
   return {
     experiment, arms, n: Math.max(...ladder.filter((n) => n <= Math.max(...sampleCounts))), view: "photograph", set: {}, pixel: undefined, arm: 0, part: "bench",
-    lesson: "", answers: {},
+    lesson: "", answers: {}, exercise: "", code: "", ground: "",
   };
 }
 
@@ -48,8 +54,16 @@ function answers({ ask }: Lesson, to: string, size: readonly [number, number]): 
 /** The part of the page, the lesson and its answers. */
 function readLessons(asked: URLSearchParams, state: State, size: readonly [number, number], response: string[], wrong: (key: string, instead: string) => void): void {
   const part = asked.get("part");
-  if (part === "bench" || part === "lessons" || part === "sheet") state.part = part;
+  if (parts.includes(part as Part)) state.part = part as Part;
   else if (part !== null) wrong("part", "the bench is open");
+  const exercise = asked.get("exercise") ?? "";
+  if (exercises.some(({ name }) => name === exercise)) Object.assign(state, { exercise, part: "faults" });
+  else if (exercise) wrong("exercise", "the list of exercises is open"), (state.part = "faults");
+  const code = asked.get("code"), ground = asked.get("ground");
+  if (code !== null && /^[A-Za-z0-9_-]{1,40000}$/.test(code)) Object.assign(state, { code, part: exercise ? "faults" : "write" });
+  else if (code !== null) wrong("code", "a template is open");
+  if (ground !== null && ground in grounds) state.ground = ground;
+  else if (ground !== null) wrong("ground", "that of the template is used");
   const lesson = asked.get("lesson") ?? "";
   if (lessons.some(({ id }) => id === lesson)) Object.assign(state, { lesson, part: "lessons" });
   else if (lesson) wrong("lesson", "the list of lessons is open"), (state.part = "lessons");
@@ -113,8 +127,13 @@ export function write(state: State): string {
   for (const [key, to] of Object.entries(state.set)) out.append("set", `${key}=${to}`);
   if (state.pixel) out.set("pixel", state.pixel.join(","));
   if (state.arm > 0) out.set("arm", String(state.arm));
-  if (state.lesson) out.set("lesson", state.lesson);
+  if (state.exercise && state.part === "faults") out.set("exercise", state.exercise);
+  else if (state.lesson) out.set("lesson", state.lesson);
   else if (state.part !== "bench") out.set("part", state.part);
+  if (state.part === "write") {
+    if (state.code) out.set("code", state.code);
+    if (state.ground) out.set("ground", state.ground);
+  }
   for (const [lesson, answer] of Object.entries(state.answers)) out.append("answer", `${lesson}:${answer}`);
   return `#${out.toString().replaceAll("%2C", ",").replaceAll("%3D", "=").replaceAll("%3A", ":").replaceAll("%2F", "/")}`;
 }

@@ -1,25 +1,30 @@
-// A worker: its first message is the compiled module, every other one a job.
+// A worker: its first message is the compiled module, every other one a job. Behind this script there may be the user's
+// sampler (apps/web/user.ts).
 import { Answering, failure, Job, Reply } from "./jobs";
+import { userSampler } from "./user";
 
 interface Scope {
   onmessage: ((event: MessageEvent) => void) | null;
   postMessage(message: Reply, transfer: Transferable[]): void;
 }
-const scope = self as unknown as Scope;
+const scope = self as unknown as Scope, post = scope.postMessage.bind(scope);
 const keptPixels = 300_000; // 60 MB
+const take = userSampler();
 let answering: Answering | undefined;
 
 scope.onmessage = ({ data }: MessageEvent): void => {
-  if (!answering) {
-    answering = new Answering(data as WebAssembly.Module, keptPixels);
-    scope.postMessage({ id: -1, size: answering.size }, []);
-    return;
-  }
-  const { id, job } = data as { id: number; job: Job };
+  let id = -1;
   try {
-    const answer = answering.answer(job);
-    scope.postMessage({ id, answer, size: answering.size }, answer.bytes ?? []);
+    if (!answering) {
+      answering = new Answering(data as WebAssembly.Module, keptPixels, take());
+      post({ id, size: answering.size }, []);
+      return;
+    }
+    const asked = data as { id: number; job: Job };
+    id = asked.id;
+    const answer = answering.answer(asked.job);
+    post({ id, answer, size: answering.size }, answer.bytes ?? []);
   } catch (error) {
-    scope.postMessage({ id, error: failure(error), size: answering.size }, []);
+    post({ id, error: failure(error), size: answering?.size ?? 0 }, []);
   }
 };

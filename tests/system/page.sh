@@ -1,6 +1,6 @@
 #!/bin/bash
 # The page as its readers open it: the same bits in node and in Chromium as from the program, the lessons by keyboard,
-# no request, no line on the console, workers refused, every width. $CRESCENT_PAGE is the build of ./page.
+# no request, no line on the console, samplers written in it, every width. $CRESCENT_PAGE is the build of ./page.
 . "$(dirname "$0")/common.sh"
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 [ -f "${CRESCENT_PAGE:-}/crescent.wasm" ] || skip "the page is not built (./test builds it)"
@@ -38,16 +38,19 @@ diff native node >difference || die "films differ in node: $(head -n 12 differen
 wait "$programs" && diff native.json "$CRESCENT_SOURCE/apps/web/native.json" >difference ||
     die "apps/web/native.json is not the program's (node apps/web/native.mjs build/crescent): $(cat native.log difference)"
 
-# The verdicts, which pause in the page.
-esbuild "$CRESCENT_SOURCE/apps/web/api.ts" --format=esm --target=es2022 --log-level=warning --outfile=api.mjs ||
-    die "api.ts"
+# The verdicts of the page, and the samplers of its exercises before and after their repair.
+api() { esbuild "$CRESCENT_SOURCE/$1" --format=esm --target=es2022 --log-level=warning --outfile="$2" "${@:3}" || die "$1"; }
+api apps/web/api.ts api.mjs
+api tests/system/browser/exercises.ts exercises.mjs --bundle
 "$CRESCENT" check phong --wo 60 --quiet --json phong.json >/dev/null
-expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/verdicts.mjs" "$work/api.mjs" "$CRESCENT_PAGE/crescent.wasm" \
-    phong.json 60
-cat printed
-expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/parts.mjs" "$work/api.mjs" "$CRESCENT_PAGE/crescent.wasm" \
-    "$CRESCENT_SOURCE/experiments/gallery.toml"
-cat printed
+in_node() {
+    expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/$1.mjs" "$work/$2.mjs" \
+        "$CRESCENT_PAGE/crescent.wasm" "${@:3}"
+    cat printed
+}
+in_node verdicts api phong.json 60
+in_node tiles api "$CRESCENT_SOURCE/experiments/gallery.toml"
+in_node exercises exercises
 
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
@@ -71,6 +74,8 @@ in_chromium() {
 in_chromium readers >readers.log 2>&1 &  # each group waits for its own browser most of the time
 readers=$!
 expect 0 in_chromium numbers
+cat printed
+expect 0 in_chromium writers
 cat printed
 wait "$readers" || die "$(cat readers.log)"
 cat readers.log

@@ -20,8 +20,8 @@ export function hashes(module: WebAssembly.Module, file: string, text: string): 
       lines.push(`${file} ${arm.name} n=${n} ${page.say("hash_of", undefined, 0)}`);
     }
   });
-  for (let response = worker.say("prepare_reference"); response.includes("more"); response = worker.say("go_on"));
-  for (let response = page.say("film_buffer", undefined, -1); response.includes("more"); response = page.say("go_on"));
+  worker.say("prepare_reference");
+  page.number("film_buffer", -1);
   for (let y0 = 0; y0 < d.height; y0 += side) {
     const box = { x0: 0, y0, x1: d.width, y1: Math.min(y0 + side, d.height) };
     page.give(worker.bytes("reference_tile", 20 * pixelsOf(box), 0, y0, d.width, box.y1));

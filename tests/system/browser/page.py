@@ -22,7 +22,7 @@ import browser
 import reach
 import settings
 import steady
-import turns
+import written
 
 group, page_path, bundle, native_path, *experiments = sys.argv[1:]
 page = pathlib.Path(page_path).resolve().as_uri()
@@ -242,8 +242,9 @@ def two_hundred_settings(driver):
 
 groups = {
     "numbers": [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
-                a_lesson_is_confirmed, *turns.tests(page), two_hundred_settings],
+                a_lesson_is_confirmed, two_hundred_settings],
     "readers": [*reach.tests(page, pathlib.Path(page_path).resolve().parent), *steady.tests(page), *settings.tests(page)],
+    "writers": written.tests(page, pathlib.Path(page_path).resolve().parent),
 }[group]
 driver = browser.chromium()
 failed = 0

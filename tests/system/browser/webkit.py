@@ -1,4 +1,4 @@
-"""The page in a second browser engine, WebKit: opens, computes a film with the same hash, completes one lesson.
+"""The page in a second browser engine, WebKit: opens, computes a film with the same hash, completes one lesson, checks a sampler in JavaScript.
 webkit.py PAGE HASH"""
 import pathlib
 import sys
@@ -41,6 +41,14 @@ try:
     said = driver.find_element(By.ID, "reveal").text
     if "measured here" not in said:
         raise SystemExit(f"the lesson says: {said}")
+    driver.get("about:blank")
+    driver.get(page + "#part=write")
+    wait("document.documentElement.dataset.looked")
+    driver.execute_script("document.getElementById('check-yours').click()")
+    wait("document.documentElement.dataset.checked")
+    states = driver.execute_script("return [...document.querySelectorAll('[data-verdict]')].map((e) => e.dataset.state)")
+    if len(states) != 8 or set(states) != {"right"}:
+        raise SystemExit(f"the verdicts of a right sampler are {states}")
     workers = driver.execute_script("return document.documentElement.dataset.workers")
     print(f"WebKit: {workers} workers, the same hash; {said.splitlines()[0]}")
 finally:

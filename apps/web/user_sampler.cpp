@@ -1,0 +1,292 @@
+// The user's functions are called for many rows at once: u and w_o in, w_i and the pdf out, in the local frame, n = +z,
+// in double precision. `context` is what the third argument of the functions has: s, alpha, rho_d (3), rho_s, then the
+// number of lights and 18 numbers for each, as context_columns.h orders them.
+#include "user_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "check/sources/context_columns.h"
+#include "check/verdict_names.h"
+#include "disk.h"
+
+extern "C" {
+
+/// Provided by the page. `count` runs of `stride` doubles: w_o, the number of rows, the context.
+__attribute__((import_module("api"), import_name("user_sample"))) void api_user_sample(const double* runs,
+    std::size_t count, std::size_t stride, const double* u, std::size_t numbers, double* wi, double* pdf);
+/// Provided by the page. `count` rows of w_o and w_i.
+__attribute__((import_module("api"), import_name("user_pdf"))) void api_user_pdf(
+    const double* pairs, std::size_t count, const double* context, std::size_t columns, double* pdf);
+}
+
+namespace crescent::web {
+
+namespace {
+
+std::size_t numbers_of_sample = 2;
+bool takes_context = false;
+
+const std::vector<std::string> all_of_context = {"s", "alpha", "rho_d", "rho_s", "lights"};
+
+class PageSampler : public ExternalSampler {
+public:
+    std::string name() const override { return "your sampler"; }
+    int numbers() const override { return static_cast<int>(numbers_of_sample); }
+    bool uses_lights() const override { return takes_context; }
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
+        std::vector<double> runs;
+        const std::size_t lights = batch.lights.size();
+        for (std::size_t k = 0; k < batch.runs.size(); ++k) {
+            const ExternalRun& run = batch.runs[k];
+            runs.insert(runs.end(), {run.wo.x, run.wo.y, run.wo.z, static_cast<double>(run.rows)});
+            if (takes_context)
+                add_context(all_of_context, run, batch.lights,
+                    lights > 0 ? batch.lights_at.subspan(k * lights, lights) : batch.lights_at, runs);
+        }
+        const std::size_t stride = batch.runs.empty() ? 4 : runs.size() / batch.runs.size();
+        api_user_sample(
+            runs.data(), batch.runs.size(), stride, batch.u.data(), numbers_of_sample, &out.wi[0].x, out.pdf.data());
+    }
+};
+
+/// The user's sampler on one surface under one light. A direction below the horizon counts as nothing drawn.
+class UserAdapter : public InProcessAdapter {
+public:
+    explicit UserAdapter(const CaseSetup& setup) : surface_(setup.surface) {
+        if (!takes_context) return;
+        std::vector<ExternalLight> lights;
+        std::vector<ExternalLightAt> at;
+        for (const CaseDiskLight& disk : setup.light.disks) {
+            lights.push_back({"disk", {disk.radiance, disk.radiance, disk.radiance}, disk.radius});
+            at.push_back({disk.center, disk.normal, {}, {}, dot(disk.normal, disk.center) < 0});
+        }
+        const double rho_d = surface_.rho_d;
+        add_context(all_of_context,
+            {{0, 0, 1}, {surface_.s, surface_.alpha, rho_d, surface_.rho_s}, 1, {rho_d, rho_d, rho_d}}, lights, at,
+            context_);
+    }
+    std::string name() const override { return "your sampler"; }
+    Traits traits() const override {
+        Traits traits;
+        traits.numbers = static_cast<int>(numbers_of_sample);
+        traits.bits = 53;
+        return traits;
+    }
+    bool serial() const override { return true; }
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        if (u.empty()) return;
+        count(u.size());
+        std::vector<double> run = {wo.x, wo.y, wo.z, static_cast<double>(u.size())}, given, wi(3 * u.size()),
+                            pdf(u.size());
+        run.insert(run.end(), context_.begin(), context_.end());
+        given.reserve(u.size() * numbers_of_sample);
+        for (const PrimarySample& one : u)
+            for (std::size_t k = 0; k < numbers_of_sample; ++k) given.push_back(one[static_cast<int>(k)]);
+        api_user_sample(run.data(), 1, run.size(), given.data(), numbers_of_sample, wi.data(), pdf.data());
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const bool nothing = pdf[i] == 0 || (wi[3 * i + 2] <= 0 && pdf[i] >= 0);
+            out[i] = nothing ? Draw{{0, 0, 1}, 0} : Draw{{wi[3 * i], wi[3 * i + 1], wi[3 * i + 2]}, pdf[i]};
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        std::vector<double> pairs, values;
+        for (const Pair& p : at)
+            if (p.wi.z > 0) pairs.insert(pairs.end(), {p.wo.x, p.wo.y, p.wo.z, p.wi.x, p.wi.y, p.wi.z});
+        const std::size_t asked = pairs.size() / 6;
+        count(asked);
+        values.resize(asked);
+        if (asked > 0) api_user_pdf(pairs.data(), asked, context_.data(), context_.size(), values.data());
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = at[i].wi.z > 0 ? values[next++] : 0;
+    }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    }
+
+private:
+    SurfaceSetup surface_;
+    std::vector<double> context_;
+};
+
+/// {surface: {lobe: a word or "", lambert, sharpness}, light}.
+CaseSetup setup_of(const ordered_json& query) {
+    const ordered_json& on = query.at("surface");
+    const std::string lobe = on.at("lobe").get<std::string>();
+    return case_setup(lobe.empty() ? LobeKind::none : lobe_named(lobe), on.at("lambert").get<bool>(),
+        query.at("light").get<std::string>(), on.at("sharpness").get<double>());
+}
+
+/// {sampler: "" for that of the page, or a built-in one} at each w_o, [theta, azimuth] in degrees.
+std::vector<CheckCase> cases_of(const ordered_json& query) {
+    const CaseSetup setup = setup_of(query);
+    const std::string built_in = query.value("sampler", "");
+    std::vector<CheckCase> out;
+    for (const ordered_json& at : query.at("wo")) {
+        const double theta = at.at(0).get<double>(), azimuth = at.at(1).get<double>();
+        out.push_back(make_case_on(
+            setup, theta, azimuth, built_in.empty() ? "your sampler" : built_in, std::make_shared<UserAdapter>(setup)));
+        if (!built_in.empty()) out.back().adapter = sampler_on(built_in, out.back());
+    }
+    return out;
+}
+
+/// How much a verdict's state matters; of several w_o the first is shown.
+int rank(State state) {
+    switch (state) {
+        case State::error: return 4;
+        case State::wrong: return 3;
+        case State::inconclusive: return 2;
+        case State::right: return 1;
+        case State::skipped: return 0;
+    }
+    return 0;
+}
+
+Disk disk_of(const CheckCase& at) { return Disk({-at.wo.x, -at.wo.y, at.wo.z}); }
+
+/// The first n draws of a case.
+std::vector<Draw> draws_of(const CheckCase& at, std::size_t n) {
+    const std::uint32_t seed = seed_of(TestSettings::quick().seed, 0);
+    std::vector<PrimarySample> u(n);
+    for (std::size_t k = 0; k < n; ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most);
+    std::vector<Draw> draws(n);
+    at.adapter->sample(0, at.wo, u, draws);
+    return draws;
+}
+
+}  // namespace
+
+const ExternalSampler& page_sampler() {
+    static const PageSampler sampler;
+    return sampler;
+}
+
+SamplerRef sampler_of(const ArmPlan& arm) {
+    return arm.is_external() ? SamplerRef(arm.sampler, &page_sampler()) : SamplerRef(arm.sampler);
+}
+
+/// What the user's functions take: so many random numbers a sample, and the context as third argument or not.
+CRESCENT_EXPORT(user_takes)(int numbers, int context)->void {
+    numbers_of_sample = static_cast<std::size_t>(std::clamp(numbers, 1, PrimarySample::most));
+    takes_context = context != 0;
+}
+
+/// {sampler, surface, light, wo, evaluations} -> {state, verdicts: [{name, question, state, say, cause, theta, azimuth,
+/// hidden, evidence, states: [of each w_o]}]}: of each verdict the worst of all w_o.
+CRESCENT_EXPORT(user_checked)()->void {
+    const ordered_json query = request();
+    const std::vector<CheckCase> cases = cases_of(query);
+    ProgressMonitor monitor;
+    TestSettings settings = TestSettings::quick();
+    settings.budget = check::CheckBudget::limited(query.at("evaluations").get<double>());
+    const CheckResult result = run_checks(cases, settings, monitor);
+    ordered_json out = {{"state", ""}, {"evaluations", result.evaluations}, {"verdicts", ordered_json::array()}};
+    State all = State::right;
+    for (std::size_t k = 0; k < verdict_names.size(); ++k) {
+        if (verdict_names[k] == "efficiency") continue;  // depends on a clock
+        const Verdict* worst = nullptr;
+        ordered_json states = ordered_json::array();
+        for (const Verdict& v : result.verdicts) {
+            if (v.name != verdict_names[k]) continue;
+            states.push_back(word(v.state));
+            if (!worst || rank(v.state) > rank(worst->state) || (v.state == worst->state && v.size > worst->size))
+                worst = &v;
+        }
+        if (!worst) continue;
+        if (rank(worst->state) > rank(all)) all = worst->state;
+        ordered_json one = {{"name", worst->name}, {"question", verdict_questions[k]}, {"state", word(worst->state)},
+            {"say", worst->message}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
+            {"hidden", ordered_json::object()}};
+        for (const auto& [fault, size] : worst->hidden) one["hidden"][fault] = json_number(size);
+        const auto at = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));
+        one["theta"] = at.first, one["azimuth"] = at.second;
+        out["verdicts"].push_back(std::move(one));
+    }
+    out["state"] = word(all);
+    respond(out);
+}
+
+/// {sampler, surface, light, wo: [one], n} -> {case, draws: [[x, y, the root of its share of the largest weight]],
+/// below: how many drew nothing or fell below the horizon, seconds: of those draws}.
+CRESCENT_EXPORT(user_drawn)()->void {
+    const ordered_json query = request();
+    const CheckCase at = cases_of(query).front();
+    const std::vector<Draw> draws = draws_of(at, query.at("n").get<std::size_t>());
+    const Disk disk = disk_of(at);
+    std::vector<double> weight;
+    for (const Draw& d : draws) {
+        const Pair pair{at.wo, d.wi};
+        double f = 0;
+        if (d.pdf > 0) at.adapter->f({&pair, 1}, {&f, 1});
+        weight.push_back(d.pdf > 0 && d.wi.z > 0 ? f * at.light(d.wi) * d.wi.z / d.pdf : 0);
+    }
+    const double largest = weight.empty() ? 0 : *std::ranges::max_element(weight);
+    ordered_json out = {{"case", at.text()}, {"draws", ordered_json::array()}};
+    std::size_t below = 0;
+    for (std::size_t k = 0; k < draws.size(); ++k) {
+        if (!(draws[k].pdf > 0 && draws[k].wi.z > 0)) {
+            ++below;
+            continue;
+        }
+        ordered_json one = disk.place(draws[k].wi);
+        one.push_back(largest > 0 && std::isfinite(weight[k]) ? std::sqrt(weight[k] / largest) : 0);
+        out["draws"].push_back(std::move(one));
+    }
+    out["below"] = below;
+    respond(out);
+}
+
+/// {sampler, surface, light, wo: [one], what, size} -> a picture for disk(). what: "pdf", the density; "f", f L cos;
+/// "lost", f L cos where the density is 0; "ratio", how many of 2^17 draws fell into each bin, over how many the
+/// density implies.
+CRESCENT_EXPORT(user_disk)()->void {
+    const ordered_json query = request();
+    const CheckCase at = cases_of(query).front();
+    const std::string what = query.at("what").get<std::string>();
+    const int size = query.at("size").get<int>();
+    const Disk disk = disk_of(at);
+    const auto pdf = [&](Vec3d wi) {
+        const Pair pair{at.wo, wi};
+        double p = 0;
+        at.adapter->exact_pdf(0, {&pair, 1}, {&p, 1});
+        return p;
+    };
+    const auto f = [&](Vec3d wi) {
+        const Pair pair{at.wo, wi};
+        double value = 0;
+        at.adapter->f({&pair, 1}, {&value, 1});
+        return value * at.light(wi) * wi.z;
+    };
+    if (what == "ratio") {
+        constexpr int bins = 24;
+        constexpr std::size_t n = std::size_t{1} << 17;
+        std::vector<double> counts(bins * bins), due(bins * bins);
+        const auto bin = [](double x) { return std::clamp(static_cast<int>((x + 1) / 2 * bins), 0, bins - 1); };
+        for (const Draw& d : draws_of(at, n)) {
+            if (!(d.pdf > 0 && d.wi.z > 0)) continue;
+            const ordered_json place = disk.place(d.wi);
+            ++counts[static_cast<std::size_t>(bin(place[1].get<double>()) * bins + bin(place[0].get<double>()))];
+        }
+        constexpr int fine = 6;                                             // points of a bin, each way
+        const double area = 2 * (2.0 / bins / fine) * (2.0 / bins / fine);  // sr; the disk's radius is 1
+        for (int j = 0; j < bins * fine; ++j)
+            for (int i = 0; i < bins * fine; ++i)
+                if (const auto wi =
+                        disk.direction((2.0 * i + 1) / (bins * fine) - 1, (2.0 * j + 1) / (bins * fine) - 1))
+                    due[static_cast<std::size_t>((j / fine) * bins + i / fine)] +=
+                        pdf(*wi) * area * static_cast<double>(n);
+        return paint_ratio(disk, size, [&](double x, double y) {
+            const auto k = static_cast<std::size_t>(bin(y) * bins + bin(x));
+            return counts[k] + due[k] < 25 ? 1 : counts[k] / std::max(due[k], 1.0);  // too few to tell
+        });
+    }
+    paint_disk(disk, size, [&](Vec3d wi) {
+        if (what == "pdf") return pdf(wi);
+        return what == "lost" && pdf(wi) > 0 ? 0 : f(wi);
+    });
+}
+
+}  // namespace crescent::web

@@ -1,0 +1,19 @@
+// A sampler that the page's user writes in JavaScript: an arm `exec = "page"`, and an adapter for `check`.
+#pragma once
+
+#include <string_view>
+
+#include "api.h"
+
+namespace crescent::web {
+
+/// The value of the key `exec` of an arm that the page answers for.
+inline constexpr std::string_view exec_of_page = "page";
+
+/// Draws by the functions of the page, api.user_sample and api.user_pdf; for every experiment.
+const ExternalSampler& page_sampler();
+
+/// An arm as the kernels take it: a built-in sampler, or that of the page.
+SamplerRef sampler_of(const ArmPlan& arm);
+
+}  // namespace crescent::web

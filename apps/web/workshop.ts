@@ -1,0 +1,350 @@
+// Where a sampler is written: the editor; its draws over its pdf; its film beside that of a built-in sampler, and their
+// convergence; the verdicts of `check`. The code runs in workers of its own, which are ended when it changes or takes
+// too long.
+import { Box, DoorError } from "./api";
+import { choice } from "./controls";
+import { byId, copied, el, minus, plusMinus, Speaker } from "./dom";
+import { Editor } from "./editor";
+import { exported, exports } from "./export";
+import { FilmView } from "./film";
+import { Opening } from "./jobs";
+import { showLadders } from "./ladders";
+import { Described, Model, Shown, Viewer } from "./model";
+import { Desk, Pool, withUser } from "./pool";
+import { Source } from "./state";
+import { grounds } from "./templates";
+import { figures, samplers } from "./text";
+import { evaluations, four } from "./workshop_settings";
+
+const faults: Record<string, string> = {
+  constant: "a constant factor", leak: "a share of uniform draws", cap: "a share of p that is never drawn", rotation: "a rotation", parameter: "a wrong parameter",
+};
+
+export interface Verdict {
+  name: string; question: string; state: string; say: string; cause: string; theta: number; azimuth: number; states: string[]; hidden: Record<string, number | string>;
+}
+export interface Checked { state: string; evaluations: number; verdicts: Verdict[] }
+export interface Work { code: string; ground: string }
+
+const size = 320, draws = 1024;
+const longest = { film: 5000, check: 15000 }; // ms that the code may take for one job
+const yours = "yours";
+/** What a verdict speaks of, as a picture. */
+const pictures: Record<string, string> = { support: "lost", normalised: "ratio", density: "ratio", physics: "f", tail: "f", mean: "f" };
+const layers: [string, string][] = [["pdf", "its pdf, with its draws"], ["ratio", "draws over what the pdf implies"], ["f", "f L cos, with its draws"], ["lost", "light that is never drawn"]];
+const captions: Record<string, string> = {
+  pdf: "four decades of the pdf; a dot is a draw", ratio: "blue: half as many draws as the pdf implies, or fewer; orange: twice as many, or more",
+  f: "four decades of f L cos; the area of a dot is the weight of the draw", lost: "where f L cos is not 0 and the pdf is",
+};
+
+/** What a right verdict could have missed: the size of each kind of fault that is found in nine of ten cases. */
+function power({ state, hidden }: Verdict): string {
+  const sizes = Object.entries(hidden).filter(([, size]) => typeof size === "number");
+  if (state !== "right" || sizes.length === 0) return "";
+  const said = sizes.map(([name, size]) => `${faults[name] ?? name} of ${name === "rotation" ? `${figures(size as number)} rad` : `${figures(100 * (size as number))} %`}`);
+  return ` In nine of ten cases it finds ${said.join(", ")}.`;
+}
+
+export interface Workplace {
+  module: WebAssembly.Module; worker: string; desk: Desk; sources: Record<string, Source>; speaker: Speaker;
+  changed(work: Work): void; // by the user
+  checked(result: Checked): void;
+}
+
+export class Workshop implements Viewer {
+  readonly root: HTMLElement;
+  readonly editor: Editor;
+  private readonly model: Model;
+  private readonly film: FilmView;
+  private readonly fault = el("p", { id: "fault-line", role: "alert" });
+  private readonly hemisphere = el("canvas", { id: "draws", width: size, height: size, class: "disk large", role: "img", "aria-label": "the hemisphere" });
+  private readonly caption = el("figcaption");
+  private readonly verdicts = el("div", { id: "verdicts", "aria-live": "polite" });
+  private readonly charts = el("div", { class: "charts" });
+  private readonly options = el("div", { class: "choices" });
+  private readonly views = el("div", { class: "choices" });
+  private readonly out = el("pre", {}, el("code", { id: "exported", tabindex: 0 }));
+  private ground = "lambert";
+  private scene: string;
+  private beside = "cosine";
+  private n = 16;
+  private layer = "pdf";
+  private wo: [number, number] = [30, 0];
+  private films: Pool | undefined;
+  private probe: Pool | undefined;
+  private first = 0; // lines of the script before the code
+  private era = 0;
+  private looks = 0;
+  private timer = 0;
+  private watch = 0;
+  private checking = false;
+  private active = false;
+
+  constructor(private readonly at: Workplace) {
+    this.scene = Object.keys(at.sources)[0]!;
+    this.model = new Model(at.desk, new Pool(at.module, at.worker, 0), this);
+    this.film = new FilmView({ model: this.model, choose: (pixel) => this.film.select(pixel) }, "your-film", ["film 0", "film 1"]);
+    const place = el("div", { class: "editor" });
+    this.editor = new Editor(place, "the code of your sampler", () => this.edited());
+    const button = (id: string, words: string, act: () => void, css = ""): HTMLElement => el("button", { type: "button", id, class: css, onclick: act }, words);
+    const formats = choice("export-format", "export as", exports, exports[0]![0], () => this.export());
+    this.root = el("div", { class: "workshop" },
+      el("div", { class: "columns" },
+        el("div", {}, place, this.fault,
+          el("div", { class: "row-wrap" }, button("check-yours", "Check", () => void this.check(), "main"), button("copy-address", "Copy the address", () => void this.copyAddress()), button("save-code", "Save as a file", () => this.save()),
+            el("label", { class: "file" }, "Open a file", el("input", { type: "file", id: "open-code", accept: ".js,.mjs,.txt", onchange: (e: Event) => void this.openFile(e) })))),
+        el("div", {}, this.views, el("figure", { class: "hemisphere" }, this.hemisphere, this.caption))),
+      this.verdicts,
+      el("h3", {}, "Its film beside a built-in one"), this.options, this.film.root, this.charts,
+      el("details", { id: "export", ontoggle: () => this.export() }, el("summary", {}, "Export: C++, Python, the program"), formats,
+        this.out, el("p", {}, button("copy-export", "Copy", () => void this.copyExport()), " ", button("save-export", "Save as a file", () => this.saveExport()))));
+    window.setInterval(() => this.guard(), 500);
+  }
+
+  /** Shows this code; it is checked when asked. */
+  load({ code, ground }: Work): void {
+    this.editor.code = code;
+    this.ground = ground in grounds ? ground : "lambert";
+    this.verdicts.replaceChildren();
+    this.layer = "pdf";
+    this.controls();
+    this.restart();
+  }
+
+  get work(): Work { return { code: this.editor.code, ground: this.ground }; }
+
+  /** Nothing is computed while it is not shown. */
+  show(active: boolean): void {
+    this.active = active;
+    if (!active) this.end();
+  }
+
+  private edited(): void {
+    this.verdicts.replaceChildren();
+    this.at.changed(this.work);
+    window.clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => this.restart(), 350);
+  }
+
+  private end(): void {
+    ++this.era;
+    window.clearTimeout(this.timer);
+    this.model.stop();
+    this.films?.end();
+    this.probe?.end();
+    this.films = this.probe = undefined;
+    this.checking = false;
+  }
+
+  /** Workers with the code as it is now. */
+  private restart(): void {
+    this.end();
+    if (!this.active) return;
+    const { era } = this, { source, first } = withUser(this.at.worker, this.editor.code);
+    this.first = first;
+    this.watch = performance.now();
+    this.probe = new Pool(this.at.module, source, 1);
+    this.probe.ready.then(() => {
+      if (era !== this.era) return;
+      this.watch = 0;
+      this.say();
+      void this.look();
+      this.render(source);
+    }, (error: unknown) => { this.watch = 0; this.failedIn(era, error); });
+    this.export();
+  }
+
+  /** Ends code that takes too long. */
+  private guard(): void {
+    const busy = Math.max(this.watch > 0 ? performance.now() - this.watch : 0, this.films?.busy ?? 0), checked = this.probe?.busy ?? 0;
+    const limit = busy > longest.film ? longest.film : checked > (this.checking ? longest.check : longest.film) ? (this.checking ? longest.check : longest.film) : 0;
+    if (limit === 0) return;
+    this.end();
+    this.watch = 0;
+    this.say(`The code did not return within ${limit / 1000} s and was ended: look for a loop that does not end.`, this.loopLine());
+  }
+  private loopLine(): number {
+    const lines = this.editor.code.split("\n"), at = lines.findIndex((line) => /\b(while|for|do)\b/.test(line));
+    return at + 1;
+  }
+
+  /** A fault with its line, or none. */
+  private say(words = "", line = 0, column = 0): void {
+    this.editor.mark(line, words, column);
+    this.fault.textContent = words ? `${line > 0 ? `Line ${line}: ` : ""}${words}` : "";
+    this.fault.className = words ? "bad" : "";
+    document.documentElement.dataset["code"] = words ? "fault" : "runs";
+  }
+
+  private failedIn(era: number, error: unknown): void {
+    if (era !== this.era) return;
+    this.model.stop();
+    const why = error instanceof DoorError ? error : new DoorError("bug", String(error));
+    if (why.kind !== "user") return this.say(why.sentence);
+    const lines = this.editor.code.split("\n").length, text = why.message.replace(/^Uncaught /, "").replace(/\.?$/, ".");
+    const [line, column] = (why.lines ?? []).map(([l, c]) => [l - this.first, c] as const).find(([l]) => l >= 1 && l <= lines) ?? [0, 0];
+    const syntax = /SyntaxError/.test(text), broken = syntax ? this.editor.brokenLine || lines : 0;
+    this.say(text, line || broken, line ? column : 0);
+  }
+
+  // ---- The hemisphere.
+
+  private request(): Record<string, unknown> {
+    const { lobe, lambert, sharpness, light } = grounds[this.ground]!;
+    return { sampler: "", surface: { lobe, lambert, sharpness }, light };
+  }
+
+  /** The draws at the chosen w_o, over the chosen picture. */
+  private async look(): Promise<void> {
+    const { probe, era, layer } = this, mine = ++this.looks, request = { ...this.request(), wo: [this.wo] };
+    if (!probe) return;
+    try {
+      const [disk, drawn] = await Promise.all([
+        probe.ask({ kind: "disk", call: "user_disk", request: { ...request, what: layer, size }, size }),
+        probe.ask({ kind: "ask", call: "user_drawn", request: { ...request, n: draws } })]);
+      if (era !== this.era || mine !== this.looks) return;
+      const { draws: all, below, case: on } = drawn.response as { draws: [number, number, number][]; below: number; case: string };
+      const pen = this.hemisphere.getContext("2d")!;
+      pen.putImageData(new ImageData(new Uint8ClampedArray(disk.bytes![0]!), size, size), 0, 0);
+      pen.fillStyle = "#fff";
+      pen.strokeStyle = "#141517";
+      if (layer === "pdf" || layer === "f")
+        for (const [x, y, side] of all) {
+          pen.beginPath();
+          pen.arc((size * (1 + x)) / 2, (size * (1 - y)) / 2, layer === "f" ? 0.6 + 4 * side : 1.5, 0, 2 * Math.PI);
+          pen.fill();
+          pen.stroke();
+        }
+      this.hemisphere.setAttribute("aria-label", `${layers.find(([key]) => key === layer)![1]}: ${all.length} draws at ${on}`);
+      this.caption.replaceChildren(el("b", {}, on), `: ${captions[layer]}. ${below > 0 ? `${below} of ${draws} draws fell below the horizon or drew nothing. ` : ""}The mirror direction is to the right.`);
+      document.documentElement.dataset["looked"] = String(era);
+    } catch (error) {
+      this.failedIn(era, error);
+    }
+  }
+
+  // ---- The film.
+
+  private render(source: string): void {
+    const { era } = this, count = Math.max(1, Math.min(4, navigator.hardwareConcurrency || 2)), from = this.at.sources[this.scene]!;
+    const pool = (this.films = new Pool(this.at.module, source, count, 300_000));
+    this.model.pool = pool;
+    const counts = `[4, 16${this.n > 16 ? ", 64" : ""}]`;
+    const opening: Opening = { file: from.file, text: from.text, published: "", set: [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`] };
+    this.model.run(opening, [yours, this.beside], this.n).catch((error: unknown) => this.failedIn(era, error));
+  }
+  opened(d: Described, shown: Shown[]): void { this.film.opened(d, shown); }
+  painted(index: number, box: Box): void {
+    document.documentElement.dataset["filmed"] = String(this.era);
+    this.film.painted(index, box);
+  }
+  measured(): void {
+    void this.film.measured();
+    void showLadders(this.charts, this.model);
+    if (this.model.finished) document.documentElement.dataset["written"] = String(this.era);
+  }
+  tailed(): void {}
+  spread(): void { void showLadders(this.charts, this.model); }
+  failed(error: DoorError): void { this.failedIn(this.era, error); }
+
+  private controls(): void {
+    const again = (): void => { this.at.changed(this.work); this.restart(); };
+    this.options.replaceChildren(
+      choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.quadrature || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
+      choice("your-beside", "beside", samplers().map(({ name, label }) => [name, label]), this.beside, (value) => { this.beside = value; again(); }),
+      choice("your-n", "samples a pixel", [["4", "4"], ["16", "16"], ["64", "64"]], String(this.n), (value) => { this.n = Number(value); again(); }));
+    const angle = el("output", { for: "your-theta" }, `${this.wo[0]}°`);
+    const theta = el("input", {
+      type: "range", id: "your-theta", min: 0, max: 89, step: 1, value: this.wo[0], "aria-label": "w_o, degrees from the normal",
+      oninput: () => { this.wo = [Number(theta.value), 0]; angle.textContent = `${theta.value}°`; void this.look(); },
+    });
+    this.views.replaceChildren(
+      choice("your-ground", "surface and light", Object.entries(grounds).map(([key, { words }]) => [key, words]), this.ground, (value) => { this.ground = value; this.verdicts.replaceChildren(); again(); }),
+      choice("your-layer", "the hemisphere shows", layers, this.layer, (value) => { this.layer = value; void this.look(); }),
+      el("div", { class: "choice" }, el("span", { class: "label" }, "w_o ", angle), theta));
+  }
+
+  // ---- The verdicts.
+
+  private async check(): Promise<void> {
+    const { probe, era } = this;
+    if (!probe || this.checking) return;
+    this.checking = true;
+    const start = performance.now();
+    this.verdicts.replaceChildren(el("p", {}, "Checking …"));
+    try {
+      const { response } = await probe.ask({ kind: "ask", call: "user_checked", request: { ...this.request(), wo: four, evaluations } }, true);
+      if (era !== this.era) return;
+      const result = response as Checked, took = performance.now() - start;
+      document.documentElement.dataset["checked"] = String(Math.round(took));
+      this.table(result, took);
+      this.at.checked(result);
+    } catch (error) {
+      this.verdicts.replaceChildren();
+      this.failedIn(era, error);
+    }
+    this.checking = false;
+  }
+
+  private table(result: Checked, took: number): void {
+    const rows = result.verdicts.map((v) => el("tr", { "data-verdict": v.name, "data-state": v.state },
+      el("th", { scope: "row" }, el("button", { type: "button", class: "plain", title: v.question, onclick: () => this.picture(v) }, v.name)),
+      el("td", { class: v.state === "wrong" || v.state === "error" ? "bad" : v.state === "right" ? "good" : "" }, v.state),
+      el("td", {}, minus(plusMinus(v.say)), power(v), ...(v.cause && !v.say.includes(v.cause) ? [` ${minus(plusMinus(v.cause))}`] : []))));
+    const first = result.verdicts.find(({ state }) => state === "wrong" || state === "error");
+    this.verdicts.replaceChildren(
+      el("p", {}, el("b", { "data-result": result.state }, result.state), first ? `: fix ${first.name} first. ` : ". ",
+        `${result.evaluations.toLocaleString("en")} evaluations at w_o of ${four.map(([theta]) => `${theta}°`).join(", ")} in ${(took / 1000).toFixed(1)} s. A right verdict says what it could have missed; the program, with ten times as many, misses less. Click a verdict for its picture.`),
+      el("table", { class: "verdicts" }, el("caption", {}, grounds[this.ground]!.words), el("tbody", {}, ...rows)));
+    if (first) this.picture(first);
+  }
+
+  /** The draws or directions that a verdict speaks of. */
+  private picture(v: Verdict): void {
+    this.wo = [v.theta, v.azimuth];
+    this.layer = pictures[v.name] ?? "pdf";
+    this.controls();
+    void this.look();
+  }
+
+  // ---- The code as a file, in the address, in other languages.
+
+  private async copyAddress(): Promise<void> {
+    const words = el("span", {}, location.href);
+    this.at.speaker.say(await copied(words));
+  }
+  private save(): void { download("sampler.js", this.editor.code); }
+  private async openFile(event: Event): Promise<void> {
+    const [file] = (event.target as HTMLInputElement).files ?? [];
+    if (!file || file.size > 200_000) return;
+    this.editor.code = await file.text();
+    this.edited();
+  }
+  private get format(): string { return byId<HTMLSelectElement>("export-format")?.value ?? exports[0]![0]; }
+  private export(): void {
+    const details = this.root.querySelector<HTMLDetailsElement>("#export")!;
+    if (details.open) this.out.firstElementChild!.textContent = exported(this.format, this.editor.code).text;
+  }
+  private async copyExport(): Promise<void> { this.at.speaker.say(await copied(this.out)); }
+  private saveExport(): void {
+    const { name, text } = exported(this.format, this.editor.code);
+    download(name, text);
+  }
+}
+
+/** The verdicts on some code, in a worker of its own. */
+export async function checkedCode(module: WebAssembly.Module, worker: string, code: string, ground: string): Promise<Checked> {
+  const pool = new Pool(module, withUser(worker, code).source, 1), { lobe, lambert, sharpness, light } = grounds[ground]!;
+  try {
+    const request = { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations };
+    return (await pool.ask({ kind: "ask", call: "user_checked", request })).response as Checked;
+  } finally {
+    pool.end();
+  }
+}
+
+function download(name: string, text: string): void {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}

@@ -1,0 +1,43 @@
+// The samplers of the page in node, checked as the page checks them: those of the exercises before and after their
+// repair, and the templates.
+import { Api, UserCalls } from "../../../apps/web/api";
+import { exercises } from "../../../apps/web/exercises";
+import { grounds, templates } from "../../../apps/web/templates";
+import { userSampler } from "../../../apps/web/user";
+import { evaluations, four } from "../../../apps/web/workshop_settings";
+
+interface Verdict { name: string; state: string; say: string; hidden: Record<string, number> }
+declare const global: Record<string, unknown>;
+
+/** The page's answer to this code: its state, and its verdicts. */
+function checked(module: WebAssembly.Module, code: string, ground: string): { state: string; verdicts: Verdict[] } {
+  global["self"] = global;
+  const take = userSampler();
+  const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
+  (global["crescentUser"] as (make: () => unknown) => void)(new Function(`"use strict";\n${code}\n;return { ${names.join(", ")} };`) as () => unknown);
+  const user = take() as { calls: UserCalls; numbers: number; context: boolean };
+  const api = new Api(module, user.calls), { lobe, lambert, sharpness, light } = grounds[ground]!;
+  api.number("user_takes", user.numbers, user.context ? 1 : 0);
+  return api.ask("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations });
+}
+
+/** A line for each sampler; throws if one is not as it should be. */
+export function exerciseLines(module: WebAssembly.Module): string[] {
+  const lines: string[] = [], bad: string[] = [];
+  const state = (code: string, ground: string): [string, string] => {
+    const { state, verdicts } = checked(module, code, ground), first = verdicts.find((v) => v.state === "wrong" || v.state === "error") ?? verdicts.find((v) => v.state === "inconclusive");
+    return [state, first ? `${first.name}: ${first.say}` : ""];
+  };
+  for (const { name, code, ground, repair } of exercises) {
+    const [before, why] = state(code, ground), [after, left] = repair ? state(code.replace(repair[0], () => repair[1]), ground) : ["", ""];
+    lines.push(`${name}: ${before}${after ? `, then ${after}` : ""}; ${why} ${left}`);
+    if (repair ? before !== "wrong" || after !== "right" : before !== "inconclusive") bad.push(lines[lines.length - 1]!);
+  }
+  for (const [name, { code, ground }] of Object.entries(templates)) {
+    const [found, why] = state(code, ground);
+    lines.push(`template ${name}: ${found}`);
+    if (found !== "right") bad.push(`template ${name}: ${found}; ${why}`);
+  }
+  if (bad.length > 0) throw new Error(bad.join("\n"));
+  return lines;
+}

@@ -1,0 +1,179 @@
+"""A sampler written in the page, the main film, exercises, and a browser that refuses workers."""
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+import browser
+
+small = "#experiment=three-glosses&n=4"
+COSINE = """function sample(wo, u) {
+const r = Math.sqrt(u[0]), phi = 2 * Math.PI * u[1], z = Math.sqrt(1 - u[0]);
+return { wi: [r * Math.cos(phi), r * Math.sin(phi), z], pdf: z / Math.PI }
+}
+function pdf(wo, wi) { return Math.max(wi[2], 0) / Math.PI }"""
+told = "document.documentElement.dataset"
+FAULT = "document.getElementById('fault-line').textContent"
+LOOKED = f"{told}.code === 'runs' && {told}.looked"
+
+
+def tests(page, folder):
+    source = folder / "node_modules/axe-core/axe.min.js"
+
+    def reached_and_read(driver):
+        """The new parts at every width, light and dark: nothing scrolls sideways, axe finds nothing; the tab key goes
+        through the editor and on."""
+        for address, until in (("#part=write", f"{told}.written"), ("#part=faults", "document.querySelector('.cards')"),
+                               ("#exercise=eta-squared", "document.getElementById('predict')")):
+            browser.open_page(driver, page, address, until=until)
+            if "write" in address:
+                verdicts(driver)
+                browser.tab_to(driver, ".cm-content")
+                browser.keys(driver, Keys.TAB)
+                assert not driver.execute_script("return !!document.activeElement.closest('.cm-editor')"), "the editor is a trap"
+            for scheme in ("light", "dark"):
+                browser.media(driver, prefers_color_scheme=scheme)
+                for width, height in ((320, 568), (360, 740), (1440, 900)):
+                    browser.size(driver, width, height)
+                    wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
+                    assert wide <= 0, f"{address} at {width} px: {wide} px too wide"
+                if source.exists():
+                    found = browser.axe(driver, source.read_text())
+                    assert found == [], f"{address}, {scheme}: {found}"
+
+    def write(driver, code):
+        """Replaces the code, as a user pastes it."""
+        driver.execute_script(f"for (const name of ['looked', 'code', 'checked', 'written']) delete {told}[name]")
+        driver.find_element(By.CSS_SELECTOR, ".cm-content").click()
+        browser.keys(driver, Keys.CONTROL, "a")
+        driver.execute_cdp_cmd("Input.insertText", {"text": code})
+        # Chromium keeps the look of what it replaces in an editable element by an inline style, which the policy forbids.
+        lines = browser.console(driver)
+        assert all("Applying inline style" in line for line in lines), lines
+
+    def verdicts(driver):
+        """Checks, and returns the state of each verdict."""
+        driver.execute_script(f"delete {told}.checked; document.getElementById('check-yours').click()")
+        browser.wait(driver, f"{told}.checked")
+        return driver.execute_script(
+            "return Object.fromEntries([...document.querySelectorAll('[data-verdict]')]"
+            ".map((e) => [e.dataset.verdict, e.dataset.state]))")
+
+    def a_sampler_is_written(driver):
+        """A template runs and is right; a wrong one is told with its verdict and its picture; the code comes back from
+        the address; its film stands beside a built-in one."""
+        browser.open_page(driver, page, "#part=write", until=LOOKED)
+        found = verdicts(driver)
+        assert len(found) == 8 and set(found.values()) == {"right"}, found
+        took = int(driver.execute_script(f"return {told}.checked"))
+        write(driver, COSINE.replace("z = Math.sqrt(1 - u[0])", "z = u[0]").replace("Math.sqrt(u[0])", "Math.sqrt(1 - u[0] * u[0])"))
+        browser.wait(driver, LOOKED)
+        found = verdicts(driver)
+        assert found["density"] == "wrong" and found["normalised"] == "right", found
+        assert "fix density first" in browser.text(driver, "#verdicts"), browser.text(driver, "#verdicts")
+        assert driver.execute_script("return document.getElementById('your-layer').value") == "ratio"
+        browser.wait(driver, f"{told}.written")  # its film, to its last metric
+        charts = len(driver.find_elements(By.CSS_SELECTOR, "#write .charts figure"))
+        assert charts == 2, charts
+        address = driver.execute_script("return location.hash")
+        assert "code=" in address, address
+        code = driver.execute_script("return document.querySelector('.cm-content').innerText")
+        browser.open_page(driver, page, address, until=LOOKED)
+        again = driver.execute_script("return document.querySelector('.cm-content').innerText")
+        assert again == code, (again, code)
+        print(f"  a sampler is checked in {took} ms")
+
+    def mistakes_have_lines(driver):
+        """What is no JavaScript, what throws, what returns something else, what never returns and what asks the network
+        is told in one sentence, three of them with their line."""
+        browser.open_page(driver, page, "#part=write", until=LOOKED)
+        for code, line, word in (
+                (COSINE.replace("z = Math", "z = = Math"), 2, "SyntaxError"),
+                (COSINE.replace("Math.max(wi[2], 0)", "Math.max(wi[2], zero)"), 5, "zero is not defined"),
+                ("fetch('https://example.org').catch(() => {});\n" + COSINE, 0, ""),
+                (COSINE.replace("pdf: z / Math.PI", "p: z / Math.PI"), 0, "sample returned"),
+                (COSINE.replace("return { wi", "while (true); return { wi"), 3, "did not return within"),
+                ("function pdf() { return 1 }", 0, "there is no function sample")):
+            write(driver, code)
+            if not word:  # refused by the policy: the draws need no answer, and none comes
+                browser.wait(driver, f"{told}.looked", seconds=30)
+                assert any("connect-src" in line for line in browser.console(driver)), "the policy lets a sampler ask"
+                continue
+            said = browser.wait(driver, f"{told}.code === 'fault' && {FAULT}", seconds=30)
+            assert word in said and (not line or said.startswith(f"Line {line}: ")), f"{word} in line {line}: {said}"
+            if line:
+                browser.wait(driver, "document.querySelector('.cm-lint-marker-error, .cm-lintRange-error')")
+        assert browser.requests(driver) == []
+        write(driver, COSINE)
+        browser.wait(driver, LOOKED)
+        assert browser.text(driver, "#fault-line") == ""
+
+    def an_exercise_is_solved(driver):
+        """A prediction, a wrong verdict, hints, the repair: solved, also after the page was opened again."""
+        browser.open_page(driver, page, "#part=faults", until="document.querySelectorAll('.cards [data-exercise]').length === 12")
+        driver.find_element(By.CSS_SELECTOR, "[data-exercise=eta-squared] a").click()
+        state = "document.querySelector('[data-exercise=eta-squared]').dataset.state"
+        assert driver.execute_script("return " + state) == "open"
+        browser.tab_to(driver, "#predicted-valid")
+        browser.keys(driver, Keys.ARROW_DOWN, Keys.ARROW_DOWN)
+        browser.tab_to(driver, "#predict")
+        browser.keys(driver, Keys.ENTER)
+        browser.wait(driver, LOOKED)
+        for count in (1, 2, 3):
+            driver.find_element(By.ID, "hint").click()
+            assert len(driver.find_elements(By.CSS_SELECTOR, ".hints li")) == count
+        assert verdicts(driver)["normalised"] == "wrong"
+        assert "you predicted normalised" in browser.text(driver, "#exercise-result"), browser.text(driver, "#exercise-result")
+        driver.find_element(By.ID, "no-fault").click()
+        assert "disagrees" in browser.text(driver, "#exercise-result")
+        assert driver.execute_script("return " + state) == "predicted"
+        write(driver, COSINE)
+        browser.wait(driver, LOOKED)
+        assert "wrong" not in verdicts(driver).values()
+        browser.wait(driver, state + " === 'solved'")
+        browser.open_page(driver, page, "#part=faults", until="document.querySelector('.cards')")
+        assert driver.execute_script("return " + state) == "solved"
+        driver.execute_script("localStorage.clear()")
+
+    def the_main_film(driver):
+        """900 pixels wide at 1440 x 900; keys and the wheel zoom to single pixels; a pixel is read; the wipe and both
+        panels show what was chosen; on a phone panels are stacked."""
+        browser.size(driver, 1440, 900)
+        browser.open_page(driver, page, small)
+        film = driver.find_element(By.ID, "main-film")
+        assert film.rect["width"] >= 900, film.rect
+        zoom = "Number(document.getElementById('main-film').dataset.zoom)"
+        driver.execute_script("document.getElementById('main-film').focus()")
+        browser.keys(driver, "+", "+", "+")
+        assert driver.execute_script("return " + zoom) == 8
+        browser.keys(driver, Keys.ARROW_RIGHT)
+        browser.wait(driver, "/reference Y/.test(document.querySelector('#film .readout').textContent)")
+        assert "pixel=" in driver.execute_script("return location.hash")
+        read = browser.text(driver, "#film .readout")
+        assert all(word in read for word in ("cosine", "phong", "error", "below the horizon")), read
+        browser.keys(driver, "0")
+        assert driver.execute_script("return " + zoom) == 1
+        driver.execute_script("document.getElementById('main-film').dispatchEvent(new WheelEvent('wheel', {deltaY: -240, clientX: 500,"
+                              " clientY: document.getElementById('main-film').getBoundingClientRect().top + 50, cancelable: true}))")
+        assert driver.execute_script("return " + zoom) == 2
+        picture = "document.getElementById('main-film').toDataURL()"
+        for name, value in (("main-film-b", "error 0"), ("main-film-a", "variance 1"), ("main-film-mode", "side")):
+            before = driver.execute_script("return " + picture)
+            driver.execute_script("const s = document.getElementById(arguments[0]); s.value = arguments[1];"
+                                  "s.dispatchEvent(new Event('change'))", name, value)
+            browser.wait(driver, f"{picture} !== '{before[:40]}' && {picture}.length !== {len(before)}", seconds=20)
+        said = browser.text(driver, "#film .bars")
+        assert "W/(sr m²)" in said and "variance" in said, said
+        browser.size(driver, 360, 740)
+        browser.wait(driver, "document.getElementById('main-film').clientHeight > 200")
+        wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
+        assert wide <= 0, f"{wide} px too wide"
+
+    def workers_are_refused(driver):
+        """One sentence, and nothing else."""
+        script = driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
+            "source": "window.Worker = function () { throw new Error('refused'); };"})
+        browser.open_page(driver, page, small, until="document.getElementById('wrong').textContent")
+        driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+        assert "refuses workers" in browser.text(driver, "#wrong"), browser.text(driver, "#wrong")
+        assert driver.execute_script("return document.getElementById('bench').hidden")
+
+    return [reached_and_read, a_sampler_is_written, mistakes_have_lines, an_exercise_is_solved, the_main_film, workers_are_refused]
