@@ -40,7 +40,7 @@
 #include "check/verdict_names.h"
 #include "check/waivers.h"
 #include "compare/compare.h"
-#include "compare/flip.h"
+#include "compare/metrics.h"
 #include "compare/suite/accept.h"
 #include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
