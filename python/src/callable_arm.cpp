@@ -112,7 +112,8 @@ std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, cons
     surface("alpha", &ExternalSurface::alpha);
     surface("rho_s", &ExternalSurface::lobe);
     for (const char* name : {"side", "eta"})  // scenes are opaque, and seen from the side of the normal
-        if (uses.contains(name)) all.push_back(per_run(name, batch, rows, {}, [](std::size_t, std::size_t) { return 1.0; }));
+        if (uses.contains(name))
+            all.push_back(per_run(name, batch, rows, {}, [](std::size_t, std::size_t) { return 1.0; }));
     if (uses.contains("rho_d"))
         all.push_back(
             per_run("rho_d", batch, rows, {3}, [&](std::size_t r, std::size_t c) { return batch.runs[r].rho_d[c]; }));

@@ -20,7 +20,7 @@ namespace crescent::python {
 
 struct CallableArmPlan {
     std::string name;
-    nb::object draw, pdf;          // pdf may be None
+    nb::object draw, pdf;  // pdf may be None
     int numbers = 2;
     std::set<std::string> uses{};  // of the quantities above
     bool serial = false;           // it wants one thread, the caller's own
@@ -49,8 +49,7 @@ private:
 };
 
 /// (arm, draw, pdf, numbers, uses, serial) of each arm whose sampler is a callable.
-using CallableArms =
-    std::vector<std::tuple<std::string, nb::object, nb::object, int, std::vector<std::string>, bool>>;
+using CallableArms = std::vector<std::tuple<std::string, nb::object, nb::object, int, std::vector<std::string>, bool>>;
 
 /// The samplers of these arms.
 inline std::map<std::string, std::shared_ptr<const CallableArm>> samplers_of(const CallableArms& callables) {

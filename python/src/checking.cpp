@@ -20,7 +20,7 @@ using Adapter = std::shared_ptr<const SamplerAdapter>;
 /// CheckCases over w_o, and the sampler in them.
 struct CheckCases {
     std::vector<CheckCase> all;
-    Adapter adapter;  // null: a built-in sampler, or an arm of an experiment
+    Adapter adapter;                                         // null: a built-in sampler, or an arm of an experiment
     std::vector<std::shared_ptr<const CallableArm>> arms{};  // of an experiment: those with callables
     std::size_t size() const {
         std::size_t checked = 0;
@@ -53,8 +53,8 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     return {make_user_cases(adapter, full, grid), adapter};
 }
 
-CheckCases of_experiment(const Experiment& experiment, const std::string& sampler, int pixels, bool full,
-    const CallableArms& callables) {
+CheckCases of_experiment(
+    const Experiment& experiment, const std::string& sampler, int pixels, bool full, const CallableArms& callables) {
     CheckCases out;
     ExternalSamplers samplers;
     for (const auto& [name, arm] : samplers_of(callables)) samplers[name] = arm, out.arms.push_back(arm);

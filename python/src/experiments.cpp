@@ -103,7 +103,8 @@ ReferenceList references_of(nb::handle self) {
     return out;
 }
 
-using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object>;
+using State =
+    std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object>;
 
 State state_of(nb::handle self) {
     const RunResult& r = nb::cast<const RunResult&>(self);
@@ -170,8 +171,8 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
     std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
     PolledMonitor monitor;
     const Work here(&monitor);
-    return result_of(collect(
-        part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false}));
+    return result_of(
+        collect(part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false}));
 }
 
 /// `kept` receives the result of the complete seeds if the run is interrupted.
@@ -200,8 +201,8 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
             run.results.push_back(std::move(result));
         }
         monitor.check();
-        Measured all = collect(run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor,
-            {"crescent.run", studies});
+        Measured all = collect(
+            run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies});
         run.results.clear(), run.prepared.reset();
         monitor.check();
         out = result_of(std::move(all));
@@ -210,8 +211,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         watched(monitor, raised, progress, serial, work);
     } catch (nb::python_error& error) {
         if (!error.matches(PyExc_KeyboardInterrupt)) throw;
-        if (std::optional<RunResult> part = finished_seeds(experiment, run))
-            kept.append(nb::cast(std::move(*part)));
+        if (std::optional<RunResult> part = finished_seeds(experiment, run)) kept.append(nb::cast(std::move(*part)));
         throw;
     }
     return out;
@@ -261,7 +261,8 @@ Experiment settled_paths(Experiment e) {
 using FloatPlane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 /// HDR-FLIP of each pixel.
-nb::object flip_of(const FloatPlane& r0, const FloatPlane& g0, const FloatPlane& b0, const FloatPlane& r, const FloatPlane& g, const FloatPlane& b) {
+nb::object flip_of(const FloatPlane& r0, const FloatPlane& g0, const FloatPlane& b0, const FloatPlane& r,
+    const FloatPlane& g, const FloatPlane& b) {
     const auto height = r0.shape(0), width = r0.shape(1);
     const auto image = [&](const FloatPlane& red, const FloatPlane& green, const FloatPlane& blue) {
         for (const FloatPlane* plane : {&red, &green, &blue})
