@@ -1,7 +1,7 @@
 // node bench/page.mjs CRESCENT BUILD: Msamples/s of one thread, the page's module in this node beside the program's SSE4
 // code, in turn; the best of 5. A sample is one draw of one geometry pixel; what traces primary rays is not counted, in
 // neither. One line of JSON an arm, for bench/page.py.
-import { spawnSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
@@ -23,7 +23,8 @@ function native() {
 }
 
 const { Api } = await import(join(build, "api.mjs"));
-const api = new Api(await WebAssembly.compile(readFileSync(join(build, "crescent.wasm"))));
+const module = await WebAssembly.compile(readFileSync(join(build, "crescent.wasm")));
+const api = new Api(module);
 const d = api.ask("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: [], published: "" });
 
 /** Seconds of all tiles of one call; `before` is called first, uncounted. */
@@ -38,6 +39,31 @@ function page(call, given, before) {
       seconds += (performance.now() - start) / 1000;
     }
   return seconds;
+}
+
+/** Million draws a second of the page's template "cosine" in JavaScript, film included; the best of 5. */
+async function written() {
+  const web = join(root, "apps/web"), folder = mkdtempSync(join(tmpdir(), "crescent-"));
+  const bundled = (name) => {
+    execFileSync("esbuild", [join(web, `${name}.ts`), "--bundle", "--format=esm", "--target=es2022", "--log-level=warning", `--outfile=${join(folder, `${name}.mjs`)}`]);
+    return import(join(folder, `${name}.mjs`));
+  };
+  const [{ userSampler }, { templates }] = [await bundled("user"), await bundled("templates")];
+  rmSync(folder, { recursive: true });
+  globalThis.self = globalThis;
+  const take = userSampler();
+  globalThis.crescentUser(new Function(`${templates.cosine.code}; return { sample, pdf };`));
+  const user = take(), own = new Api(module, user.calls);
+  own.number("user_takes", user.numbers, user.context ? 1 : 0);
+  const arms = own.ask("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: ['arms.yours.exec="page"', "arms.yours.n=[16]"], published: "" }).arms;
+  const arm = arms.findIndex(({ name }) => name === "yours"), box = [448, 320, 512, 384], draws = 64 * 64 * 16; // all of it on the sphere
+  let rate = 0;
+  for (let turn = 0; turn < 4 * times; ++turn) {
+    const start = performance.now();
+    own.number("tile", arm, 16, ...box);
+    rate = Math.max(rate, draws / (performance.now() - start) / 1000);
+  }
+  return rate;
 }
 
 const best = {};
@@ -55,4 +81,4 @@ for (let turn = 0; turn < times; ++turn) {
 }
 for (const row of Object.values(best)) console.log(JSON.stringify(row));
 api.say("prepare_reference");
-console.log(JSON.stringify({ commit, engine: `node ${process.version}, V8 ${process.versions.v8}`, reference: page("reference_tile", []) }));
+console.log(JSON.stringify({ commit, engine: `node ${process.version}, V8 ${process.versions.v8}`, reference: page("reference_tile", []), written: await written() }));

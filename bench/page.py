@@ -5,7 +5,8 @@
 
 Measures what ./page has built: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
 three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last metric, and from a
-slider's move to the first new pixels, the median of twenty moves, and to N = 64 again. --write puts all of it under
+slider's move to the first new pixels, the median of twenty moves, and to N = 64 again; ms between frames meanwhile; ms
+of a check of a sampler in JavaScript. --write puts all of it under
 "Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, like the tests of the page.
 """
 import argparse
@@ -77,7 +78,32 @@ def moved(page, turns=20, whole=3):
         driver.quit()
 
 
-def section(rows, facts, openings, slider, command):
+def frames(page):
+    """Returns ms between frames while the gallery is computed from a move of a slider on: the 99th percentile and the
+    largest; and of a check of a sampler in JavaScript, the median of five."""
+    driver = browser.chromium()
+    try:
+        browser.open_page(driver, page)
+        driver.execute_script(
+            "document.getElementById('controls').open = true; window.frames_seen = []; let last = 0;"
+            "const turn = (t) => { if (last) window.frames_seen.push(t - last); last = t; requestAnimationFrame(turn); };"
+            "requestAnimationFrame(turn)")
+        move(driver, 350)
+        time.sleep(3)
+        browser.wait(driver, "document.documentElement.dataset.took")
+        seen = sorted(driver.execute_script("return window.frames_seen"))
+        browser.open_page(driver, page, "#part=write", until="document.documentElement.dataset.written")
+        checks = []
+        for _ in range(5):
+            driver.execute_script("delete document.documentElement.dataset.checked;"
+                                  "document.getElementById('check-yours').click()")
+            checks.append(int(browser.wait(driver, "document.documentElement.dataset.checked")))
+        return seen[int(0.99 * (len(seen) - 1))], seen[-1], statistics.median(checks)
+    finally:
+        driver.quit()
+
+
+def section(rows, facts, openings, slider, drawn, command):
     least = {key: min(int(one[key]) for one in openings) for key in ("first", "films", "took")}
     load = os.getloadavg()[0]
     table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |"
@@ -97,7 +123,11 @@ Msamples/s of one thread, the best of five alternating runs: the module of the w
 | from a move of a slider to the first new pixels, median of 20 moves | {slider[0]:.0f} |
 | the same, largest of the 20 | {slider[1]} |
 | from a move of a slider to the three samplers at N = 64, best of 3 | {slider[2]} |
+| between two frames meanwhile, 99th percentile | {drawn[0]:.0f} |
+| the same, the largest | {drawn[1]:.0f} |
+| verdicts on a sampler in JavaScript, four w_o, median of 5 | {drawn[2]:.0f} |
 
+- A cosine sampler in JavaScript, in the film: {facts['written']:.1f} million draws/s of one thread.
 - {datetime.date.today().isoformat()}, {processor()}, {os.cpu_count()} threads, load {load:.1f} at the end;
   {openings[0]['browser']}; {facts['engine']}; crescent {facts['commit']}
 - Written by `{command}`.
@@ -115,7 +145,7 @@ def main():
     page = args.page.resolve().as_uri()
     rows, facts = rates(args.crescent.resolve(), args.build.resolve())
     command = shlex.join(["bench/page.py", *sys.argv[1:]])
-    text = section(rows, facts, [opened(page) for _ in range(3)], moved(page), command)
+    text = section(rows, facts, [opened(page) for _ in range(3)], moved(page), frames(page), command)
     print(text)
     if args.write:
         file = ROOT / "docs" / "speed.md"

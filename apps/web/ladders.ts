@@ -22,8 +22,14 @@ export async function showLadders(root: HTMLElement, model: Model): Promise<void
     return model.chart(() => described === model.described, { region: name, series });
   }));
   if (described !== model.described || charts.some((chart) => chart === undefined)) return;
-  const held = root.contains(document.activeElement) ? [...root.querySelectorAll("button")].indexOf(document.activeElement as HTMLButtonElement) : -1;
-  root.replaceChildren(...charts.map((chart, k) => el("figure", { class: "narrow" }, made(chart!),
-    el("button", { type: "button", class: "plain", onclick: () => enlarge(chart!, `RMSE of ${described.regions[k]!.name} against N`) }, "Larger"))));
-  if (held >= 0) root.querySelectorAll("button")[held]?.focus();
+  const figures = [...root.querySelectorAll<HTMLElement>("figure[data-chart]")];
+  if (figures.length !== charts.length || figures.some((figure, k) => figure.dataset["chart"] !== described.regions[k]!.name)) {
+    figures.splice(0, figures.length, ...described.regions.map(({ name }) => {
+      const place = el("div"), figure = el("figure", { class: "narrow", "data-chart": name }, place,
+        el("button", { type: "button", class: "plain", "aria-label": `a larger chart of ${name}`, onclick: () => enlarge(place.innerHTML, `RMSE of ${name} against N`) }, "Larger"));
+      return figure;
+    }));
+    root.replaceChildren(...figures);
+  }
+  figures.forEach((figure, k) => figure.firstElementChild!.replaceChildren(made(charts[k]!))); // its button stays
 }

@@ -50,7 +50,8 @@ in_node() {
 }
 in_node verdicts api phong.json 60
 in_node tiles api "$CRESCENT_SOURCE/experiments/gallery.toml"
-in_node exercises exercises
+in_node exercises exercises mixture-program.mjs
+expect 0 "$CRESCENT" check --exec "node mixture-program.mjs" --wo 60 --quiet
 
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&

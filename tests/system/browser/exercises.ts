@@ -6,6 +6,8 @@ import { grounds, templates } from "../../../apps/web/templates";
 import { userSampler } from "../../../apps/web/user";
 import { evaluations, four } from "../../../apps/web/workshop_settings";
 
+export { exported } from "../../../apps/web/export";
+export { templates };
 interface Verdict { name: string; state: string; say: string; hidden: Record<string, number> }
 declare const global: Record<string, unknown>;
 
