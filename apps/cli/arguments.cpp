@@ -3,12 +3,16 @@
 #include "arguments.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "commands.h"
 #include "crescent/crescent.h"
@@ -93,6 +97,19 @@ void add_version(CLI::App& app, Work& work) {
     app.add_flag_callback("--version", [] { throw CLI::CallForVersion("", 0); }, "Version, commit and compiler.");
 }
 
+/// Replaces this process by the program `crescent-sweep` of the Python package, from the PATH, with the words after the
+/// command.
+int sweep(char** argv) {
+    for (const int ignored : {SIGPIPE, SIGXFSZ}) std::signal(ignored, SIG_DFL);
+    char name[] = "crescent-sweep";
+    argv[1] = name;
+    ::execvp(name, argv + 1);
+    print_to_stderr(errno == ENOENT
+            ? "crescent sweep: no crescent-sweep in the PATH: pip install 'crescent-bench[sweep]'\n"
+            : fmt::format("crescent sweep: cannot start crescent-sweep: {}\n", std::strerror(errno)));
+    return unwritable;
+}
+
 /// Returns the commands if none was chosen, else the flags of the chosen one.
 std::vector<std::string> words(const CLI::App& command, bool flags = true) {
     std::vector<std::string> out;
@@ -153,7 +170,9 @@ std::function<int()> parse(int argc, char** argv) {
     add_schema(app, work);
     add_check(app, work);
     add_compare(app, work);
+    app.add_subcommand("sweep", "Run an experiment over a grid, on one machine or many (Python package).");
     add_version(app, work);
+    if (argc > 1 && std::string_view(argv[1]) == "sweep") return [argv] { return sweep(argv); };
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) { return answer(stdout, app.help(), held); } catch (const CLI::CallForVersion&) {

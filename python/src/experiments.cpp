@@ -8,58 +8,11 @@
 
 #include <filesystem>
 
-#include "callable_arm.h"
 #include "doors.h"
+#include "run_result.h"
 #include "watched.h"
 
 namespace crescent::python {
-
-namespace {
-
-/// Rows bottom-up, [height, width]; the array keeps `owner` alive and shares its memory.
-template <class T> nb::object plane(const std::vector<T>& values, int width, int height, nb::handle owner) {
-    const std::size_t shape[] = {static_cast<std::size_t>(height), static_cast<std::size_t>(width)};
-    return nb::cast(nb::ndarray<nb::numpy, const T>(values.data(), 2, shape, owner));
-}
-
-constexpr std::pair<const char*, std::vector<float> Film::*> film_planes[] = {{"r", &Film::r}, {"g", &Film::g},
-    {"b", &Film::b}, {"y", &Film::y}, {"y2", &Film::second_moment}, {"var", &Film::var}, {"largest", &Film::largest}};
-constexpr std::pair<const char*, std::vector<std::uint32_t> Film::*> film_counts[] = {
-    {"horizon", &Film::horizon}, {"hits", &Film::light_hits}};
-constexpr std::pair<const char*, std::vector<float> ReferenceFilm::*> reference_planes[] = {{"r", &ReferenceFilm::r},
-    {"g", &ReferenceFilm::g}, {"b", &ReferenceFilm::b}, {"y", &ReferenceFilm::y}, {"error", &ReferenceFilm::error}};
-
-nb::dict planes_of(const Film& f, nb::handle owner) {
-    nb::dict out;
-    for (const auto& [name, values] : film_planes) out[name] = plane(f.*values, f.width, f.height, owner);
-    for (const auto& [name, values] : film_counts) out[name] = plane(f.*values, f.width, f.height, owner);
-    return out;
-}
-
-nb::dict planes_of(const ReferenceFilm& f, nb::handle owner) {
-    nb::dict out;
-    for (const auto& [name, values] : reference_planes) out[name] = plane(f.*values, f.width, f.height, owner);
-    return out;
-}
-
-/// Copies a plane of `planes`, and sets the size of its film.
-template <class T, class F>
-void restore_plane(const nb::dict& planes, const char* name, std::vector<T> F::* values, F& film) {
-    using Plane = nb::ndarray<const T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-    const Plane from = nb::cast<Plane>(planes[name]);
-    film.height = static_cast<int>(from.shape(0)), film.width = static_cast<int>(from.shape(1));
-    (film.*values).assign(from.data(), from.data() + from.size());
-}
-
-/// The results of a run, as plain data: texts, films and references.
-struct RunResult {
-    double s = 0;  // the experiment's own
-    bool holds = false;
-    std::string json, csv, junit;
-    Attributes attributes;  // of the films' files
-    std::vector<std::pair<RunKey, Film>> films;
-    std::vector<ReferenceFilm> references;
-};
 
 RunResult result_of(Measured&& m) {
     const ReportInputs in{m.experiment, m.metrics, m.evidence, m.provenance, m.plates};
@@ -73,9 +26,30 @@ RunResult result_of(Measured&& m) {
     return out;
 }
 
-using Planes = nb::typed<nb::dict, std::string, nb::any>;
+SamplersOfCallables samplers_of(const CallableArms& callables, Raised& raised) {
+    SamplersOfCallables out;
+    for (const auto& [name, draw, numbers, uses, one_thread] : callables) {
+        out.serial = out.serial || one_thread;
+        out.samplers[name] = std::make_shared<CallableArm>(
+            CallableArmPlan{name, draw, numbers, {uses.begin(), uses.end()}, one_thread}, raised);
+    }
+    return out;
+}
+
+namespace {
+
+constexpr std::pair<const char*, std::vector<float> Film::*> film_planes[] = {{"r", &Film::r}, {"g", &Film::g},
+    {"b", &Film::b}, {"y", &Film::y}, {"y2", &Film::second_moment}, {"var", &Film::var}, {"largest", &Film::largest}};
+constexpr std::pair<const char*, std::vector<std::uint32_t> Film::*> film_counts[] = {
+    {"horizon", &Film::horizon}, {"hits", &Film::light_hits}};
+nb::dict planes_of(const Film& f, nb::handle owner) {
+    nb::dict out;
+    for (const auto& [name, values] : film_planes) out[name] = plane(f.*values, f.width, f.height, owner);
+    for (const auto& [name, values] : film_counts) out[name] = plane(f.*values, f.width, f.height, owner);
+    return out;
+}
+
 using FilmList = nb::typed<nb::list, nb::typed<nb::tuple, std::string, int, double, int, Planes>>;
-using ReferenceList = nb::typed<nb::list, nb::typed<nb::tuple, double, Planes>>;
 
 /// Returns every film of the run with its key, (arm, n, s, seed, planes).
 FilmList films_of(nb::handle self) {
@@ -87,10 +61,7 @@ FilmList films_of(nb::handle self) {
 
 /// Returns the references that the metrics use, (s, planes).
 ReferenceList references_of(nb::handle self) {
-    nb::list out;
-    for (const ReferenceFilm& film : nb::cast<const RunResult&>(self).references)
-        out.append(nb::make_tuple(film.s, planes_of(film, self)));
-    return out;
+    return reference_list(nb::cast<const RunResult&>(self).references, self);
 }
 
 using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, nb::object, nb::object>;
@@ -114,30 +85,15 @@ void restore(RunResult& into, const State& state) {
         for (const auto& [name, values] : film_planes) restore_plane(planes, name, values, film);
         for (const auto& [name, values] : film_counts) restore_plane(planes, name, values, film);
     }
-    for (const nb::handle entry : references) {
-        const nb::tuple at = nb::cast<nb::tuple>(entry);
-        ReferenceFilm& film = r->references.emplace_back();
-        film.s = nb::cast<double>(at[0]);
-        for (const auto& [name, values] : reference_planes)
-            restore_plane(nb::cast<nb::dict>(at[1]), name, values, film);
-    }
+    restore_references(nb::cast<nb::list>(references), r->references);
 }
-
-/// (arm, draw, numbers, uses, serial) of each arm whose sampler is a callable, see callable_arm.h.
-using CallableArms = std::vector<std::tuple<std::string, nb::object, int, std::vector<std::string>, bool>>;
 
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
     bool studies, const nb::object& progress, const CallableArms& callables) {
     PolledMonitor monitor;
     Raised raised(monitor);
     RunResult out;
-    bool serial = false;
-    ExternalSamplers samplers;
-    for (const auto& [name, draw, numbers, uses, one_thread] : callables) {
-        serial = serial || one_thread;
-        samplers[name] = std::make_shared<CallableArm>(
-            CallableArmPlan{name, draw, numbers, {uses.begin(), uses.end()}, one_thread}, raised);
-    }
+    const auto [samplers, serial] = samplers_of(callables, raised);
     watched(monitor, raised, progress, serial, [&] {
         const RunPlan what = plan(experiment, {first, last});
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});

@@ -27,4 +27,5 @@ NB_MODULE(_crescent, m) {
     crescent::python::add_checking(m);
     crescent::python::add_experiments(m);
     crescent::python::add_arms(m);
+    crescent::python::add_parts(m);
 }

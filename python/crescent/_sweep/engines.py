@@ -1,0 +1,354 @@
+"""Where tasks run: a Dask cluster on this machine, one that is running, or one of a queueing system.
+
+Dask assigns tasks to workers and repeats those of a worker that was lost. Each thread of a worker has one child process
+(runner.py). The client holds a bounded window of tasks, so its memory does not grow with their number.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import queue
+import threading
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .. import _crescent
+from .grid import UsageError
+from .runner import Runner, TaskStopped
+from .tasks import Result, Task, host
+
+_threads = threading.local()
+_LOST_TRIES = 3  # submissions of a task whose reference was lost with its worker
+_ANSWER_S = 6.0  # a scheduler that is silent for longer is gone: exit within 10 s
+_NO_WORKER_S = 60.0
+
+
+class EngineError(RuntimeError):
+    """The engine cannot run or was lost: exit code 3."""
+
+
+def on_worker(task: Task, reference: Any = None) -> Result:
+    """Computes a task on a Dask worker: in the child process of this thread."""
+    from distributed import get_worker
+    from distributed.worker import thread_state
+
+    worker = get_worker()
+    key = thread_state.key
+
+    def unwanted() -> bool:
+        state = worker.state.tasks.get(key)
+        return state is None or state.state in ("cancelled", "released", "forgotten") or worker.status.name != "running"
+
+    runner = getattr(_threads, "runner", None)
+    if runner is None:
+        runner = _threads.runner = Runner()
+    try:
+        if task["kind"] == "sleep":
+            time.sleep(task["seconds"])
+            result: Result = {}
+        else:
+            result = runner.compute(task, reference["reference"] if isinstance(reference, dict) else reference, unwanted)
+    except TaskStopped:
+        result = {"error": "stopped"}
+    return {**result, "worker": str(worker.address), "host": host(), "name": str(worker.name)}
+
+
+@dataclass
+class Job:
+    """A task on its way."""
+
+    id: str
+    task: Task
+    about: Any = None  #: of the caller
+    needs: str = ""  #: the identity of its references
+    avoid: str = ""  #: the address of a worker that must not compute it
+    weight: float = 0.0  #: samples
+    tries: int = field(default=0, compare=False)
+
+
+def usable_cores() -> int:
+    """The cores that this job was given: affinity and control groups (Dask), and Slurm's own count."""
+    from dask.system import CPU_COUNT  # type: ignore[import-untyped,unused-ignore]
+
+    count = int(CPU_COUNT)
+    with contextlib.suppress(ValueError):
+        count = min(count, int(os.environ.get("SLURM_CPUS_PER_TASK", "")))
+    return max(count, 1)
+
+
+_SCHEDULERS = {"slurm": "SLURMCluster", "pbs": "PBSCluster", "sge": "SGECluster", "lsf": "LSFCluster", "local": "LocalCluster"}
+_PROFILE_KEYS = ("scheduler", "jobs", "cores", "processes", "memory", "queue", "walltime", "account", "extra", "prologue")
+
+
+def profile_of(name: str) -> dict[str, Any]:
+    """The keys of a profile: a TOML file, or the name of one in ~/.config/crescent."""
+    path = Path(name)
+    if not path.suffix:
+        path = Path.home() / ".config" / "crescent" / f"{name}.toml"
+    try:
+        profile = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"--engine slurm:{name}: cannot read the profile {path}: {error.strerror}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise UsageError(f"--engine slurm:{name}: {path}: {error}") from None
+    for key in profile:
+        if key not in _PROFILE_KEYS:
+            near = _crescent.nearest(key, list(_PROFILE_KEYS))
+            raise UsageError(
+                f"{path}: no key '{key}': expected {', '.join(_PROFILE_KEYS)}" + (f"; did you mean '{near}'?" if near else "")
+            )
+    kind = profile.setdefault("scheduler", "slurm")
+    if kind not in _SCHEDULERS:
+        near = _crescent.nearest(str(kind), list(_SCHEDULERS))
+        raise UsageError(
+            f"{path}: no scheduler '{kind}': expected {', '.join(_SCHEDULERS)}" + (f"; did you mean '{near}'?" if near else "")
+        )
+    return profile
+
+
+def _queue_cluster(name: str) -> tuple[Any, int]:
+    """A cluster whose workers are jobs of a queueing system, and the number of jobs."""
+    profile = profile_of(name)
+    try:
+        import dask_jobqueue  # type: ignore[import-untyped,import-not-found,unused-ignore]
+        from dask_jobqueue.local import LocalCluster as LocalJobs  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    except ImportError:
+        raise EngineError("crescent sweep: needs dask-jobqueue: pip install 'crescent-bench[sweep]'") from None
+    kind = _SCHEDULERS[profile.pop("scheduler")]
+    jobs = int(profile.pop("jobs", 1))
+    options: dict[str, Any] = {"cores": 1, "memory": "4GB", **profile}
+    for ours, theirs in (("extra", "job_extra_directives"), ("prologue", "job_script_prologue")):
+        if ours in options:
+            options[theirs] = options.pop(ours)
+    options.setdefault("processes", options["cores"])  # one thread a process
+    cluster = (LocalJobs if kind == "LocalCluster" else getattr(dask_jobqueue, kind))(**options)
+    cluster.scale(jobs=jobs)
+    return cluster, jobs
+
+
+class DaskEngine:
+    """A Dask client with a bounded window of tasks. Use as a context."""
+
+    def __init__(self, engine: str, workers: int | None = None) -> None:
+        self._engine, self._workers = engine, workers
+        self._cluster: Any = None
+        self.client: Any = None
+        self._lost = threading.Event()
+        self._closing = False
+        self.slots = 1
+
+    def __enter__(self) -> DaskEngine:
+        import dask
+        from distributed import Client, LocalCluster
+
+        for name in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        dask.config.set({"distributed.comm.timeouts.connect": "5s", "distributed.admin.tick.limit": "60s"})
+        if self._engine == "local":
+            count = self._workers or usable_cores()
+            self._cluster = LocalCluster(
+                n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
+                memory_limit=0, silence_logs=logging.CRITICAL,
+            )  # fmt: skip
+        elif self._engine.startswith("slurm:"):
+            self._cluster, _ = _queue_cluster(self._engine.partition(":")[2])
+        at = self._cluster or "tcp://" + self._engine.removeprefix("dask://")
+        try:
+            self.client = Client(at, timeout=5, set_as_default=False)
+        except (OSError, TimeoutError, ValueError) as error:
+            raise EngineError(f"no Dask scheduler at {self._engine}: {error}") from None
+        threading.Thread(target=self._watch, daemon=True).start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
+        self.close(quick=kind is not None)
+
+    def close(self, quick: bool = False) -> None:
+        """Ends the client, and the cluster if it is this engine's own; `quick`: its workers are ended at once."""
+        self._closing = True
+        if quick and self._engine == "local" and self._cluster is not None:
+            self._kill_workers()
+        for part in (self.client, self._cluster):
+            if part is not None and not self._lost.is_set():
+                with contextlib.suppress(Exception):
+                    part.close(timeout=1 if quick else 10)
+
+    def _kill_workers(self) -> None:
+        for nanny in getattr(self._cluster, "workers", {}).values():
+            with contextlib.suppress(Exception):
+                os.kill(nanny.process.process.pid, 9)
+
+    def _watch(self) -> None:
+        """Sets `lost` as soon as the scheduler does not answer."""
+        since = time.monotonic()
+        while not self._closing and not self._lost.is_set():
+            try:
+                comm = self.client.scheduler_comm
+                if comm is not None and not comm.comm.closed():
+                    self.client.sync(self.client.scheduler.versions, callback_timeout=_ANSWER_S / 2)
+                    since = time.monotonic()
+            except Exception:  # noqa: BLE001: any failure means that it did not answer
+                pass
+            if time.monotonic() - since > _ANSWER_S:
+                self._lost.set()
+            time.sleep(1)
+
+    @property
+    def dashboard(self) -> str:
+        """The address of Dask's dashboard."""
+        return str(self.client.dashboard_link)
+
+    def workers(self) -> dict[str, Any]:
+        """What the scheduler knows about its workers, by address."""
+        return dict(self.client.scheduler_info(n_workers=-1)["workers"])
+
+    def wait_for_workers(self) -> None:
+        """Waits for the first worker; EngineError if there is none in a minute. Workers of a queue are waited for."""
+        start = time.monotonic()
+        while True:
+            found = self.workers()
+            self.slots = sum(w["nthreads"] for w in found.values())
+            if self.slots:
+                return
+            self._check()
+            if time.monotonic() - start > _NO_WORKER_S and not self._engine.startswith("slurm:"):
+                raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s")
+            time.sleep(0.1)
+
+    def _check(self) -> None:
+        if self._lost.is_set():
+            raise EngineError(f"the Dask scheduler of {self._engine} does not answer")
+
+    def run(self, jobs: Iterator[Job], references: Callable[[str], bytes | None]) -> Iterator[tuple[Job, Result]]:
+        """Runs jobs and yields them with their results as they end. A job that needs references comes after the job
+        that computes them, whose id is their identity; or `references` has them."""
+        done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        running: dict[str, tuple[Any, Job]] = {}
+        shared: dict[str, Any] = {}  # references of the current points, as futures
+        waiting: list[Job] = []
+        exhausted = False
+        last_worker = time.monotonic()
+
+        def submit(job: Job) -> None:
+            job.tries += 1
+            reference = None
+            if job.needs:
+                if job.needs not in shared:
+                    data = references(job.needs)
+                    if data is not None:
+                        shared[job.needs] = self.client.scatter({"x": data}, hash=False)["x"]
+                reference = shared.get(job.needs)
+            where = None
+            if job.avoid:
+                others = [address for address in self.workers() if address != job.avoid]
+                where = others or None
+            key = f"{job.id}-{job.tries}-{id(job):x}"
+            future = self.client.submit(
+                on_worker, job.task, reference, key=key, pure=False, workers=where, allow_other_workers=True, retries=0
+            )
+            if job.task["kind"] == "reference":
+                shared[job.id] = future
+            running[key] = (future, job)
+            future.add_done_callback(done.put)
+
+        def release() -> None:
+            needed = {job.needs for _, job in running.values()} | {job.needs for job in waiting}
+            for name in [name for name in list(shared)[:-2] if name not in needed]:
+                del shared[name]
+
+        try:
+            while True:
+                while len(running) < max(32, 4 * self.slots) and not (exhausted and not waiting):
+                    job = waiting.pop() if waiting else next(jobs, None)
+                    if job is None:
+                        exhausted = True
+                        break
+                    submit(job)
+                if exhausted and not running and not waiting:
+                    return
+                try:
+                    future = done.get(timeout=0.5)
+                except queue.Empty:
+                    self._check()
+                    found = self.workers()
+                    if found:
+                        last_worker = time.monotonic()
+                        self.slots = sum(w["nthreads"] for w in found.values())
+                    elif time.monotonic() - last_worker > _NO_WORKER_S and not self._engine.startswith("slurm:"):
+                        raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s") from None
+                    continue
+                if future.key not in running:
+                    continue
+                _, job = running.pop(future.key)
+                result, again = self._result(future, job)
+                if again:
+                    shared.pop(job.needs, None)
+                    waiting.append(job)
+                    continue
+                release()
+                yield job, result
+        except BaseException:
+            with contextlib.suppress(Exception):
+                if not self._lost.is_set():
+                    self.client.cancel([future for future, _ in running.values()], force=True)
+            raise
+
+    def _result(self, future: Any, job: Job) -> tuple[Result, bool]:
+        """The result of a finished future, and whether the job must be submitted again."""
+        from distributed.client import FutureCancelledError
+        from distributed.scheduler import KilledWorker
+
+        if future.status == "finished":
+            try:
+                return dict(future.result(timeout=30)), False
+            except Exception as error:  # noqa: BLE001: its worker was lost before the result arrived
+                problem: BaseException = error
+        else:
+            try:
+                problem = future.exception(timeout=5) or EngineError("lost")
+            except (Exception, FutureCancelledError) as error:  # noqa: BLE001
+                problem = error
+        self._check()
+        if isinstance(problem, KilledWorker):
+            return {"error": f"{problem.allowed_failures + 1} workers were lost while they computed it"}, False
+        if job.tries < _LOST_TRIES:
+            return {}, True
+        return {"error": f"{type(problem).__name__}: {problem}"}, False
+
+
+class InProcess:
+    """One child process without Dask: for the calibration, and for tasks of `commands`."""
+
+    def __enter__(self) -> InProcess:
+        self._runner = Runner()
+        return self
+
+    def __exit__(self, *rest: Any) -> None:
+        self._runner.stop()
+
+    def compute(self, task: Task, reference: bytes | None = None) -> Result:
+        """The result of one task."""
+        result = self._runner.compute(task, reference, lambda: False)
+        return {**result, "worker": f"{host()}:{os.getpid()}", "host": host(), "name": ""}
+
+
+def engine_of(text: str) -> str:
+    """The engine of ``--engine``; UsageError with the nearest word for another one."""
+    kind, colon, rest = text.partition(":")
+    if text in ("local", "commands"):
+        return text
+    if kind == "dask" and rest.startswith("//") and rest[2:].rpartition(":")[2].isdecimal() and rest[2:].rpartition(":")[0]:
+        return text
+    if kind == "slurm" and rest:
+        return text
+    near = _crescent.nearest(kind, ["local", "commands", "dask", "slurm"])
+    raise UsageError(
+        f"--engine {text}: expected local, dask://HOST:PORT, slurm:PROFILE or commands"
+        + (f"; did you mean '{near}'?" if near and near != kind else "")
+    )

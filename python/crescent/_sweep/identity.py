@@ -1,0 +1,172 @@
+"""What a result depends on, as hashes: the scene, each sampler with its source, and the version of the numerics.
+
+The scene's hash covers every value of the experiment except those of samplers, plates, assertions, furnaces and titles:
+a sampler that is added, or another number of seeds, changes no finished result.
+"""
+
+from __future__ import annotations
+
+import ast
+import base64
+import hashlib
+import importlib.metadata
+import inspect
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .. import _crescent
+from .._callable_arms import source_of
+from .._files import names_a_file
+from .._sampler import Sampler
+from ..experiments import Experiment
+
+NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
+_NOT_OF_THE_SCENE = (
+    "title", "seeds", "n", "exposure", "published", "note_evidence", "arms", "plates", "assertions", "furnaces",
+)  # fmt: skip
+_NOT_OF_THE_REFERENCE = ("regions", "firefly_k")
+
+Code = dict[str, Any]  #: {"files": {name: base64}, "at": "FILE.py:NAME"} of a sampler that travels
+
+
+def digest(*parts: Any) -> str:
+    """16 hexadecimal digits of SHA-256 of these values."""
+    text = json.dumps(parts, sort_keys=True, ensure_ascii=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def scene_id(e: Experiment) -> str:
+    """The identity of what is rendered and measured, without the samplers."""
+    return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in _NOT_OF_THE_SCENE})
+
+
+def reference_id(e: Experiment) -> str:
+    """The identity of the references of an experiment."""
+    left_out = (*_NOT_OF_THE_SCENE, *_NOT_OF_THE_REFERENCE)
+    return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in left_out})
+
+
+def _imported(source: str) -> set[str]:
+    """The top-level names that a source imports."""
+    out: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            out |= {name.name.partition(".")[0] for name in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            out.add(node.module.partition(".")[0])
+    return out
+
+
+def python_sources(file: Path) -> tuple[dict[str, bytes], dict[str, str]]:
+    """A Python file and the files next to it that it imports, by name; and the versions of the packages they import."""
+    files: dict[str, bytes] = {}
+    packages: dict[str, str] = {}
+    waiting = [file]
+    distributions = importlib.metadata.packages_distributions()
+    while waiting:
+        at = waiting.pop()
+        if at.name in files:
+            continue
+        files[at.name] = at.read_bytes()
+        for name in sorted(_imported(files[at.name].decode(errors="replace"))):
+            beside = file.parent / f"{name}.py"
+            if beside.is_file():
+                waiting.append(beside)
+            elif name not in sys.stdlib_module_names and name in distributions:
+                for package in distributions[name]:
+                    packages[package] = importlib.metadata.version(package)
+    return files, dict(sorted(packages.items()))
+
+
+def _travelling(files: Mapping[str, bytes], at: str) -> Code:
+    return {"files": {name: base64.b64encode(data).decode() for name, data in sorted(files.items())}, "at": at}
+
+
+def _of_python(where: str) -> tuple[Any, Code | None]:
+    """Identity and code of "FILE.py:NAME" or "module:NAME"."""
+    name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
+    if not name.endswith(".py"):
+        package = name.partition(".")[0]
+        versions = {}
+        for distribution in importlib.metadata.packages_distributions().get(package, []):
+            versions[distribution] = importlib.metadata.version(distribution)
+        return [where, versions], None
+    path = Path(name)
+    files, packages = python_sources(path)
+    hashes = {file: hashlib.sha256(data).hexdigest() for file, data in files.items()}
+    return [path.name, inside, hashes, packages], _travelling(files, f"{path.name}{colon}{inside}")
+
+
+def _of_plugin(where: str) -> tuple[Any, Code]:
+    data = Path(where).read_bytes()
+    return [hashlib.sha256(data).hexdigest()], _travelling({Path(where).name: data}, Path(where).name)
+
+
+def _of_callable(sampler: Sampler) -> tuple[Any, Code]:
+    """Identity and code of a sampler in memory, which travels by value."""
+    import cloudpickle  # type: ignore[import-untyped,unused-ignore]
+
+    modules = set()
+    texts: list[Any] = []
+    for call in (sampler.sample, sampler.pdf, sampler.f):
+        if call is None:
+            continue
+        module = sys.modules.get(getattr(inspect.unwrap(call), "__module__", "") or "")
+        file = getattr(module, "__file__", None)
+        if module is not None and module.__name__ != "__main__" and file and "site-packages" not in file:
+            modules.add(module)
+        where = source_of(sampler)
+        if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
+            texts.append(_of_python(where)[0])
+            continue
+        try:
+            texts.append(inspect.getsource(inspect.unwrap(call)))
+        except (OSError, TypeError):
+            texts.append(hashlib.sha256(cloudpickle.dumps(call)).hexdigest())
+    for module in modules:
+        cloudpickle.register_pickle_by_value(module)
+    try:
+        data = cloudpickle.dumps(sampler)
+    finally:
+        for module in modules:
+            cloudpickle.unregister_pickle_by_value(module)
+    fields = [sampler.u, sampler.domain, sampler.wo, list(sampler.uses)]
+    return [texts, fields], {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
+
+
+class Arm:
+    """One arm of an experiment: its identity, and what a worker needs to run it."""
+
+    def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | None, version: str | None) -> None:
+        self.name = name
+        self.most = max(table["n"])  #: the largest sample count
+        self.sampler = str(table.get("sampler") or table.get("python") or table.get("plugin") or table.get("exec"))
+        self.code: Code | None = None
+        self.built_in = not {"python", "plugin", "exec"} & set(table) and given is None
+        kind = next((key for key in ("python", "plugin", "exec") if key in table), "")
+        source: Any = None
+        if given is not None:
+            source, self.code = _of_callable(given)
+        elif kind == "python":
+            source, self.code = _of_python(table["python"])
+        elif kind == "plugin":
+            source, self.code = _of_plugin(table["plugin"])
+        kept = {k: v for k, v in table.items() if k not in ("python", "plugin")}
+        self.id = digest(NUMERICS, name, kept, source if version is None else ["declared", version])
+        self.kind = "callable" if given is not None else kind
+
+
+def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
+    """The arms of an experiment, those of `e.samplers` included."""
+    tables = e._with_arms()._tree()["arms"]
+    for name in versions:
+        if name not in tables:
+            near = _crescent.nearest(name, list(tables))
+            raise ValueError(
+                f"--sampler-version: no arm '{name}': expected one of {', '.join(tables)}"
+                + (f"; did you mean '{near}'?" if near else "")
+            )
+    return {name: Arm(name, table, e.samplers.get(name), versions.get(name)) for name, table in tables.items()}

@@ -1,0 +1,194 @@
+"""The tasks of a sweep as plain data, and what computes one in this process.
+
+A task has a kind: ``reference`` (of one scene), ``part`` (some arms and seeds of one point), ``studies`` (furnaces and
+checks of the article's claims of one point), ``check`` (a sampler at one point), ``sleep`` (a stub for measurements).
+Its result is plain data too; references are bytes.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import os
+import pickle
+import socket
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .. import _crescent
+from .._callable_arms import _arm
+from .._check import check
+from .._files import sampler_at
+from .identity import NUMERICS
+
+Task = dict[str, Any]
+Result = dict[str, Any]
+
+
+def host() -> str:
+    """The name of this machine."""
+    return socket.gethostname()
+
+
+def _code_folder(files: Mapping[str, str]) -> Path:
+    """The folder of these files on this machine; its name is that of their content."""
+    name = hashlib.sha256(repr(sorted(files.items())).encode()).hexdigest()[:24]
+    folder = Path(tempfile.gettempdir()) / f"crescent-sweep-{os.getuid()}" / name
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    for file, text in files.items():
+        data = base64.b64decode(text)
+        if not (folder / file).is_file() or (folder / file).read_bytes() != data:
+            partial = folder / f".{file}.{os.getpid()}"
+            partial.write_bytes(data)
+            partial.replace(folder / file)
+    return folder
+
+
+def _sampler(code: Mapping[str, Any]) -> Any:
+    """The sampler in Python that travelled with a task."""
+    if code.get("pickle"):
+        return pickle.loads(base64.b64decode(code["pickle"]))
+    return sampler_at(str(_code_folder(code["files"]) / code["at"]))
+
+
+def experiment_of(task: Task) -> Any:
+    """The experiment of a task, with its plugins where this machine has them."""
+    changes = list(task["changes"])
+    for name, arm in task.get("arms", {}).items():
+        if arm["kind"] == "plugin":
+            at = _code_folder(arm["code"]["files"]) / arm["code"]["at"]
+            changes.append(f'arms."{name}".plugin="{at}"')
+    return _crescent.parse(task["text"], task["file"], changes)
+
+
+def _callables(task: Task) -> list[Any]:
+    """The arms in Python of a task."""
+    out = []
+    for name, arm in task.get("arms", {}).items():
+        if arm["kind"] in ("python", "callable"):
+            out.append(_arm(name, _sampler(arm["code"]) if arm["code"] else sampler_at(arm["sampler"])))
+    return out
+
+
+def _part(task: Task, references: Any) -> Result:
+    """Runs each arm by itself, so that its result does not depend on the others."""
+    e = experiment_of(task)
+    callables = {arm[0]: arm for arm in _callables(task)}
+    parts = {}
+    films: dict[str, bytes] = {}
+    for name in task["arms"]:
+        start = time.perf_counter()
+        run = _crescent.run_part(
+            e, task["first"], task["last"], [name], references, 1, task.get("isa", ""), None,
+            [callables[name]] if name in callables else [],
+        )  # fmt: skip
+        parts[name] = {"json": run.json, "csv": run.csv, "seconds": time.perf_counter() - start}
+        if task.get("films") and task["first"] == 1:
+            films |= _films(run)
+    return {"parts": parts, "films": films}
+
+
+def _films(run: Any) -> dict[str, bytes]:
+    """The EXR files of a run."""
+    with tempfile.TemporaryDirectory() as folder:
+        run.write(os.path.join(folder, "run"))
+        return {path.name: path.read_bytes() for path in sorted(Path(folder, "run", "films").glob("*.exr"))}
+
+
+def _checked(task: Task) -> Result:
+    """Checks one sampler with the values of one point."""
+    values = task["values"]
+    sampler: Any = task["sampler"]
+    if task["code"]:
+        sampler = _sampler_with(task["code"], values)
+        settings = values if getattr(sampler, "uses", ()) else None
+    else:
+        settings = values
+    result = check(sampler, alpha=task["alpha"], seed=task["seed"], full=task["full"], settings=settings, threads=1)
+    rows = [
+        {"case": v.case, "verdict": v.name, "state": v.state, "say": v.say, "cause": v.cause} for v in result.verdicts
+    ]
+    return {"state": result.state, "tests": result.tests, "verdicts": rows, "json": result.json()}
+
+
+def _sampler_with(code: Mapping[str, Any], values: Mapping[str, Any]) -> Any:
+    """The sampler of a file; a class or function of it is called with the values of the point as keywords."""
+    from .._files import _module_in
+    from .._sampler import Sampler
+
+    at = str(_code_folder(code["files"]) / code["at"])
+    file, colon, inside = at.rpartition(":") if not at.endswith(".py") else (at, "", "")
+    found = getattr(_module_in(Path(file)), inside) if colon else None
+    if found is None or isinstance(found, Sampler) or not callable(found):
+        return sampler_at(at)
+    made = found(**values)
+    if isinstance(made, Sampler):
+        return made
+    return Sampler(made.sample, getattr(made, "pdf", None), getattr(made, "f", None), name=inside)
+
+
+def _rates(task: Task) -> Result:
+    """Measures samples a second of each arm, and seconds a pixel of the reference, on a small picture of the scene."""
+    e = experiment_of(task)
+    pixels = task["pixels"]
+    start = time.perf_counter()
+    references = _crescent.references(e, 1, "", None)
+    reference_s = (time.perf_counter() - start) / pixels
+    callables = {arm[0]: arm for arm in _callables(task)}
+    arms: dict[str, float] = {}
+    errors: dict[str, str] = {}
+    seen = 1.0
+    for name, arm in task["arms"].items():
+        last = 1
+        try:
+            while True:
+                start = time.perf_counter()
+                given = [callables[name]] if name in callables else []
+                run = _crescent.run_part(e, 2, 1 + last, [name], references, 1, "", None, given)
+                seconds = time.perf_counter() - start
+                if seconds > 0.25 or last >= 64:
+                    break
+                last *= 4
+            import json
+
+            seen = json.loads(run.json)["geometry_pixels"] / pixels
+            arms[name] = seen * pixels * last * arm["most"] / seconds
+        except Exception as error:  # noqa: BLE001: the tasks of this arm report it
+            errors[name] = said(error)
+    return {"arms": arms, "reference_s": reference_s, "seen": seen, "errors": errors}
+
+
+def said(error: BaseException) -> str:
+    """An error in one line."""
+    text = " ".join(str(error).split())
+    return text if isinstance(error, ValueError) and text else f"{type(error).__name__}: {text}"
+
+
+def compute(task: Task, reference: Any = None) -> Result:
+    """Computes a task in this process."""
+    start = time.perf_counter()
+    if task["numerics"] != NUMERICS:
+        raise ValueError(f"{host()} has crescent {NUMERICS}, and the sweep was started by {task['numerics']}")
+    kind = task["kind"]
+    out: Result
+    if kind == "reference":
+        made = _crescent.references(experiment_of(task), task.get("threads", 1), "", None)
+        out = {"reference": pickle.dumps(made, protocol=5)}
+    elif kind == "part":
+        out = _part(task, reference)
+    elif kind == "studies":
+        run = _crescent.studies(experiment_of(task), task.get("threads", 1), "", None, _callables(task))
+        out = {"json": run.json}
+    elif kind == "check":
+        out = _checked(task)
+    elif kind == "rates":
+        out = _rates(task)
+    elif kind == "sleep":
+        time.sleep(task["seconds"])
+        out = {}
+    else:
+        raise ValueError(f"no kind of task '{kind}'")
+    return {**out, "seconds": time.perf_counter() - start, "isa": task.get("isa") or _crescent.instruction_sets()[-1]}
