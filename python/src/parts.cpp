@@ -61,10 +61,12 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
         RunPlan what = plan(experiment, {first, last});
         const auto other = [&](const std::string& name) { return std::ranges::find(arms, name) == arms.end(); };
         std::erase_if(what.jobs, [&](const Job& job) { return other(job.arm); });
-        RunPlan seen = what;  // opens the samplers of these arms alone
-        std::erase_if(seen.experiment.arms, [&](const ArmPlan& arm) { return other(arm.name); });
+        Experiment& seen = what.experiment;  // with these arms alone: no other sampler is opened
+        std::erase_if(seen.arms, [&](const ArmPlan& arm) { return other(arm.name); });
+        seen.assertions.clear();
+        if (seen.exponent && other(seen.exponent->arm)) seen.exponent.reset();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
-        Prepared prepared = look(seen, engine);
+        Prepared prepared = look(what, engine);
         prepared.quadrature = given.quadrature, prepared.monte_carlo = given.monte_carlo;
         const Scene scene = prepared.scene;
         std::vector<Job> jobs;

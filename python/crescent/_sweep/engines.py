@@ -45,6 +45,10 @@ def on_worker(task: Task, reference: Any = None) -> Result:
         state = worker.state.tasks.get(key)
         return state is None or state.state in ("cancelled", "released", "forgotten") or worker.status.name != "running"
 
+    if reference is not None and "error" in reference:
+        return {"error": f"its reference: {reference['error']}"}
+    if reference is not None and reference["id"] != task["reference"]:
+        return {"error": f"another scene's reference arrived: {reference['id']}, expected {task['reference']}"}
     runner = getattr(_threads, "runner", None)
     if runner is None:
         runner = _threads.runner = Runner()
@@ -53,7 +57,7 @@ def on_worker(task: Task, reference: Any = None) -> Result:
             time.sleep(task["seconds"])
             result: Result = {}
         else:
-            result = runner.compute(task, reference["reference"] if isinstance(reference, dict) else reference, unwanted)
+            result = runner.compute(task, reference and reference["reference"], unwanted)
     except TaskStopped:
         result = {"error": "stopped"}
     return {**result, "worker": str(worker.address), "host": host(), "name": str(worker.name)}
@@ -142,6 +146,7 @@ class DaskEngine:
         self._lost = threading.Event()
         self._closing = False
         self.slots = 1
+        self.later: list[Job] = []  #: jobs that the caller adds while it reads results
 
     def __enter__(self) -> DaskEngine:
         import dask
@@ -231,7 +236,7 @@ class DaskEngine:
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         running: dict[str, tuple[Any, Job]] = {}
         shared: dict[str, Any] = {}  # references of the current points, as futures
-        waiting: list[Job] = []
+        waiting = self.later
         exhausted = False
         last_worker = time.monotonic()
 
@@ -242,7 +247,8 @@ class DaskEngine:
                 if job.needs not in shared:
                     data = references(job.needs)
                     if data is not None:
-                        shared[job.needs] = self.client.scatter({"x": data}, hash=False)["x"]
+                        kept = {"reference": data, "id": job.needs}
+                        shared[job.needs] = self.client.scatter([kept], hash=False)[0]
                 reference = shared.get(job.needs)
             where = None
             if job.avoid:
@@ -250,7 +256,7 @@ class DaskEngine:
                 where = others or None
             key = f"{job.id}-{job.tries}-{id(job):x}"
             future = self.client.submit(
-                on_worker, job.task, reference, key=key, pure=False, workers=where, allow_other_workers=True, retries=0
+                on_worker, job.task, reference, key=key, pure=False, workers=where, retries=0
             )
             if job.task["kind"] == "reference":
                 shared[job.id] = future

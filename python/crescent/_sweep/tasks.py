@@ -76,19 +76,27 @@ def _callables(task: Task) -> list[Any]:
 def _part(task: Task, references: Any) -> Result:
     """Runs each arm by itself, so that its result does not depend on the others."""
     e = experiment_of(task)
+    isa = _instruction_set(task)
     callables = {arm[0]: arm for arm in _callables(task)}
     parts = {}
     films: dict[str, bytes] = {}
     for name in task["arms"]:
         start = time.perf_counter()
         run = _crescent.run_part(
-            e, task["first"], task["last"], [name], references, 1, task.get("isa", ""), None,
+            e, task["first"], task["last"], [name], references, 1, isa, None,
             [callables[name]] if name in callables else [],
         )  # fmt: skip
         parts[name] = {"json": run.json, "csv": run.csv, "seconds": time.perf_counter() - start}
         if task.get("films") and task["first"] == 1:
             films |= _films(run)
-    return {"parts": parts, "films": films}
+    return {"parts": parts, "films": films, "isa": isa}
+
+
+def _instruction_set(task: Task) -> str:
+    """The best instruction set of this machine; for "not NAME" the best other one."""
+    there = _crescent.instruction_sets()
+    unwanted = task.get("isa", "").removeprefix("not ")
+    return next((name for name in reversed(there) if name != unwanted), there[-1])
 
 
 def _films(run: Any) -> dict[str, bytes]:
@@ -176,7 +184,7 @@ def compute(task: Task, reference: Any = None) -> Result:
     out: Result
     if kind == "reference":
         made = _crescent.references(experiment_of(task), task.get("threads", 1), "", None)
-        out = {"reference": pickle.dumps(made, protocol=5)}
+        out = {"reference": pickle.dumps(made, protocol=5), "id": task["id"]}
     elif kind == "part":
         out = _part(task, reference)
     elif kind == "studies":
@@ -191,4 +199,4 @@ def compute(task: Task, reference: Any = None) -> Result:
         out = {}
     else:
         raise ValueError(f"no kind of task '{kind}'")
-    return {**out, "seconds": time.perf_counter() - start, "isa": task.get("isa") or _crescent.instruction_sets()[-1]}
+    return {"isa": _crescent.instruction_sets()[-1], **out, "seconds": time.perf_counter() - start}

@@ -1,0 +1,331 @@
+"""Checks a sampler over a grid of its parameters: a map of where it is wrong, heavy-tailed or inconclusive.
+
+All tests of all points share one alpha. Call k of a sweep (k = 1, 2, ...) spends alpha / 2^k, in equal shares of its new
+points, so that points can be added without checking the finished ones again: the sum over all calls is below alpha.
+"""
+
+from __future__ import annotations
+
+import ast
+import html
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import _crescent, arms as built_in
+from .engines import DaskEngine, Job, engine_of
+from .grid import UsageError, axes_of, grid, label, short
+from .identity import NUMERICS, _of_python, digest
+from .progress import Progress
+from .store import Store, read_json, write_whole
+from .sweep import Say, _folder
+
+KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
+_COLOURS = {"right": "#009e73", "heavy-tailed": "#e69f00", "inconclusive": "#bdbdbd", "wrong": "#d55e00", "error": "#000000"}
+
+
+@dataclass
+class CheckSweep:
+    """The verdicts over a grid."""
+
+    out: Path
+    points: list[dict[str, Any]]  #: "values", "kind" of KINDS, "alpha", "verdicts"
+    computed: int
+    failed: dict[str, str]
+
+    @property
+    def kinds(self) -> dict[str, int]:
+        """How many points there are of each kind."""
+        return {kind: sum(p["kind"] == kind for p in self.points) for kind in KINDS}
+
+    def summary(self) -> str:
+        """The map and the first message of each kind."""
+        return summary_of_checks(self.out)
+
+
+def kind_of(result: Mapping[str, Any]) -> str:
+    """The kind of a point from its verdicts."""
+    if result["state"] in ("wrong", "error"):
+        return str(result["state"])
+    if any(v["verdict"] == "tail" and v["state"] == "inconclusive" for v in result["verdicts"]):
+        return "heavy-tailed"
+    return "right" if result["state"] == "right" else "inconclusive"
+
+
+def _parameters(node: ast.AST) -> list[str] | None:
+    """The keywords that a class or function takes; None if any, or if they are not stated here."""
+    if isinstance(node, ast.ClassDef):
+        if any(isinstance(d, (ast.Name, ast.Attribute, ast.Call)) for d in node.decorator_list):  # a dataclass
+            return [a.target.id for a in node.body if isinstance(a, ast.AnnAssign) and isinstance(a.target, ast.Name)]
+        init = next((f for f in node.body if isinstance(f, ast.FunctionDef) and f.name == "__init__"), None)
+        if init is None:
+            return [] if not node.bases else None
+        node = init
+    if not isinstance(node, ast.FunctionDef):
+        return None
+    if node.args.kwarg:
+        return None
+    return [a.arg for a in (*node.args.args, *node.args.kwonlyargs) if a.arg != "self"]
+
+
+def _look(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
+    """Identity and code of a sampler. UsageError if there is none, or if it does not take these parameters."""
+    if ":" not in sampler and not sampler.endswith(".py"):
+        names = built_in.arm_names()
+        if sampler not in names:
+            near = _crescent.nearest(sampler, list(names))
+            raise UsageError(
+                f"--check {sampler}: expected FILE.py:NAME or one of {', '.join(names)}"
+                + (f"; did you mean '{near}'?" if near else "")
+            )
+        return ["built in", sampler], None
+    name, colon, inside = sampler.rpartition(":") if not sampler.endswith(".py") else (sampler, "", "")
+    path = Path(name)
+    if not path.is_file():
+        near = _crescent.nearest(path.name, [at.name for at in path.parent.glob("*.py")])
+        raise UsageError(f"--check {name}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else ""))
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except SyntaxError as error:
+        raise UsageError(f"{name}:{error.lineno}: {error.msg}") from None
+    nodes: dict[str, ast.AST] = {}
+    for node in tree.body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            nodes[node.name] = node
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                if isinstance(target, ast.Name):
+                    nodes[target.id] = node
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            nodes |= {alias.asname or alias.name: node for alias in node.names}
+    if colon and inside not in nodes:
+        near = _crescent.nearest(inside, list(nodes))
+        raise UsageError(f"--check {sampler}: {name} has no '{inside}'" + (f"; did you mean '{near}'?" if near else ""))
+    known = _parameters(nodes[inside]) if colon else None
+    for parameter in paths if known is not None else ():
+        if parameter not in known:
+            near = _crescent.nearest(parameter, known)
+            told = f"expected {', '.join(known)}" if known else "it takes none"
+            raise UsageError(
+                f"--over {parameter}: {inside} has no parameter '{parameter}': {told}" + (f"; did you mean '{near}'?" if near else "")
+            )
+    return _of_python(str(path.resolve()) + colon + inside)
+
+
+def run_check_sweep(
+    sampler: str, *, over: Any, zip: bool, engine: str, out: str | PathLike[str], alpha: float, full: bool, seed: int,
+    workers: int | None, progress: bool, dry_run: bool, say: Say,
+) -> CheckSweep:  # fmt: skip
+    """Checks what is missing and writes the map."""
+    if not 0 < alpha < 1:
+        raise UsageError(f"--alpha {alpha:g}: expected a probability between 0 and 1")
+    axes = axes_of(over)
+    if not axes:
+        raise UsageError("--check: expected at least one --over PARAMETER=VALUES")
+    if engine_of(engine) == "commands":
+        raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
+    values = grid(axes, zip)
+    identity, code = _look(sampler, [axis.path for axis in axes])
+    folder = _folder(out)
+    store = Store(folder)
+    state = read_json(folder / "sweep.json") or {"calls": 0, "points": [], "alpha": alpha}
+    if state["alpha"] != alpha:
+        raise UsageError(f"--alpha {alpha:g}: the sweep in {out} has alpha {state['alpha']:g}; expected the same")
+    ids = {digest(NUMERICS, identity, at, seed, full): at for at in values}
+    new = {name: at for name, at in ids.items() if store.check(name) is None}
+    say(f"{len(ids)} points: {len(new)} to check, {len(ids) - len(new)} there")
+    if dry_run:
+        return CheckSweep(folder, [], 0, {})
+    share = alpha / 2 ** (state["calls"] + 1) / max(len(new), 1)
+    failed: dict[str, str] = {}
+    computed = 0
+    older = [p for p in state["points"] if p["id"] not in ids and p["sampler"] == digest(identity)]
+    points = [*older, *({"id": name, "values": at, "sampler": digest(identity)} for name, at in ids.items())]
+
+    def write_state() -> None:
+        found: dict[str, list[Any]] = {}
+        for point in points:
+            for path, value in point["values"].items():
+                if value not in found.setdefault(path, []):
+                    found[path].append(value)
+        known = {
+            "format": "crescent sweep 1", "kind": "check", "title": sampler, "alpha": alpha, "axes": found,
+            "calls": state["calls"] + bool(new), "points": points, "numerics": NUMERICS, "failed": failed,
+        }  # fmt: skip
+        write_whole(folder / "sweep.json", json.dumps(known, indent=1))
+
+    write_state()
+    if new:
+        with DaskEngine(engine, workers) as dask:
+            dask.wait_for_workers()
+            say(f"dashboard: {dask.dashboard}")
+            bar = Progress(len(new), 0, progress)
+            jobs = (
+                Job(
+                    name,
+                    {
+                        "kind": "check", "numerics": NUMERICS, "sampler": sampler, "code": code, "values": at,
+                        "alpha": share, "seed": seed, "full": full, "code_id": digest(code) if code else "",
+                    },
+                    at,
+                )
+                for name, at in new.items()
+            )  # fmt: skip
+            for job, result in dask.run(jobs, lambda name: None):
+                error = result.get("error")
+                if error is None:
+                    try:
+                        store.add_check(job.id, {**result, "values": job.about, "alpha": share, "version": NUMERICS})
+                        computed += 1
+                    except OSError as problem:
+                        error = f"cannot write the result: {problem.strerror or problem}"
+                if error is not None:
+                    failed[label(job.about)] = error
+                bar.add(0, error is not None)
+            bar.show(last=True)
+    write_state()
+    _write_dataset(folder)
+    write_whole(folder / "report.html", page_of_checks(folder))
+    return CheckSweep(folder, _found(folder), computed, failed)
+
+
+def _found(out: str | PathLike[str]) -> list[dict[str, Any]]:
+    """The points that were checked, with their verdicts."""
+    store = Store(Path(out))
+    state = read_json(Path(out) / "sweep.json")
+    points = []
+    for point in state["points"] if state else ():
+        if (result := store.check(point["id"])) is not None:
+            points.append({**point, **result, "values": point["values"], "kind": kind_of(result)})
+    return points
+
+
+def _write_dataset(out: Path) -> None:
+    """data/verdicts.parquet: one row for each verdict."""
+    import pyarrow as pa  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
+
+    points = _found(out)
+    rows = [
+        {
+            **p["values"], "kind": p["kind"], **v, "alpha": p["alpha"], "sampler_id": p["sampler"], "version": p["version"],
+            "worker": p["worker"], "host": p["host"],
+        }
+        for p in points
+        for v in p["verdicts"]
+    ]  # fmt: skip
+    if rows:
+        buffer = io.BytesIO()
+        parquet.write_table(pa.Table.from_pylist(rows), buffer, compression="zstd")
+        write_whole(out / "data" / "verdicts.parquet", buffer.getvalue())
+
+
+def _map(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> tuple[list[str], list[Any], list[Any], Any]:
+    """The first two axes, and the worst kind at each pair of values; a missing one is -1."""
+    paths = sorted(axes, key=lambda path: -len(axes[path]))[:2]
+    across = sorted(axes[paths[0]], key=str) if any(isinstance(v, str) for v in axes[paths[0]]) else sorted(axes[paths[0]])
+    up: list[Any] = [""]
+    if len(paths) > 1:
+        up = sorted(axes[paths[1]], key=str) if any(isinstance(v, str) for v in axes[paths[1]]) else sorted(axes[paths[1]])
+    out = np.full((len(up), len(across)), -1)
+    for point in points:
+        at = up.index(point["values"][paths[1]]) if len(paths) > 1 else 0, across.index(point["values"][paths[0]])
+        out[at] = max(out[at], KINDS.index(point["kind"]))
+    return paths, across, up, out
+
+
+def summary_of_checks(out: str | PathLike[str]) -> str:
+    """The map as text, the counts, and the first message of each kind that is not right."""
+    state = read_json(Path(out) / "sweep.json")
+    points = _found(out)
+    lines = [f"{state['title']}: {len(points)} points, alpha {state['alpha']:g} over all"]
+    if points:
+        paths, across, up, kinds = _map(points, state["axes"])
+        letters = {-1: " ", **{k: name[0].upper() if name != "right" else "." for k, name in enumerate(KINDS)}}
+        width = max(len(short(v)) for v in across)
+        left = max((len(short(v)) for v in up), default=0)
+        for y in reversed(range(len(up))):
+            row = "  ".join(letters[int(kinds[y, x])].rjust(width) for x in range(len(across)))
+            lines.append(f"{short(up[y]).rjust(left)}  {row}")
+        lines.append(f"{' ' * left}  " + "  ".join(short(v).rjust(width) for v in across))
+        lines.append(f"across: {paths[0]}" + (f"; up: {paths[1]}" if len(paths) > 1 else ""))
+        lines.append(". right, H heavy-tailed, I inconclusive, W wrong, E error")
+    for kind in KINDS:
+        of = [p for p in points if p["kind"] == kind]
+        if not of:
+            continue
+        lines.append(f"{kind}: {len(of)} of {len(points)}")
+        verdict = _first(of[0], kind)
+        if verdict is not None:
+            lines.append(f"  {label(of[0]['values'])}, {verdict['case']}, {verdict['verdict']}: {verdict['say']}")
+    lines += [f"failed: {place}: {error}" for place, error in state.get("failed", {}).items()]
+    return "\n".join(lines)
+
+
+def _first(point: Mapping[str, Any], kind: str) -> Mapping[str, Any] | None:
+    """The verdict that makes a point of its kind."""
+    state = {"wrong": "wrong", "error": "error"}.get(kind, "inconclusive")
+    for v in point["verdicts"]:
+        if kind != "right" and v["state"] == state and (kind != "heavy-tailed" or v["verdict"] == "tail"):
+            return dict(v)
+    return None
+
+
+def page_of_checks(out: str | PathLike[str]) -> str:
+    """report.html of a check sweep: the map, and a table of the points that are not right."""
+    from .report import _HEAD, _image
+
+    state = read_json(Path(out) / "sweep.json")
+    points = _found(out)
+    parts = [_HEAD.format(title=html.escape(f"Check over a grid: {state['title']}"))]
+    parts.append(
+        f'<p class="note">{len(points)} points; the probability that any correct point is called wrong is at most '
+        f"{state['alpha']:g}. crescent {html.escape(state['numerics'])}</p>\n"
+    )
+    for place, error in state.get("failed", {}).items():
+        parts.append(f'<p class="failed">failed: {html.escape(place)}: {html.escape(error)}</p>\n')
+    if points:
+        try:
+            parts.append(_image(_figure(points, state["axes"]), "map of kinds"))
+        except ImportError:
+            parts.append('<p class="note">No figures: pip install matplotlib</p>\n')
+    rows = []
+    for point in points:
+        verdict = _first(point, point["kind"])
+        if verdict is not None:
+            cells = (label(point["values"]), point["kind"], verdict["case"], verdict["verdict"], verdict["say"])
+            rows.append("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
+    if rows:
+        parts.append("<h2>Points that are not right</h2><table>" + "\n".join(rows) + "</table>\n")
+    parts.append(f"<h2>Summary</h2><pre>{html.escape(summary_of_checks(out))}</pre>\n")
+    return "".join(parts)
+
+
+def _figure(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> Any:
+    """The map of kinds."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    from .. import plot
+    from .report import _heat_map
+
+    paths, across, up, kinds = _map(points, axes)
+    with plot.style():
+        figure = Figure(figsize=(1.8 + 0.5 * len(across), 1.3 + 0.35 * len(up)), layout="constrained")
+        ax = figure.subplots()
+        shown = np.ma.masked_less(kinds, 0)
+        colours = ListedColormap([_COLOURS[kind] for kind in KINDS])
+        _heat_map(ax, shown, (paths[0], across), (paths[1] if len(paths) > 1 else "", up), cmap=colours, vmin=-0.5, vmax=4.5)
+        there = sorted({int(k) for k in kinds.ravel() if k >= 0})
+        ax.legend(
+            handles=[Patch(color=_COLOURS[KINDS[k]], label=KINDS[k]) for k in there], frameon=False,
+            loc="upper left", bbox_to_anchor=(1.01, 1),
+        )  # fmt: skip
+    return figure

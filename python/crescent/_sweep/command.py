@@ -1,0 +1,202 @@
+"""The command line of ``crescent sweep``. Exit codes are those of the program: 0 done, 1 wrong (--check), 2 wrong call,
+3 tasks failed or the engine was lost, 4 inconclusive (--check), 130 interrupted."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from .. import _crescent
+from . import require
+from .grid import UsageError
+
+_USAGE = """\
+crescent sweep FILE.toml --over PATH=VALUES [--over ...] [--zip] [--seeds K] [--out DIR] [--engine ENGINE]
+crescent sweep --check FILE.py:NAME --over PARAMETER=VALUES [--over ...] [--out DIR]
+crescent sweep summary DIR [--metric NAME]"""
+_FOOTER = """\
+VALUES: 8,32,128 or log:0.05:0.8:9 or lin:0:1:5. ENGINE: local (default), dask://HOST:PORT, slurm:PROFILE, commands.
+The same command finishes an interrupted sweep; more values, seeds or samplers compute only what is new.
+Exit codes: 0 done; 1 wrong (--check); 2 wrong call; 3 tasks failed, or the engine was lost; 4 inconclusive (--check);
+130 interrupted."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors in the form of the program: what was expected, the nearest word, exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(message)
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="crescent sweep", usage=_USAGE, epilog=_FOOTER, allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Runs an experiment, or checks a sampler, at every point of a grid.",
+    )  # fmt: skip
+    add = parser.add_argument
+    add("file", nargs="?", metavar="FILE", help="the experiment, a TOML file or the name of an installed one")
+    add("--over", action="append", default=[], metavar="PATH=VALUES", help="a key, as for --set, and its values")
+    add("--zip", action="store_true", help="the k-th values of all keys are one point; default: all combinations")
+    add("--seeds", type=int, metavar="K", help="seeds of each point; default: the experiment's")
+    add("--out", metavar="DIR", help="the folder of the sweep; default: out/ and FILE's name and -sweep")
+    add("--engine", default="local", metavar="ENGINE", help="where tasks run; default: local, all usable cores")
+    add("--workers", type=int, metavar="N", help="worker processes of the engine local; default: one a usable core")
+    add("--films", action="store_true", help="keep the films of the first seed of each point")
+    add("--resume", action="store_true", default=True, help="compute only what is missing (default)")
+    add("--no-resume", dest="resume", action="store_false", help="compute every point of this call again")
+    add("--dry-run", action="store_true", help="print tasks, samples, time and disk; compute nothing")
+    add("--verify", default="1%", metavar="SHARE", help="share of tasks that another worker repeats; default 1%%")
+    add("--sampler-version", action="append", default=[], metavar="ARM=VERSION",
+        help="identifies a sampler in place of the hash of its source")  # fmt: skip
+    add("--metric", default="", metavar="NAME", help="of the report and the summary, such as rmse.H")
+    add("--check", metavar="SAMPLER", help="check FILE.py:NAME or a built-in sampler over its parameters")
+    add("--alpha", type=float, default=1e-3, metavar="P", help="with --check: shared by all points; default 0.001")
+    add("--full", action="store_true", help="with --check: sixteen times as many draws")
+    add("--seed", type=int, default=1, metavar="S", help="with --check: of its random numbers")
+    add("--quiet", action="store_true", help="no progress")
+    return parser
+
+
+def _flags(parser: argparse.ArgumentParser) -> list[str]:
+    return [text for action in parser._actions for text in action.option_strings]
+
+
+def _parsed(words: Sequence[str]) -> argparse.Namespace:
+    parser = _parser()
+    given, rest = parser.parse_known_args(list(words))
+    if rest:
+        word = rest[0].partition("=")[0]
+        near = _crescent.nearest(word, _flags(parser)) if word.startswith("-") else ""
+        what = f"no flag '{word}'" if word.startswith("-") else f"takes one FILE, and '{rest[0]}' is a second one"
+        raise UsageError(what + (f"; did you mean '{near}'?" if near else ""))
+    return given
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _list_failures(failed: dict[str, str]) -> None:
+    if failed:
+        _say(f"{len(failed)} failed; the same command computes only these again:")
+    for place, error in list(failed.items())[:50]:
+        _say(f"  {place}: {error}")
+    if len(failed) > 50:
+        _say(f"  and {len(failed) - 50} more: DIR/sweep.json lists all")
+
+
+def _check(given: argparse.Namespace) -> int:
+    from .check_sweep import run_check_sweep
+
+    if given.file:
+        raise UsageError(f"--check takes no FILE, found '{given.file}'")
+    name = os.path.basename(given.check.partition(":")[0]).removesuffix(".py")
+    out = given.out or f"out/{name}-check"
+    result = run_check_sweep(
+        given.check, over=given.over, zip=given.zip, engine=given.engine, out=out, alpha=given.alpha, full=given.full,
+        seed=given.seed, workers=given.workers, progress=not given.quiet, dry_run=given.dry_run, say=_say,
+    )  # fmt: skip
+    if given.dry_run:
+        return 0
+    print(result.summary())
+    print(f"{out}/report.html: the map")
+    _list_failures(result.failed)
+    kinds = result.kinds
+    if result.failed or kinds["error"]:
+        return 3
+    if kinds["wrong"]:
+        return 1
+    return 4 if kinds["inconclusive"] or kinds["heavy-tailed"] else 0
+
+
+def _run(given: argparse.Namespace) -> int:
+    from .report import write_report
+    from .sweep import experiment_of, run_sweep, settled_options
+
+    if not given.file:
+        raise UsageError("expected FILE, an experiment, or --check SAMPLER, or summary DIR")
+    versions = {}
+    for text in given.sampler_version:
+        arm, equals, version = text.partition("=")
+        if not equals or not arm or not version:
+            raise UsageError(f"--sampler-version {text}: expected ARM=VERSION")
+        versions[arm] = version
+    stem = os.path.basename(given.file).removesuffix(".toml")
+    out = given.out or f"out/{stem}-sweep"
+    options = settled_options(
+        over=given.over, zip=given.zip, seeds=given.seeds, engine=given.engine, out=out, films=given.films,
+        resume=given.resume, verify=given.verify, workers=given.workers, sampler_versions=versions,
+        progress=not given.quiet, say=_say,
+    )  # fmt: skip
+    result = run_sweep(experiment_of(given.file), options, given.dry_run)
+    if given.dry_run:
+        return 3 if result.failed else 0
+    if given.engine != "commands":
+        page = write_report(out, given.metric)
+        print(result.summary(given.metric) if page else "no results")
+        if page:
+            print(f"{out}/report.html, {out}/data (Parquet), {out}/points")
+    _list_failures(result.failed)
+    return 3 if result.failed else 0
+
+
+def _dispatch(words: list[str]) -> int:
+    if words[:1] == ["task"]:
+        from pathlib import Path
+
+        from .sweep import run_task
+
+        return run_task(Path(words[1]))
+    if words[:1] == ["summary"]:
+        from .summary import summary
+
+        given = _parsed(words[1:])
+        if not given.file:
+            raise UsageError("summary: expected DIR, the folder of a sweep")
+        print(summary(given.file, given.metric))
+        return 0
+    given = _parsed(words)
+    return _check(given) if given.check else _run(given)
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Runs the command and returns its exit code."""
+    from .engines import EngineError
+
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    code: Any
+    try:
+        require()
+        code = _dispatch(list(sys.argv[1:] if words is None else words))
+    except SystemExit as e:  # --help
+        return int(e.code or 0)
+    except ImportError as e:
+        code = _ended(3, str(e))
+    except KeyboardInterrupt:
+        code = _ended(130, "crescent sweep: interrupted; finished results are kept, and the same command goes on")
+    except (EngineError, OSError) as e:
+        text = f"{e.filename}: {e.strerror}" if isinstance(e, OSError) and e.filename else str(e)
+        code = _ended(3, f"crescent sweep: {text}; finished results are kept, and the same command goes on")
+    except (ValueError, TypeError, KeyError) as e:
+        text = str(e.args[0]) if isinstance(e, KeyError) and e.args else str(e)
+        code = _ended(2, f"crescent sweep: {text}\n`crescent sweep --help` lists its flags")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if words is None:
+        os._exit(code)  # threads of Dask would delay the end
+    return int(code)
+
+
+def _ended(code: int, text: str) -> int:
+    _say(text)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

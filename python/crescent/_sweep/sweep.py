@@ -1,0 +1,475 @@
+"""Runs an experiment over a grid: plans the missing tasks, computes them on an engine, writes what follows from them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shlex
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from .. import _crescent
+from .._sampler import whole
+from ..experiments import Experiment, Measured, load
+from .dataset import Dataset
+from .engines import DaskEngine, EngineError, InProcess, Job, engine_of, usable_cores
+from .grid import UsageError, axes_of, grid
+from .identity import NUMERICS, digest
+from .plan import Costs, Plan, Point, calibrate, kept_points, points_of
+from .progress import Progress, duration, quantity
+from .store import Store, read_json, write_whole
+from .tasks import Result
+
+Say = Callable[[str], None]
+Over = Mapping[str, Any] | Sequence[str] | str
+
+
+@dataclass
+class Sweep:
+    """The result of :func:`crescent.sweep`: what was computed, what failed, and the dataset."""
+
+    out: Path
+    points: list[dict[str, Any]]
+    computed: int  #: tasks computed by this call
+    failed: dict[str, str]  #: by task or point, the error
+    cost: dict[str, float] = field(default_factory=dict)  #: of what was missing: tasks, samples, seconds, bytes
+
+    def to_arrow(self) -> Any:
+        """The dataset as a pyarrow.Table."""
+        from .dataset import read
+
+        return read(self.out)
+
+    def to_pandas(self) -> Any:
+        """The dataset as a pandas.DataFrame."""
+        return self.to_arrow().to_pandas()
+
+    def measured(self, **values: Any) -> Measured:
+        """The run of all seeds at one finished point."""
+        for point in self.points:
+            if all(point["values"].get(path) == value for path, value in values.items()):
+                return Measured(_crescent.join([str(self.out / "points" / point["folder"])]))
+        raise KeyError(f"no point {values}")
+
+    def summary(self, metric: str = "") -> str:
+        """The table of a metric, with its intervals over seeds."""
+        from .summary import summary
+
+        return summary(self.out, metric)
+
+    def __repr__(self) -> str:
+        failed = f", {len(self.failed)} failed" if self.failed else ""
+        return f"<Sweep {self.out}: {len(self.points)} points, {self.computed} tasks computed{failed}>"
+
+
+@dataclass
+class Options:
+    """What a call was given."""
+
+    over: Any
+    zip: bool
+    seeds: int | None
+    engine: str
+    out: Path
+    films: bool
+    resume: bool
+    verify: float
+    workers: int | None
+    versions: dict[str, str]
+    progress: bool
+    say: Say
+
+
+def fraction(given: float | str) -> float:
+    """A share of tasks: "1%", "0.01" or 0.01."""
+    text = str(given).strip()
+    try:
+        value = float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 1:
+        raise UsageError(f"--verify {text}: expected a share of the tasks from 0 to 100%, as in 1%")
+    return value
+
+
+def _folder(out: str | PathLike[str]) -> Path:
+    """The folder of a sweep, which is a new or empty one, or has a sweep."""
+    path = Path(os.path.abspath(out))
+    if path.is_file():
+        raise UsageError(f"--out {out}: is a file; expected a folder")
+    if path.is_dir() and any(path.iterdir()) and not (path / "store").is_dir():
+        raise UsageError(f"--out {out}: has other files; expected a new folder, or one of an earlier sweep")
+    return path
+
+
+class Run:
+    """One call."""
+
+    def __init__(self, base: Experiment, options: Options) -> None:
+        self.options, self.base = options, base
+        self.store = Store(options.out)
+        axes = axes_of(options.over)
+        self.seeds = base["seeds"] if options.seeds is None else options.seeds
+        values = grid(axes, options.zip)
+        self.points, self.failed = points_of(base, values, self.seeds, options.versions)
+        if not self.points:
+            errors = list(dict.fromkeys(self.failed.values()))
+            more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+            raise UsageError(errors[0].replace("--set ", "--over ", 1) + more)
+        if not options.resume:
+            self._forget()
+        older = kept_points(base, options.out, self.seeds, options.versions, self.points)
+        self.all_points = [*older, *self.points]
+        self.axes = {axis.path: list(axis.values) for axis in axes}
+        for path in (read_json(options.out / "sweep.json") or {}).get("axes", {}) if older else ():
+            self.axes.setdefault(path, [])
+        for point in self.all_points:
+            for path in self.axes:
+                if path not in point.values:
+                    point.values[path] = point.experiment[path]
+                if point.values[path] not in self.axes[path]:
+                    self.axes[path].append(point.values[path])
+        self.computed = 0
+        self.dataset: Dataset | None = None
+
+    def _forget(self) -> None:
+        for point in self.points:
+            for arm in point.arms.values():
+                for first, last in self.store.blocks(point.scene, arm.id):
+                    (self.store.root / "results" / point.scene / arm.id / f"{first}-{last}.json").unlink()
+
+    # ---- files
+
+    def write_state(self) -> None:
+        """sweep.json: the points and axes, for later calls and for the summary."""
+        points = [
+            {
+                "values": p.values, "scene": p.scene, "folder": p.folder, "experiment": p.experiment.hash,
+                "arms": {name: arm.id for name, arm in p.arms.items()},
+            }
+            for p in self.all_points
+        ]  # fmt: skip
+        state = {
+            "format": "crescent sweep 1", "file": self.base._core.file, "title": self.base["title"], "seeds": self.seeds,
+            "axes": self.axes, "points": points, "numerics": NUMERICS, "failed": self.failed,
+        }  # fmt: skip
+        write_whole(self.options.out / "sweep.json", json.dumps(state, indent=1))
+
+    def _row_of(self, point: Point, arm: str) -> dict[str, Any]:
+        known = point.arms[arm]
+        return {"values": point.values, "point": point.scene, "sampler": known.sampler, "sampler_id": known.id}
+
+    def sync_dataset(self) -> None:
+        """Makes the dataset agree with the store: files that are missing, stale or newly suspect."""
+        self.dataset = Dataset(self.options.out, self.axes)
+        there, wanted = self.dataset.names(), set()
+        suspect = self.store.suspect()
+        for point in self.all_points:
+            for name, arm in point.arms.items():
+                folder = self.store.root / "results" / point.scene / arm.id
+                for path in sorted(folder.glob("*-*.json")) if folder.is_dir() else ():
+                    marked = self.store.key(point.scene, arm.id, path.stem) in suspect
+                    file = f"{point.scene}-{arm.id}-{path.stem}{'-suspect' if marked else ''}.parquet"
+                    wanted.add(file)
+                    if file not in there and (result := read_json(path)):
+                        self.dataset.write(file, self._row_of(point, name), result, marked)
+        for file in there - wanted:
+            self.dataset.remove(file)
+
+    def take(self, job: Job, result: Result) -> None:
+        """Writes the result of a task."""
+        kind = job.about[0]
+        point: Point = job.about[1]
+        if kind == "reference":
+            self.store.add_reference(point.reference, result["reference"])
+        elif kind == "studies":
+            self.store.add_studies(job.id, {"json": result["json"]})
+        else:
+            _, _, arms, first, last = job.about
+            for name in arms:
+                part = result["parts"][name]
+                kept = {
+                    "json": part["json"], "csv": part["csv"], "seconds": part["seconds"],
+                    "experiment": point.experiment.hash, "version": NUMERICS, "worker": result["worker"],
+                    "host": result["host"], "isa": result["isa"],
+                }  # fmt: skip
+                arm = point.arms[name].id
+                self.store.add(point.scene, arm, first, last, kept)
+                if self.dataset:
+                    file = f"{point.scene}-{arm}-{first}-{last}.parquet"
+                    self.dataset.write(file, self._row_of(point, name), kept, False)
+            for name, data in result["films"].items():
+                write_whole(self.options.out / "points" / point.folder / "films" / name, data)
+
+    # ---- the bits
+
+    def verify_job(self, job: Job, result: Result) -> Job | None:
+        """The same task for another worker and instruction set, for a share of the tasks."""
+        if job.about[0] != "part" or not all(job.about[1].arms[name].built_in for name in job.about[2]):
+            return None
+        chance = int(hashlib.sha256(b"verify" + job.id.encode()).hexdigest()[:8], 16) / 2**32
+        if chance >= self.options.verify:
+            return None
+        task = {**job.task, "isa": f"not {result['isa']}", "films": False}
+        return Job(f"verify-{job.id}", task, ("verify", job.about, result), needs=job.needs, avoid=result["worker"])
+
+    def compare(self, job: Job, second: Result) -> None:
+        """Compares two computations of one task; marks what both workers computed if their bits differ."""
+        _, about, first = job.about
+        _, point, arms, start, end = about
+        for name in arms:
+            texts = [r["parts"][name]["json"].partition('"provenance"')[0] for r in (first, second)]
+            if texts[0] == texts[1]:
+                continue
+            who = [f"{r['host']} ({r['worker']}, {r['isa']})" for r in (first, second)]
+            place = f"{point.label}, {name}, seeds {start} to {end}"
+            self.failed[f"{place}: bits"] = (
+                f"the films of {who[0]} and {who[1]} differ; rows of both workers are marked as suspect"
+            )
+            self._mark({first["worker"], second["worker"]})
+            return
+
+    def _mark(self, workers: set[str]) -> None:
+        keys = set()
+        for scene, arm, first, last in self.store.all_results():
+            found = self.store.result(scene, arm, first, last)
+            if found and found["worker"] in workers:
+                keys.add(self.store.key(scene, arm, f"{first}-{last}"))
+        self.store.mark(keys)
+
+    # ---- the call
+
+    def plan(self) -> Plan:
+        """The missing tasks."""
+        costs = Costs(calibrate(self.points[0], self.store))
+        return Plan(self.points, self.store, self.seeds, costs, self.options.films)
+
+    def place(self, job: Job) -> str:
+        """A task in one line."""
+        kind, point = job.about[:2]
+        if kind == "part":
+            _, _, arms, first, last = job.about
+            return f"{point.label}, {' and '.join(arms)}, seeds {first} to {last}"
+        return f"{point.label}, {kind}"
+
+    def execute(self, plan: Plan, engine: DaskEngine) -> None:
+        """Computes what is missing."""
+        cost = plan.cost()
+        bar = Progress(int(cost["tasks"]), cost["samples"], self.options.progress)
+        plan.slots = engine.slots
+        later = engine.later
+        for job, result in engine.run(plan.jobs(), self.store.reference):
+            if job.about[0] == "verify":
+                if "error" in result:
+                    self.failed[f"{self.place(Job('', {}, job.about[1]))}: bits"] = result["error"]
+                else:
+                    self.compare(job, result)
+                continue
+            error = result.get("error")
+            if error is None:
+                try:
+                    self.take(job, result)
+                    self.computed += 1
+                except OSError as problem:
+                    error = f"cannot write the result: {problem.strerror or problem}"
+            if error is not None:
+                self.failed[self.place(job)] = error
+            elif (again := self.verify_job(job, result)) is not None:
+                later.append(again)
+            bar.add(job.weight, error is not None)
+        bar.show(last=True)
+
+    def join(self) -> int:
+        """Writes the run of all seeds of each finished point. Returns how many points have failing assertions."""
+        known = read_json(self.store.root / "joined.json") or {}
+        failing = 0
+        for point in self.points:
+            studies = self.store.studies(digest(NUMERICS, point.experiment.hash, [a.id for a in point.arms.values()]))
+            names, parts = [], []
+            complete = studies is not None
+            for arm in point.arms.values():
+                covered = 0
+                for first, last in self.store.blocks(point.scene, arm.id):
+                    if first > self.seeds:
+                        continue
+                    complete = complete and first == covered + 1 and last <= self.seeds
+                    covered = last
+                    names.append(f"{arm.id}/{first}-{last}")
+                complete = complete and covered == self.seeds
+            folder = self.options.out / "points" / point.folder
+            identity = digest(point.experiment.hash, self.seeds, names)
+            if not complete:
+                continue
+            if known.get(point.folder, [""])[0] == identity and (folder / "metrics.json").is_file():
+                failing += known[point.folder][1]
+                continue
+            for arm in point.arms.values():
+                for first, last in self.store.blocks(point.scene, arm.id):
+                    found = self.store.result(point.scene, arm.id, first, last) if first <= self.seeds else None
+                    parts += [found["json"]] if found else []
+            core = _crescent.parse(point.experiment.text, point.experiment._core.file, point.changes)
+            run = _crescent.assemble(core, 1, self.seeds, parts, studies)
+            for name, text in (("metrics.json", run.json), ("metrics.csv", run.csv), ("junit.xml", run.junit)):
+                write_whole(folder / name, text)
+            known[point.folder] = [identity, int(not run.holds)]
+            failing += not run.holds
+        write_whole(self.store.root / "joined.json", json.dumps(known))
+        return failing
+
+
+def _estimate(run: Run, plan: Plan) -> list[str]:
+    """What is missing, in words."""
+    cost = plan.cost()
+    cores = run.options.workers or usable_cores()
+    head = f"{len(run.points)} points, {run.seeds} seeds, {len(run.points[0].arms)} samplers: {int(cost['tasks'])} tasks"
+    if not cost["tasks"]:
+        return [f"{head}; every result is there"]
+    time = f"{duration(cost['seconds'])} on one core, {duration(cost['seconds'] / cores)} on {cores}"
+    return [
+        f"{head}, {quantity(cost['samples'])}samples",
+        f"estimated from a measurement on this machine: {time}; {quantity(cost['bytes'])}byte on disk",
+    ]
+
+
+def _commands(run: Run, plan: Plan) -> Iterator[str]:
+    """A shell command for each task, which does nothing if its result is there. References come first."""
+    import pickle
+
+    program = f"{shlex.quote(sys.executable)} -m crescent._sweep task"
+    jobs = sorted(plan.jobs(), key=lambda job: job.about[0] != "reference")
+    for job in jobs:
+        kind, point = job.about[:2]
+        place: list[Any] = [kind, point.reference if kind == "reference" else job.id]
+        if kind == "part":
+            arms, first, last = job.about[2:]
+            place = ["part", point.scene, {name: point.arms[name].id for name in arms}, first, last, point.experiment.hash]
+            reference = point.task("reference", id=point.reference)
+        else:
+            reference = None
+        path = run.store.root / "tasks" / f"{job.id}.task"
+        films = str(run.options.out / "points" / point.folder / "films")
+        write_whole(path, pickle.dumps({"task": job.task, "place": place, "reference": reference, "films": films}))
+        yield f"{program} {shlex.quote(str(path))}  # {run.place(job)}"
+
+
+def run_task(path: Path) -> int:
+    """Computes the task of a file of `commands`; nothing is done if its result is there. Returns an exit code."""
+    import pickle
+
+    store = Store(path.parent.parent.parent)
+    given = pickle.loads(path.read_bytes())
+    task, place = given["task"], given["place"]
+    with InProcess() as engine:
+
+        def reference() -> bytes | None:
+            name = task.get("reference")
+            if not name:
+                return None
+            if (data := store.reference(name)) is None:
+                made = engine.compute(given["reference"])
+                if "error" in made:
+                    raise EngineError(f"the reference: {made['error']}")
+                data = made["reference"]
+                store.add_reference(name, data)
+            return data
+
+        if place[0] == "part":
+            _, scene, arms, first, last, experiment = place
+            if all((first, last) in store.blocks(scene, arm) for arm in arms.values()):
+                return 0
+        elif place[0] == "reference" and store.reference(place[1]) or place[0] == "studies" and store.studies(place[1]):
+            return 0
+        result = engine.compute(task, reference())
+        if "error" in result:
+            raise EngineError(result["error"])
+        if place[0] == "reference":
+            store.add_reference(place[1], result["reference"])
+        elif place[0] == "studies":
+            store.add_studies(place[1], {"json": result["json"]})
+        else:
+            for name, arm in arms.items():
+                part = result["parts"][name]
+                more = {"experiment": experiment, "version": NUMERICS, "worker": result["worker"], "host": result["host"]}
+                store.add(scene, arm, first, last, {**part, **more, "isa": result["isa"]})
+            for name, data in result["films"].items():
+                write_whole(Path(given["films"]) / name, data)
+    return 0
+
+
+def run_sweep(base: Experiment, options: Options, dry_run: bool = False) -> Sweep:
+    """Runs a sweep; see :func:`crescent.sweep`."""
+    say = options.say
+    run = Run(base, options)
+    if dry_run:
+        with tempfile.TemporaryDirectory() as folder:
+            run.store.root.mkdir(parents=True, exist_ok=True) if options.out.is_dir() else None
+            calibration_store = run.store if options.out.is_dir() else Store(Path(folder))
+            costs = Costs(calibrate(run.points[0], calibration_store))
+        plan = Plan(run.points, run.store, run.seeds, costs, options.films)
+        for line in _estimate(run, plan):
+            say(line)
+        for place, error in run.failed.items():
+            say(f"failed: {place}: {error}")
+        return Sweep(options.out, [], 0, run.failed, plan.cost())
+    run.store.root.mkdir(parents=True, exist_ok=True)
+    plan = run.plan()
+    cost = plan.cost()
+    run.write_state()
+    run.sync_dataset()
+    if options.engine == "commands":
+        for line in _commands(run, plan):
+            print(line)
+    elif cost["tasks"]:
+        for line in _estimate(run, plan):
+            say(line)
+        with DaskEngine(options.engine, options.workers) as engine:
+            engine.wait_for_workers()
+            say(f"dashboard: {engine.dashboard}")
+            try:
+                run.execute(plan, engine)
+            finally:
+                run.write_state()
+    else:
+        say(_estimate(run, plan)[0])
+    failing = run.join()
+    run.sync_dataset()
+    run.write_state()
+    if failing:
+        say(f"assertions of the experiment fail at {failing} of {len(run.points)} points (points/*/junit.xml)")
+    state = read_json(options.out / "sweep.json") or {}
+    return Sweep(options.out, state.get("points", []), run.computed, run.failed, cost)
+
+
+def settled_options(
+    *, over: Any, zip: bool, seeds: Any, engine: str, out: Any, films: bool, resume: bool, verify: Any, workers: Any,
+    sampler_versions: Mapping[str, str] | None, progress: bool, say: Say,
+) -> Options:  # fmt: skip
+    """Checks the arguments of a call."""
+    if seeds is not None:
+        seeds = whole("seeds", seeds, 1, 4096, "expected a whole number, 1 to 4096")
+    if workers is not None:
+        workers = whole("workers", workers, 1, 4096, "expected a whole number, 1 to 4096")
+    return Options(
+        over, zip, seeds, engine_of(engine), _folder(out), films, resume, fraction(verify), workers,
+        dict(sampler_versions or {}), progress, say,
+    )  # fmt: skip
+
+
+def experiment_of(given: Experiment | str | PathLike[str]) -> Experiment:
+    """An experiment, the file of one, or the name of an installed one."""
+    if isinstance(given, Experiment):
+        return given
+    text = os.fspath(given)
+    installed = Path(_crescent.__file__ or "").parent / "share" / "crescent" / "experiments" / f"{text}.toml"
+    if "/" not in text and "." not in text and not Path(text).exists() and installed.is_file():
+        return load(installed)
+    return load(text)
+
+
+__all__ = ["Iterable", "Options", "Run", "Sweep", "experiment_of", "run_sweep", "run_task", "settled_options"]
