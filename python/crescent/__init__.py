@@ -18,6 +18,7 @@ from ._crescent import version as __version__
 from ._result import CheckResult, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
+from ._sweep import sweep, sweep_check
 from .experiments import Experiment, Film, Measured, join, load, parse, run
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ __all__ = [
     "parse",
     "pdf_of",
     "run",
+    "sweep",
+    "sweep_check",
     "tail",
     "testing",
 ]

@@ -25,7 +25,7 @@ References references(const Experiment& experiment, int threads, const std::stri
     References out;
     watched(monitor, raised, progress, false, [&] {
         RunPlan what = plan(experiment, {1, 1});
-        what.experiment.arms.clear();  // opens no sampler
+        what.experiment.arms.clear(), what.experiment.exponent.reset();  // opens no sampler
         Prepared prepared = prepare(what, settled({.threads = threads, .isa = isa}), monitor);
         monitor.check();
         out = {std::move(prepared.quadrature), std::move(prepared.monte_carlo)};

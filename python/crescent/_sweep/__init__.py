@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..experiments import Experiment
 
@@ -20,7 +20,13 @@ def require() -> None:
     """Raises ImportError, in one line, where the packages of the extra are not installed."""
     import importlib.util
 
-    absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    def there(name: str) -> bool:
+        try:
+            return importlib.util.find_spec(name) is not None
+        except ImportError:
+            return False
+
+    absent = [name for name in NEEDED if not there(name)]
     if absent:
         raise ImportError(f"crescent sweep needs {', '.join(absent)}: pip install 'crescent-bench[sweep]'")
 
@@ -95,6 +101,3 @@ def sweep_check(
 
 def _silent(text: str) -> None:
     """Prints nothing."""
-
-
-_ = Callable, Any

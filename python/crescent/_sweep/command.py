@@ -7,7 +7,7 @@ import argparse
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from .. import _crescent
@@ -32,6 +32,28 @@ class _Parser(argparse.ArgumentParser):
         raise UsageError(message)
 
 
+def _whole(flag: str, most: int) -> Callable[[str], int]:
+    """Reads a whole number from 1 to `most`."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or not 1 <= int(text) <= most:
+            raise UsageError(f"{flag} {text}: expected a whole number, 1 to {most}")
+        return int(text)
+
+    return read
+
+
+def _probability(text: str) -> float:
+    """Reads a number between 0 and 1."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value < 1:
+        raise UsageError(f"--alpha {text}: expected a probability between 0 and 1")
+    return value
+
+
 def _parser() -> _Parser:
     parser = _Parser(
         prog="crescent sweep", usage=_USAGE, epilog=_FOOTER, allow_abbrev=False,
@@ -42,10 +64,10 @@ def _parser() -> _Parser:
     add("file", nargs="?", metavar="FILE", help="the experiment, a TOML file or the name of an installed one")
     add("--over", action="append", default=[], metavar="PATH=VALUES", help="a key, as for --set, and its values")
     add("--zip", action="store_true", help="the k-th values of all keys are one point; default: all combinations")
-    add("--seeds", type=int, metavar="K", help="seeds of each point; default: the experiment's")
+    add("--seeds", type=_whole("--seeds", 4096), metavar="K", help="seeds of each point; default: the experiment's")
     add("--out", metavar="DIR", help="the folder of the sweep; default: out/ and FILE's name and -sweep")
     add("--engine", default="local", metavar="ENGINE", help="where tasks run; default: local, all usable cores")
-    add("--workers", type=int, metavar="N", help="worker processes of the engine local; default: one a usable core")
+    add("--workers", type=_whole("--workers", 4096), metavar="N", help="worker processes of the engine local; default: one a usable core")
     add("--films", action="store_true", help="keep the films of the first seed of each point")
     add("--resume", action="store_true", default=True, help="compute only what is missing (default)")
     add("--no-resume", dest="resume", action="store_false", help="compute every point of this call again")
@@ -55,9 +77,9 @@ def _parser() -> _Parser:
         help="identifies a sampler in place of the hash of its source")  # fmt: skip
     add("--metric", default="", metavar="NAME", help="of the report and the summary, such as rmse.H")
     add("--check", metavar="SAMPLER", help="check FILE.py:NAME or a built-in sampler over its parameters")
-    add("--alpha", type=float, default=1e-3, metavar="P", help="with --check: shared by all points; default 0.001")
+    add("--alpha", type=_probability, default=1e-3, metavar="P", help="with --check: shared by all points; default 0.001")
     add("--full", action="store_true", help="with --check: sixteen times as many draws")
-    add("--seed", type=int, default=1, metavar="S", help="with --check: of its random numbers")
+    add("--seed", type=_whole("--seed", 2**32 - 1), default=1, metavar="S", help="with --check: of its random numbers")
     add("--quiet", action="store_true", help="no progress")
     return parser
 

@@ -6,12 +6,13 @@ is made once and kept in the store.
 
 from __future__ import annotations
 
+import functools
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .. import _crescent
 from ..experiments import Experiment, _lines, _overrides, parse
 from .engines import InProcess, Job
 from .grid import label
@@ -35,6 +36,11 @@ class Point:
     scene: str
     reference: str
     arms: dict[str, Arm]
+
+    @functools.cached_property
+    def tree(self) -> dict[str, Any]:
+        """Every value of the experiment."""
+        return self.experiment._tree()
 
     @property
     def label(self) -> str:
@@ -130,7 +136,7 @@ def calibrate(point: Point, store: Store) -> dict[str, Any]:
             "seen": found["seen"] if found["arms"] else known.get("seen", 1.0),
             "host": found.get("host", ""),
         }
-        write_whole(path, __import__("json").dumps(known))
+        write_whole(path, json.dumps(known))
     return dict(known)
 
 
@@ -141,15 +147,15 @@ class Costs:
         self._rates, self._known = calibration["arms"], calibration
 
     def _pixels(self, point: Point) -> int:
-        return int(point.experiment["image.width"]) * int(point.experiment["image.height"])
+        return int(point.tree["image"]["width"]) * int(point.tree["image"]["height"])
 
     def samples(self, point: Point, name: str) -> float:
         """Samples of one seed of an arm; misses are not counted."""
         arm = point.arms[name]
         counts = [arm.most]
-        control = point.experiment._tree().get("exponent")
+        control = point.tree.get("exponent")
         if control and control["arm"] == name:
-            counts += [control.get("n", point.experiment["n"])] * len(control["s"])
+            counts += [control["n"]] * len(control["s"])
         return self._known["seen"] * self._pixels(point) * float(sum(counts))
 
     def seconds(self, point: Point, name: str) -> float:
@@ -159,7 +165,7 @@ class Costs:
 
     def reference(self, point: Point) -> float:
         """Seconds of the references."""
-        control = point.experiment._tree().get("exponent")
+        control = point.tree.get("exponent")
         count = len(control["s"]) if control else 1
         return float(self._known["reference_s"]) * self._pixels(point) * count
 
@@ -228,19 +234,19 @@ class Plan:
             if parts and not self._has_reference(point) and point.reference not in seen:
                 seen.add(point.reference)
                 pixels = self._costs._pixels(point)
-                control = point.experiment._tree().get("exponent")
-                films = (len(control["s"]) if control else 1) * (1 + bool(point.experiment["reference"].get("monte_carlo")))
+                control = point.tree.get("exponent")
+                films = (len(control["s"]) if control else 1) * (1 + bool(point.tree["reference"].get("monte_carlo")))
                 total["tasks"] += 1
                 total["seconds"] += self._costs.reference(point)
                 total["bytes"] += 20.0 * pixels * films
             if parts and self._store.studies(self.studies_name(point)) is None:
                 total["tasks"] += 1
-            regions = len(point.experiment._tree().get("regions", {}))
+            regions = len(point.tree.get("regions", {}))
             for arms, first, last, seconds, samples in parts:
                 total["tasks"] += 1
                 total["seconds"] += seconds
                 total["samples"] += samples
-                counts = sum(len(point.experiment["arms"][name]["n"]) for name in arms)
+                counts = sum(len(point.tree["arms"][name]["n"]) for name in arms)
                 total["bytes"] += 12_000 * len(arms) + (last - first + 1) * counts * (1_400 + 900 * regions)
                 if self._films and first == 1:
                     total["bytes"] += 36.0 * self._costs._pixels(point) * counts
@@ -276,6 +282,3 @@ def kept_points(base: Experiment, out: Path, seeds: int, versions: Mapping[str, 
         if found and found[0].scene == at["scene"]:
             same += found
     return same
-
-
-__all__ = ["Costs", "Plan", "Point", "calibrate", "kept_points", "missing", "points_of", "_crescent"]

@@ -130,7 +130,7 @@ def _curves(numbers: Numbers, metric: str, region: str) -> str:
         if min(values) > 0 and max(values) / min(values) > 5:
             ax.set_xscale("log")
             ax.set_xticks(values, [short(v) for v in values])
-            ax.minorticks_off()
+            ax.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
         ax.set_yscale("log")
         ax.set_xlabel(path)
         ax.set_ylabel(plot._label(metric, region))
@@ -182,7 +182,7 @@ def _ladders(numbers: Numbers, metric: str, region: str) -> str:
             ax.set_xscale("log", base=2)
             ax.set_yscale("log")
             ax.set_xticks(counts, [str(n) for n in counts])
-            ax.minorticks_off()
+            ax.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
             ax.grid(True)
         axes[0][0].legend(frameon=False)
         figure.supxlabel("samples a pixel, N", fontsize=8)

@@ -8,7 +8,7 @@ import os
 import shlex
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -18,7 +18,7 @@ from .. import _crescent
 from .._sampler import whole
 from ..experiments import Experiment, Measured, load
 from .dataset import Dataset
-from .engines import DaskEngine, EngineError, InProcess, Job, engine_of, usable_cores
+from .engines import DaskEngine, EngineError, InProcess, Job, engine_of, profile_of, usable_cores
 from .grid import UsageError, axes_of, grid
 from .identity import NUMERICS, digest
 from .plan import Costs, Plan, Point, calibrate, kept_points, points_of
@@ -455,6 +455,8 @@ def settled_options(
         seeds = whole("seeds", seeds, 1, 4096, "expected a whole number, 1 to 4096")
     if workers is not None:
         workers = whole("workers", workers, 1, 4096, "expected a whole number, 1 to 4096")
+    if engine_of(engine).startswith("slurm:"):
+        profile_of(engine.partition(":")[2])
     return Options(
         over, zip, seeds, engine_of(engine), _folder(out), films, resume, fraction(verify), workers,
         dict(sampler_versions or {}), progress, say,
@@ -470,6 +472,3 @@ def experiment_of(given: Experiment | str | PathLike[str]) -> Experiment:
     if "/" not in text and "." not in text and not Path(text).exists() and installed.is_file():
         return load(installed)
     return load(text)
-
-
-__all__ = ["Iterable", "Options", "Run", "Sweep", "experiment_of", "run_sweep", "run_task", "settled_options"]
