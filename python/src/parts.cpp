@@ -49,6 +49,16 @@ void add_tails(const RunPlan& what, const Scene& scene, const std::string& isa, 
     }
 }
 
+/// States an experiment without the files of its samplers, which may change or be on another machine when the text is
+/// read: read_metrics() checks the hash, and the sweep has an identity of its own for each sampler.
+void leave_out_files(const RunPlan& what, Provenance& provenance) {
+    Experiment plain = what.whole;
+    for (ArmPlan& arm : plain.arms)
+        if (arm.is_external()) arm.sampler = "uniform", arm.exec.reset(), arm.plugin.reset(), arm.python.reset();
+    provenance.experiment_text = canonical_text(plain);
+    provenance.experiment_hash = fmt::format("{:016x}", hash(plain));
+}
+
 /// Runs these arms with seeds first to last against given references. The part with the experiment's own seed has the
 /// tail indices of its arms.
 RunResult run_part(const Experiment& experiment, int first, int last, const Names& arms, const References& given,
@@ -81,6 +91,7 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
             collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent sweep", false});
         monitor.check();
         on_threads(engine.threads, [&] { add_tails(what, scene, engine.isa, monitor, jobs, all.metrics); });
+        leave_out_files(what, all.provenance);
         out = result_of(std::move(all));
     });
     return out;
@@ -101,6 +112,7 @@ RunResult studies(const Experiment& experiment, int threads, const std::string& 
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Measured all = collect(what, look(what, engine), {}, engine, monitor, {"crescent sweep", true});
         monitor.check();
+        leave_out_files(what, all.provenance);
         out = result_of(std::move(all));
     });
     return out;

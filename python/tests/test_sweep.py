@@ -508,7 +508,7 @@ def test_a_check_over_a_grid_maps_where_a_sampler_is_wrong(tmp_path):
     over = ["--over", "k=1,2", "--over", "factor=1,1.05"]
     ended = command("--check", f"{tmp_path}/power.py:Power", *over, "--out", out, "--workers", "2")
     assert ended.returncode == 1, ended.stderr
-    assert "wrong: 2 of 4" in ended.stdout and "integrates to 1.05" in ended.stdout, ended.stdout
+    assert "wrong: 2 of 4" in ended.stdout and "p integrates to 1.0" in ended.stdout, ended.stdout
     again = command("--check", f"{tmp_path}/power.py:Power", "--over", "k=1,2,3", "--over", "factor=1", "--out", out)
     assert "1 to check, 2 there" in again.stderr, again.stderr
     shares = [json.loads(path.read_text())["alpha"] for path in out.glob("store/checks/*.json")]

@@ -29,15 +29,15 @@ class _Parser(argparse.ArgumentParser):
     """Errors in the form of the program: what was expected, the nearest word, exit code 2."""
 
     def error(self, message: str) -> NoReturn:
-        raise UsageError(message)
+        raise UsageError(message.removeprefix("argument "))
 
 
-def _whole(flag: str, most: int) -> Callable[[str], int]:
+def _whole(most: int) -> Callable[[str], int]:
     """Reads a whole number from 1 to `most`."""
 
     def read(text: str) -> int:
         if not text.isdecimal() or not 1 <= int(text) <= most:
-            raise UsageError(f"{flag} {text}: expected a whole number, 1 to {most}")
+            raise argparse.ArgumentTypeError(f"expected a whole number, 1 to {most}, not '{text}'")
         return int(text)
 
     return read
@@ -50,7 +50,7 @@ def _probability(text: str) -> float:
     except ValueError:
         value = -1.0
     if not 0 < value < 1:
-        raise UsageError(f"--alpha {text}: expected a probability between 0 and 1")
+        raise argparse.ArgumentTypeError(f"expected a probability between 0 and 1, not '{text}'")
     return value
 
 
@@ -64,10 +64,10 @@ def _parser() -> _Parser:
     add("file", nargs="?", metavar="FILE", help="the experiment, a TOML file or the name of an installed one")
     add("--over", action="append", default=[], metavar="PATH=VALUES", help="a key, as for --set, and its values")
     add("--zip", action="store_true", help="the k-th values of all keys are one point; default: all combinations")
-    add("--seeds", type=_whole("--seeds", 4096), metavar="K", help="seeds of each point; default: the experiment's")
+    add("--seeds", type=_whole(4096), metavar="K", help="seeds of each point; default: the experiment's")
     add("--out", metavar="DIR", help="the folder of the sweep; default: out/ and FILE's name and -sweep")
     add("--engine", default="local", metavar="ENGINE", help="where tasks run; default: local, all usable cores")
-    add("--workers", type=_whole("--workers", 4096), metavar="N", help="worker processes of the engine local; default: one a usable core")
+    add("--workers", type=_whole(4096), metavar="N", help="worker processes of the engine local; default: one a usable core")
     add("--films", action="store_true", help="keep the films of the first seed of each point")
     add("--resume", action="store_true", default=True, help="compute only what is missing (default)")
     add("--no-resume", dest="resume", action="store_false", help="compute every point of this call again")
@@ -79,7 +79,7 @@ def _parser() -> _Parser:
     add("--check", metavar="SAMPLER", help="check FILE.py:NAME or a built-in sampler over its parameters")
     add("--alpha", type=_probability, default=1e-3, metavar="P", help="with --check: shared by all points; default 0.001")
     add("--full", action="store_true", help="with --check: sixteen times as many draws")
-    add("--seed", type=_whole("--seed", 2**32 - 1), default=1, metavar="S", help="with --check: of its random numbers")
+    add("--seed", type=_whole(2**32 - 1), default=1, metavar="S", help="with --check: of its random numbers")
     add("--quiet", action="store_true", help="no progress")
     return parser
 

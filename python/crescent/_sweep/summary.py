@@ -73,7 +73,7 @@ class Numbers:
         words = [f"{m}.{r}" if r else m for m, regions in self.metrics.items() for r in regions]
         if metric in self.metrics and (region in self.metrics[metric] or not region):
             return metric, region or self.metrics[metric][0]
-        near = _crescent.nearest(given, words)
+        near = _crescent.nearest(given, [*words, *self.metrics])
         raise UsageError(
             f"--metric {given}: expected one of {', '.join(words)}" + (f"; did you mean '{near}'?" if near else "")
         )
