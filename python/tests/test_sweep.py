@@ -7,7 +7,6 @@ import contextlib
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -22,6 +21,9 @@ import crescent
 for needed in ("dask", "distributed", "pyarrow"):
     pytest.importorskip(needed)
 
+import distributed  # noqa: E402
+
+from crescent._sweep.dataset import read  # noqa: E402
 from crescent._sweep.engines import engine_of, profile_of, usable_cores  # noqa: E402
 from crescent._sweep.grid import UsageError, axes_of, grid  # noqa: E402
 from crescent._sweep.plan import missing  # noqa: E402
@@ -231,7 +233,7 @@ def test_a_sweep_has_the_bytes_of_runs_and_computes_only_what_is_new(tiny, tmp_p
     }
     assert found == wanted and len(found) == 5
     page = (out / "report.html").read_text()
-    assert page.count("<img ") == (2 if shutil.which("true") and _has("matplotlib") else 0)
+    assert page.count("<img ") == (2 if _has("matplotlib") else 0)
     assert "ball.s" in added.summary("rmse_frame") and "[" in added.summary()
 
 
@@ -463,22 +465,18 @@ def test_a_worker_that_flips_a_bit_is_found_and_its_rows_are_suspect(tiny, tmp_p
     cluster(f"tcp://{address}", "--name", "sound")
     cluster(f"tcp://{address}", "--name", "faulty", "--preload", tmp_path / "flip.py")
     out = tmp_path / "out"
-    until(lambda: "faulty" in (tmp_path / "cluster2").read_text() or True)
+    with distributed.Client(f"tcp://{address}", set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=60)
     words = [tiny, "--over", "ball.s=4,8,16,32", "--seeds", "2", "--out", out, "--verify", "100%"]
-    ended = None
-    for _ in range(3):  # both workers must be there before the tasks are done
-        ended = command(*words, "--engine", f"dask://{address}")
-        if ended.returncode == 3:
-            break
-        shutil.rmtree(out)
+    ended = command(*words, "--engine", f"dask://{address}")
     assert ended.returncode == 3 and "differ" in ended.stderr, ended.stderr
     line = next(line for line in ended.stderr.splitlines() if "differ" in line)
     assert len(set(re.findall(r"tcp://[\d.:]+", line))) == 2, line
-    rows = crescent._sweep.dataset.read(out).to_pylist()
+    rows = read(out).to_pylist()
     assert any(row["suspect"] for row in rows)
     again = command(*words[:-2], "--workers", "1")  # suspect results are computed again
     assert again.returncode == 0, again.stderr
-    assert not any(row["suspect"] for row in crescent._sweep.dataset.read(out).to_pylist())
+    assert not any(row["suspect"] for row in read(out).to_pylist())
 
 
 def test_a_full_disk_fails_tasks_and_leaves_whole_files(tiny, tmp_path):

@@ -152,7 +152,7 @@ class DaskEngine:
         import dask
         from distributed import Client, LocalCluster
 
-        for name in ("distributed", "tornado", "asyncio"):
+        for name in ("distributed", "distributed.client", "distributed.scheduler", "tornado", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
         dask.config.set({"distributed.comm.timeouts.connect": "5s", "distributed.admin.tick.limit": "60s"})
         if self._engine == "local":
@@ -225,6 +225,11 @@ class DaskEngine:
             if time.monotonic() - start > _NO_WORKER_S and not self._engine.startswith("slurm:"):
                 raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s")
             time.sleep(0.1)
+
+    def _gone(self) -> bool:
+        """Whether the connection to the scheduler is closed."""
+        comm = self.client.scheduler_comm
+        return self._lost.is_set() or self.client.status != "running" or comm is None or bool(comm.comm.closed())
 
     def _check(self) -> None:
         if self._lost.is_set():
@@ -299,7 +304,10 @@ class DaskEngine:
                     continue
                 release()
                 yield job, result
-        except BaseException:
+        except BaseException as error:
+            if isinstance(error, Exception) and not isinstance(error, EngineError) and self._gone():
+                self._lost.set()
+                raise EngineError(f"the Dask scheduler of {self._engine} does not answer") from None
             with contextlib.suppress(Exception):
                 if not self._lost.is_set():
                     self.client.cancel([future for future, _ in running.values()], force=True)
