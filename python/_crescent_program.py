@@ -11,6 +11,8 @@ def main() -> None:
     """Becomes the program, which starts this interpreter for samplers in Python."""
     program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "crescent", "bin", "crescent")
     os.environ.setdefault("CRESCENT_PYTHON", sys.executable)
+    # `crescent sweep` finds crescent-sweep of this environment even where the environment is not activated.
+    os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), os.path.dirname(sys.executable)])
     try:
         os.execv(program, ["crescent", *sys.argv[1:]])
     except OSError as error:

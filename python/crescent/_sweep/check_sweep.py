@@ -108,8 +108,8 @@ def _look(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
         near = _crescent.nearest(inside, list(nodes))
         raise UsageError(f"--check {sampler}: {name} has no '{inside}'" + (f"; did you mean '{near}'?" if near else ""))
     known = _parameters(nodes[inside]) if colon else None
-    for parameter in paths if known is not None else ():
-        if parameter not in known:
+    for parameter in paths:
+        if known is not None and parameter not in known:
             near = _crescent.nearest(parameter, known)
             told = f"expected {', '.join(known)}" if known else "it takes none"
             raise UsageError(

@@ -7,6 +7,7 @@ Dask assigns tasks to workers and repeats those of a worker that was lost. Each 
 from __future__ import annotations
 
 import contextlib
+import importlib
 import logging
 import os
 import queue
@@ -29,17 +30,19 @@ _ANSWER_S = 6.0  # a scheduler that is silent for longer is gone: exit within 10
 _NO_WORKER_S = 60.0
 
 
+def _module(name: str) -> Any:
+    """A module of Dask, imported on first use."""
+    return importlib.import_module(name)
+
+
 class EngineError(RuntimeError):
     """The engine cannot run or was lost: exit code 3."""
 
 
 def on_worker(task: Task, reference: Any = None) -> Result:
     """Computes a task on a Dask worker: in the child process of this thread."""
-    from distributed import get_worker
-    from distributed.worker import thread_state
-
-    worker = get_worker()
-    key = thread_state.key
+    worker = _module("distributed").get_worker()
+    key = _module("distributed.worker").thread_state.key
 
     def unwanted() -> bool:
         state = worker.state.tasks.get(key)
@@ -53,11 +56,7 @@ def on_worker(task: Task, reference: Any = None) -> Result:
     if runner is None:
         runner = _threads.runner = Runner()
     try:
-        if task["kind"] == "sleep":
-            time.sleep(task["seconds"])
-            result: Result = {}
-        else:
-            result = runner.compute(task, reference and reference["reference"], unwanted)
+        result: Result = runner.compute(task, reference and reference["reference"], unwanted)
     except TaskStopped:
         result = {"error": "stopped"}
     return {**result, "worker": str(worker.address), "host": host(), "name": str(worker.name)}
@@ -150,14 +149,14 @@ class DaskEngine:
 
     def __enter__(self) -> DaskEngine:
         import dask
-        from distributed import Client, LocalCluster
+        distributed = _module("distributed")
 
         for name in ("distributed", "distributed.client", "distributed.scheduler", "tornado", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
         dask.config.set({"distributed.comm.timeouts.connect": "5s", "distributed.admin.tick.limit": "60s"})
         if self._engine == "local":
             count = self._workers or usable_cores()
-            self._cluster = LocalCluster(
+            self._cluster = distributed.LocalCluster(
                 n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
                 memory_limit=0, silence_logs=logging.CRITICAL,
             )  # fmt: skip
@@ -165,7 +164,7 @@ class DaskEngine:
             self._cluster, _ = _queue_cluster(self._engine.partition(":")[2])
         at = self._cluster or "tcp://" + self._engine.removeprefix("dask://")
         try:
-            self.client = Client(at, timeout=5, set_as_default=False)
+            self.client = distributed.Client(at, timeout=5, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
             raise EngineError(f"no Dask scheduler at {self._engine}: {error}") from None
         threading.Thread(target=self._watch, daemon=True).start()
@@ -315,9 +314,6 @@ class DaskEngine:
 
     def _result(self, future: Any, job: Job) -> tuple[Result, bool]:
         """The result of a finished future, and whether the job must be submitted again."""
-        from distributed.client import FutureCancelledError
-        from distributed.scheduler import KilledWorker
-
         if future.status == "finished":
             try:
                 return dict(future.result(timeout=30)), False
@@ -326,11 +322,13 @@ class DaskEngine:
         else:
             try:
                 problem = future.exception(timeout=5) or EngineError("lost")
-            except (Exception, FutureCancelledError) as error:  # noqa: BLE001
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # noqa: BLE001: a cancelled future raises a CancelledError
                 problem = error
         self._check()
-        if isinstance(problem, KilledWorker):
-            return {"error": f"{problem.allowed_failures + 1} workers were lost while they computed it"}, False
+        if type(problem).__name__ == "KilledWorker":
+            return {"error": f"{getattr(problem, 'allowed_failures', 3) + 1} workers were lost while they computed it"}, False
         if job.tries < _LOST_TRIES:
             return {}, True
         return {"error": f"{type(problem).__name__}: {problem}"}, False

@@ -156,12 +156,12 @@ class Costs:
         control = point.tree.get("exponent")
         if control and control["arm"] == name:
             counts += [control["n"]] * len(control["s"])
-        return self._known["seen"] * self._pixels(point) * float(sum(counts))
+        return float(self._known["seen"]) * self._pixels(point) * sum(counts)
 
     def seconds(self, point: Point, name: str) -> float:
         """Seconds of one seed of an arm."""
         slow = min(self._rates.values(), default=5e6)
-        return self.samples(point, name) / self._rates.get(point.arms[name].id, slow)
+        return self.samples(point, name) / float(self._rates.get(point.arms[name].id, slow))
 
     def reference(self, point: Point) -> float:
         """Seconds of the references."""
@@ -188,14 +188,14 @@ class Plan:
         """The identity of the studies of a point."""
         return digest(NUMERICS, point.experiment.hash, [arm.id for arm in point.arms.values()])
 
-    def _wanted(self, point: Point) -> dict[tuple[tuple[int, int], ...], list[str]]:
+    def _wanted(self, point: Point) -> dict[tuple[tuple[tuple[int, int], ...], str], list[str]]:
         """Arms by the ranges of seeds that they lack; an arm that is not built in is by itself."""
-        out: dict[Any, list[str]] = {}
+        out: dict[tuple[tuple[tuple[int, int], ...], str], list[str]] = {}
         for name, arm in point.arms.items():
             ranges = tuple(missing(self._store.blocks(point.scene, arm.id), self._seeds))
             if ranges:
                 out.setdefault((ranges, "" if arm.built_in else name), []).append(name)
-        return {key: names for key, names in out.items()}
+        return out
 
     def _groups(self, point: Point, names: list[str]) -> Iterator[list[str]]:
         """Splits arms of which one seed lasts too long together."""

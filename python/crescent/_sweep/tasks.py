@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
 import os
 import pickle
 import socket
@@ -160,8 +161,6 @@ def _rates(task: Task) -> Result:
                 if seconds > 0.25 or last >= 64:
                     break
                 last *= 4
-            import json
-
             seen = json.loads(run.json)["geometry_pixels"] / pixels
             arms[name] = seen * pixels * last * arm["most"] / seconds
         except Exception as error:  # noqa: BLE001: the tasks of this arm report it
