@@ -142,7 +142,7 @@ class Arm:
 
     def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | None, version: str | None) -> None:
         self.name = name
-        self.most = max(table["n"])  #: the largest sample count
+        self.most: int = max(table["n"])  #: the largest sample count
         self.sampler = str(table.get("sampler") or table.get("python") or table.get("plugin") or table.get("exec"))
         self.code: Code | None = None
         self.built_in = not {"python", "plugin", "exec"} & set(table) and given is None

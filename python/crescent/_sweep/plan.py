@@ -152,11 +152,12 @@ class Costs:
     def samples(self, point: Point, name: str) -> float:
         """Samples of one seed of an arm; misses are not counted."""
         arm = point.arms[name]
-        counts = [arm.most]
+        counts: list[int] = [arm.most]
         control = point.tree.get("exponent")
         if control and control["arm"] == name:
             counts += [control["n"]] * len(control["s"])
-        return float(self._known["seen"]) * self._pixels(point) * sum(counts)
+        pixels = float(self._known["seen"]) * self._pixels(point)
+        return pixels * sum(counts)
 
     def seconds(self, point: Point, name: str) -> float:
         """Seconds of one seed of an arm."""

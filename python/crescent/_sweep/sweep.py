@@ -304,7 +304,7 @@ class Run:
                 complete = complete and covered == self.seeds
             folder = self.options.out / "points" / point.folder
             identity = digest(point.experiment.hash, self.seeds, names)
-            if not complete:
+            if studies is None or not complete:
                 continue
             if known.get(point.folder, [""])[0] == identity and (folder / "metrics.json").is_file():
                 failing += known[point.folder][1]
