@@ -374,7 +374,7 @@ def test_ctrl_c_stops_tasks_within_two_seconds(slow, tmp_path):
     kept = results(out)
     runners = children_of(process.pid)
     start = time.monotonic()
-    process.send_signal(signal.SIGINT)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     until(lambda: not any(alive(pid) for pid in runners), 30)
     stopped = time.monotonic() - start
     _, said = process.communicate(timeout=30)
