@@ -38,8 +38,8 @@ def resident():
 
 
 def timed(engine, count, seconds):
-    """Wall-clock seconds of `count` tasks, and processor seconds of this process, which has the client and the scheduler
-    of a local cluster; after each worker has had some."""
+    """Wall-clock seconds of `count` tasks, and processor seconds of this process, which has the client and the
+    scheduler of a local cluster; after each worker has had some."""
     for _, result in engine.run(stubs(8 * engine.slots, 0), lambda name: None):
         assert "error" not in result, result
     start, spent = time.perf_counter(), time.process_time()
@@ -93,7 +93,10 @@ def main():
         wall, _ = with_workers(workers, lambda e, w=workers: timed(e, 60 * w, 0.5))
         rate = 60 * workers / wall
         one = one or rate
-        line(f"{workers} workers, {60 * workers} tasks of 0.5 s that sleep", f"{rate:.2f} tasks/s, {rate / one / workers:.0%} of linear")
+        line(
+            f"{workers} workers, {60 * workers} tasks of 0.5 s that sleep",
+            f"{rate:.2f} tasks/s, {rate / one / workers:.0%} of linear",
+        )
     early, late, wall = with_workers(2, lambda e: memory(e, given.tasks))
     line(
         f"memory of the client, {given.tasks:,} empty tasks",

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _crescent
-from .grid import UsageError
+from .grid import UsageError, hint
 from .runner import Runner, TaskStopped
 from .tasks import Result, Task, host
 
@@ -90,8 +90,25 @@ def usable_cores() -> int:
     return max(count, 1)
 
 
-_SCHEDULERS = {"slurm": "SLURMCluster", "pbs": "PBSCluster", "sge": "SGECluster", "lsf": "LSFCluster", "local": "LocalCluster"}
-_PROFILE_KEYS = ("scheduler", "jobs", "cores", "processes", "memory", "queue", "walltime", "account", "extra", "prologue")
+_SCHEDULERS = {
+    "slurm": "SLURMCluster",
+    "pbs": "PBSCluster",
+    "sge": "SGECluster",
+    "lsf": "LSFCluster",
+    "local": "LocalCluster",
+}
+_PROFILE_KEYS = (
+    "scheduler",
+    "jobs",
+    "cores",
+    "processes",
+    "memory",
+    "queue",
+    "walltime",
+    "account",
+    "extra",
+    "prologue",
+)
 
 
 def profile_of(name: str) -> dict[str, Any]:
@@ -108,15 +125,11 @@ def profile_of(name: str) -> dict[str, Any]:
     for key in profile:
         if key not in _PROFILE_KEYS:
             near = _crescent.nearest(key, list(_PROFILE_KEYS))
-            raise UsageError(
-                f"{path}: no key '{key}': expected {', '.join(_PROFILE_KEYS)}" + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise UsageError(f"{path}: no key '{key}': expected {', '.join(_PROFILE_KEYS)}" + hint(near))
     kind = profile.setdefault("scheduler", "slurm")
     if kind not in _SCHEDULERS:
         near = _crescent.nearest(str(kind), list(_SCHEDULERS))
-        raise UsageError(
-            f"{path}: no scheduler '{kind}': expected {', '.join(_SCHEDULERS)}" + (f"; did you mean '{near}'?" if near else "")
-        )
+        raise UsageError(f"{path}: no scheduler '{kind}': expected {', '.join(_SCHEDULERS)}" + hint(near))
     return profile
 
 
@@ -155,6 +168,7 @@ class DaskEngine:
 
     def __enter__(self) -> DaskEngine:
         import dask
+
         distributed = _module("distributed")
 
         for name in ("distributed", "distributed.client", "distributed.scheduler", "tornado", "asyncio"):
@@ -357,7 +371,9 @@ class DaskEngine:
                 problem = error
         self._check()
         if type(problem).__name__ == "KilledWorker":
-            return {"error": f"{getattr(problem, 'allowed_failures', 3) + 1} workers were lost while they computed it"}, False
+            return {
+                "error": f"{getattr(problem, 'allowed_failures', 3) + 1} workers were lost while they computed it"
+            }, False
         if job.tries < _LOST_TRIES:
             return {}, True
         return {"error": f"{type(problem).__name__}: {problem}"}, False
@@ -384,7 +400,12 @@ def engine_of(text: str) -> str:
     kind, colon, rest = text.partition(":")
     if text in ("local", "commands"):
         return text
-    if kind == "dask" and rest.startswith("//") and rest[2:].rpartition(":")[2].isdecimal() and rest[2:].rpartition(":")[0]:
+    if (
+        kind == "dask"
+        and rest.startswith("//")
+        and rest[2:].rpartition(":")[2].isdecimal()
+        and rest[2:].rpartition(":")[0]
+    ):
         return text
     if kind == "slurm" and rest:
         return text

@@ -22,6 +22,7 @@ from .._callable_arms import source_of
 from .._files import names_a_file
 from .._sampler import Sampler
 from ..experiments import Experiment
+from .grid import hint
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
 _NOT_OF_THE_SCENE = (
@@ -165,8 +166,5 @@ def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
     for name in versions:
         if name not in tables:
             near = _crescent.nearest(name, list(tables))
-            raise ValueError(
-                f"--sampler-version: no arm '{name}': expected one of {', '.join(tables)}"
-                + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise ValueError(f"--sampler-version: no arm '{name}': expected one of {', '.join(tables)}" + hint(near))
     return {name: Arm(name, table, e.samplers.get(name), versions.get(name)) for name, table in tables.items()}
