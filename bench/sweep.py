@@ -38,13 +38,14 @@ def resident():
 
 
 def timed(engine, count, seconds):
-    """Seconds of `count` tasks, after each worker has had some."""
+    """Wall-clock seconds of `count` tasks, and processor seconds of this process, which has the client and the
+    scheduler of a local cluster; after each worker has had some."""
     for _, result in engine.run(stubs(8 * engine.slots, 0), lambda name: None):
         assert "error" not in result, result
-    start = time.perf_counter()
+    start, spent = time.perf_counter(), time.process_time()
     for _, result in engine.run(stubs(count, seconds), lambda name: None):
         assert "error" not in result, result
-    return time.perf_counter() - start
+    return time.perf_counter() - start, time.process_time() - spent
 
 
 def with_workers(workers, work):
@@ -68,6 +69,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--tasks", type=int, default=100_000)
     parser.add_argument("--write")
+    parser.add_argument("--only-memory", action="store_true")
     given = parser.parse_args()
     load = os.getloadavg()[0]
     lines = ["| measured | result |", "|---|---|"]
@@ -76,16 +78,25 @@ def main():
         lines.append(f"| {what} | {text} |")
         print(f"{what}: {text}", flush=True)
 
-    wall = with_workers(2, lambda e: timed(e, 2000, 0))
-    line("overhead of a task, 2,000 empty tasks on 2 workers", f"{wall / 2000 * 1e3:.1f} ms")
-    wall = with_workers(2, lambda e: timed(e, 2000, 0.1))
+    if given.only_memory:
+        print(*with_workers(2, lambda e: memory(e, given.tasks)))
+        return
+    wall, spent = with_workers(2, lambda e: timed(e, 2000, 0))
+    line(
+        "overhead of a task, 2,000 empty tasks on 2 workers",
+        f"{wall / 2000 * 1e3:.1f} ms; {spent / 2000 * 1e3:.1f} ms of processor time of client and scheduler",
+    )
+    wall, _ = with_workers(2, lambda e: timed(e, 2000, 0.1))
     line("use of 2 workers, 2,000 tasks of 0.1 s", f"{2000 * 0.1 / 2 / wall:.1%}")
     one = None
     for workers in (1, 2, 4, 8):
-        wall = with_workers(workers, lambda e, w=workers: timed(e, 60 * w, 0.5))
+        wall, _ = with_workers(workers, lambda e, w=workers: timed(e, 60 * w, 0.5))
         rate = 60 * workers / wall
         one = one or rate
-        line(f"{workers} workers, {60 * workers} tasks of 0.5 s that sleep", f"{rate:.2f} tasks/s, {rate / one / workers:.0%} of linear")
+        line(
+            f"{workers} workers, {60 * workers} tasks of 0.5 s that sleep",
+            f"{rate:.2f} tasks/s, {rate / one / workers:.0%} of linear",
+        )
     early, late, wall = with_workers(2, lambda e: memory(e, given.tasks))
     line(
         f"memory of the client, {given.tasks:,} empty tasks",

@@ -219,12 +219,26 @@ def test_a_sweep_has_the_bytes_of_runs_and_computes_only_what_is_new(tiny, tmp_p
     assert joined.partition('"provenance"')[0] == one.partition('"provenance"')[0]
 
     rows = added.to_arrow().to_pylist()
-    columns = {"ball.s", "key.radius", "arm", "n", "s", "seed", "metric", "region", "value", "experiment", "version", "worker"}
+    columns = {
+        "ball.s",
+        "key.radius",
+        "arm",
+        "n",
+        "s",
+        "seed",
+        "metric",
+        "region",
+        "value",
+        "experiment",
+        "version",
+        "worker",
+    }
     assert columns <= set(rows[0]) and not any(row["suspect"] for row in rows)
     found = {
         row["seed"]: row["value"]
         for row in rows
-        if (row["ball.s"], row["key.radius"], row["arm"], row["n"], row["metric"], row["s"]) == (32, 0.2, "cosine", 16, "rmse", 32)
+        if (row["ball.s"], row["key.radius"], row["arm"], row["n"], row["metric"], row["s"])
+        == (32, 0.2, "cosine", 16, "rmse", 32)
     }
     wanted = {
         row["seed"]: row["value"]
@@ -289,7 +303,16 @@ def test_workers_of_a_queue(tiny, tmp_path):
     profile = tmp_path / "queue.toml"
     profile.write_text("scheduler = 'local'\njobs = 2\ncores = 1\nmemory = '1GB'\n")  # dask-jobqueue without a queue
     ended = command(
-        tiny, "--over", "ball.s=8,32", "--seeds", "2", "--engine", f"slurm:{profile}", "--out", tmp_path / "out", cwd=tmp_path
+        tiny,
+        "--over",
+        "ball.s=8,32",
+        "--seeds",
+        "2",
+        "--engine",
+        f"slurm:{profile}",
+        "--out",
+        tmp_path / "out",
+        cwd=tmp_path,
     )
     assert ended.returncode == 0, ended.stderr
 
@@ -299,7 +322,10 @@ def test_workers_of_a_queue(tiny, tmp_path):
 
 def with_bad_arm(tmp_path, body):
     (tmp_path / "arms.py").write_text(ARMS.replace("BODY", body))
-    text = TINY.replace("[regions.ball]", "[arms.good]\npython='arms.py:good'\nn=[4]\n[arms.bad]\npython='arms.py:bad'\nn=[4]\n[regions.ball]")
+    text = TINY.replace(
+        "[regions.ball]",
+        "[arms.good]\npython='arms.py:good'\nn=[4]\n[arms.bad]\npython='arms.py:bad'\nn=[4]\n[regions.ball]",
+    )
     (tmp_path / "mine.toml").write_text(text)
     return tmp_path / "mine.toml"
 
@@ -374,7 +400,7 @@ def test_ctrl_c_stops_tasks_within_two_seconds(slow, tmp_path):
     kept = results(out)
     runners = children_of(process.pid)
     start = time.monotonic()
-    process.send_signal(signal.SIGINT)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     until(lambda: not any(alive(pid) for pid in runners), 30)
     stopped = time.monotonic() - start
     _, said = process.communicate(timeout=30)
@@ -484,10 +510,22 @@ def test_a_full_disk_fails_tasks_and_leaves_whole_files(tiny, tmp_path):
         pytest.skip("no mount namespaces here")
     out = tmp_path / "out"
     out.mkdir()
-    words = [*COMMAND, str(tiny), "--over", "ball.s=4,8,16,32", "--seeds", "2", "--out", str(out / "sweep"), "--workers", "1"]
+    words = [
+        *COMMAND,
+        str(tiny),
+        "--over",
+        "ball.s=4,8,16,32",
+        "--seeds",
+        "2",
+        "--out",
+        str(out / "sweep"),
+        "--workers",
+        "1",
+    ]
     script = (
         f'mount -t tmpfs -o size=120k none {out}; "$@" 2>{tmp_path}/said; echo $? >{tmp_path}/rc; '
-        f"cp -r {out}/sweep {tmp_path}/kept; mount -o remount,size=20m {out}; \"$@\" 2>>{tmp_path}/said; echo $? >>{tmp_path}/rc"
+        f"cp -r {out}/sweep {tmp_path}/kept; "
+        f'mount -o remount,size=20m {out}; "$@" 2>>{tmp_path}/said; echo $? >>{tmp_path}/rc'
     )
     subprocess.run(["unshare", "-rm", "sh", "-c", script, "sh", *words], timeout=240, capture_output=True)
     said = (tmp_path / "said").read_text()
@@ -563,9 +601,15 @@ def test_the_program_runs_crescent_sweep_from_the_path(tmp_path):
     if not program.exists():
         pytest.skip("no program in this package")
     ended = subprocess.run([program, "sweep", "x"], text=True, capture_output=True, env={"PATH": str(tmp_path)})
-    assert ended.returncode == 3 and "pip install 'crescent-bench[sweep]'" in ended.stderr and ended.stderr.count("\n") == 1
+    assert (
+        ended.returncode == 3
+        and "pip install 'crescent-bench[sweep]'" in ended.stderr
+        and ended.stderr.count("\n") == 1
+    )
     script = tmp_path / "crescent-sweep"
-    script.write_text("#!/bin/sh\necho \"$@\"; exit 7\n")
+    script.write_text('#!/bin/sh\necho "$@"; exit 7\n')
     script.chmod(0o755)
-    ended = subprocess.run([program, "sweep", "a b", "--c"], text=True, capture_output=True, env={"PATH": str(tmp_path)})
+    ended = subprocess.run(
+        [program, "sweep", "a b", "--c"], text=True, capture_output=True, env={"PATH": str(tmp_path)}
+    )
     assert (ended.returncode, ended.stdout) == (7, "a b --c\n")

@@ -1,7 +1,7 @@
 """Checks a sampler over a grid of its parameters: a map of where it is wrong, heavy-tailed or inconclusive.
 
-All tests of all points share one alpha. Call k of a sweep (k = 1, 2, ...) spends alpha / 2^k, in equal shares of its new
-points, so that points can be added without checking the finished ones again: the sum over all calls is below alpha.
+All tests of all points share one alpha. Call k of a sweep (k = 1, 2, ...) spends alpha / 2^k, in equal shares of its
+new points, so that points can be added without checking the finished ones again: the sum over all calls is below alpha.
 """
 
 from __future__ import annotations
@@ -20,14 +20,20 @@ import numpy as np
 
 from .. import _crescent, arms as built_in
 from .engines import DaskEngine, Job, engine_of
-from .grid import UsageError, axes_of, grid, label, short
+from .grid import UsageError, axes_of, grid, hint, label, short
 from .identity import NUMERICS, _of_python, digest
 from .progress import Progress
 from .store import Store, read_json, write_whole
 from .sweep import Say, _folder
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
-_COLOURS = {"right": "#009e73", "heavy-tailed": "#e69f00", "inconclusive": "#bdbdbd", "wrong": "#d55e00", "error": "#000000"}
+_COLOURS = {
+    "right": "#009e73",
+    "heavy-tailed": "#e69f00",
+    "inconclusive": "#bdbdbd",
+    "wrong": "#d55e00",
+    "error": "#000000",
+}
 
 
 @dataclass
@@ -80,16 +86,15 @@ def _look(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
         names = built_in.arm_names()
         if sampler not in names:
             near = _crescent.nearest(sampler, list(names))
-            raise UsageError(
-                f"--check {sampler}: expected FILE.py:NAME or one of {', '.join(names)}"
-                + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise UsageError(f"--check {sampler}: expected FILE.py:NAME or one of {', '.join(names)}" + hint(near))
         return ["built in", sampler], None
     name, colon, inside = sampler.rpartition(":") if not sampler.endswith(".py") else (sampler, "", "")
     path = Path(name)
     if not path.is_file():
         near = _crescent.nearest(path.name, [at.name for at in path.parent.glob("*.py")])
-        raise UsageError(f"--check {name}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else ""))
+        raise UsageError(
+            f"--check {name}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else "")
+        )
     try:
         tree = ast.parse(path.read_text(encoding="utf-8"))
     except SyntaxError as error:
@@ -106,15 +111,13 @@ def _look(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
             nodes |= {alias.asname or alias.name: node for alias in node.names}
     if colon and inside not in nodes:
         near = _crescent.nearest(inside, list(nodes))
-        raise UsageError(f"--check {sampler}: {name} has no '{inside}'" + (f"; did you mean '{near}'?" if near else ""))
+        raise UsageError(f"--check {sampler}: {name} has no '{inside}'" + hint(near))
     known = _parameters(nodes[inside]) if colon else None
     for parameter in paths:
         if known is not None and parameter not in known:
             near = _crescent.nearest(parameter, known)
             told = f"expected {', '.join(known)}" if known else "it takes none"
-            raise UsageError(
-                f"--over {parameter}: {inside} has no parameter '{parameter}': {told}" + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise UsageError(f"--over {parameter}: {inside} has no parameter '{parameter}': {told}" + hint(near))
     return _of_python(str(path.resolve()) + colon + inside)
 
 
@@ -214,8 +217,8 @@ def _write_dataset(out: Path) -> None:
     points = _found(out)
     rows = [
         {
-            **p["values"], "kind": p["kind"], **v, "alpha": p["alpha"], "sampler_id": p["sampler"], "version": p["version"],
-            "worker": p["worker"], "host": p["host"],
+            **p["values"], "kind": p["kind"], **v, "alpha": p["alpha"], "sampler_id": p["sampler"],
+            "version": p["version"], "worker": p["worker"], "host": p["host"],
         }
         for p in points
         for v in p["verdicts"]
@@ -226,13 +229,16 @@ def _write_dataset(out: Path) -> None:
         write_whole(out / "data" / "verdicts.parquet", buffer.getvalue())
 
 
+def _sorted(values: list[Any]) -> list[Any]:
+    """Numbers by size, others by their text."""
+    return sorted(values, key=str if any(isinstance(v, str) for v in values) else None)
+
+
 def _map(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> tuple[list[str], list[Any], list[Any], Any]:
     """The first two axes, and the worst kind at each pair of values; a missing one is -1."""
     paths = sorted(axes, key=lambda path: -len(axes[path]))[:2]
-    across = sorted(axes[paths[0]], key=str) if any(isinstance(v, str) for v in axes[paths[0]]) else sorted(axes[paths[0]])
-    up: list[Any] = [""]
-    if len(paths) > 1:
-        up = sorted(axes[paths[1]], key=str) if any(isinstance(v, str) for v in axes[paths[1]]) else sorted(axes[paths[1]])
+    across = _sorted(axes[paths[0]])
+    up: list[Any] = _sorted(axes[paths[1]]) if len(paths) > 1 else [""]
     out = np.full((len(up), len(across)), -1)
     for point in points:
         at = up.index(point["values"][paths[1]]) if len(paths) > 1 else 0, across.index(point["values"][paths[0]])
@@ -322,7 +328,9 @@ def _figure(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> Any:
         ax = figure.subplots()
         shown = np.ma.masked_less(kinds, 0)
         colours = ListedColormap([_COLOURS[kind] for kind in KINDS])
-        _heat_map(ax, shown, (paths[0], across), (paths[1] if len(paths) > 1 else "", up), cmap=colours, vmin=-0.5, vmax=4.5)
+        _heat_map(
+            ax, shown, (paths[0], across), (paths[1] if len(paths) > 1 else "", up), cmap=colours, vmin=-0.5, vmax=4.5
+        )
         there = sorted({int(k) for k in kinds.ravel() if k >= 0})
         ax.legend(
             handles=[Patch(color=_COLOURS[KINDS[k]], label=KINDS[k]) for k in there], frameon=False,

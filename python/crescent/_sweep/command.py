@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 from .. import _crescent
 from . import require
-from .grid import UsageError
+from .grid import UsageError, hint
 
 _USAGE = """\
 crescent sweep FILE.toml --over PATH=VALUES [--over ...] [--zip] [--seeds K] [--out DIR] [--engine ENGINE]
@@ -67,7 +67,12 @@ def _parser() -> _Parser:
     add("--seeds", type=_whole(4096), metavar="K", help="seeds of each point; default: the experiment's")
     add("--out", metavar="DIR", help="the folder of the sweep; default: out/ and FILE's name and -sweep")
     add("--engine", default="local", metavar="ENGINE", help="where tasks run; default: local, all usable cores")
-    add("--workers", type=_whole(4096), metavar="N", help="worker processes of the engine local; default: one a usable core")
+    add(
+        "--workers",
+        type=_whole(4096),
+        metavar="N",
+        help="worker processes of the engine local; default: one a usable core",
+    )
     add("--films", action="store_true", help="keep the films of the first seed of each point")
     add("--resume", action="store_true", default=True, help="compute only what is missing (default)")
     add("--no-resume", dest="resume", action="store_false", help="compute every point of this call again")
@@ -77,7 +82,13 @@ def _parser() -> _Parser:
         help="identifies a sampler in place of the hash of its source")  # fmt: skip
     add("--metric", default="", metavar="NAME", help="of the report and the summary, such as rmse.H")
     add("--check", metavar="SAMPLER", help="check FILE.py:NAME or a built-in sampler over its parameters")
-    add("--alpha", type=_probability, default=1e-3, metavar="P", help="with --check: shared by all points; default 0.001")
+    add(
+        "--alpha",
+        type=_probability,
+        default=1e-3,
+        metavar="P",
+        help="with --check: shared by all points; default 0.001",
+    )
     add("--full", action="store_true", help="with --check: sixteen times as many draws")
     add("--seed", type=_whole(2**32 - 1), default=1, metavar="S", help="with --check: of its random numbers")
     add("--quiet", action="store_true", help="no progress")
@@ -95,7 +106,7 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
         word = rest[0].partition("=")[0]
         near = _crescent.nearest(word, _flags(parser)) if word.startswith("-") else ""
         what = f"no flag '{word}'" if word.startswith("-") else f"takes one FILE, and '{rest[0]}' is a second one"
-        raise UsageError(what + (f"; did you mean '{near}'?" if near else ""))
+        raise UsageError(what + hint(near))
     return given
 
 

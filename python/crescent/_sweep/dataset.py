@@ -52,7 +52,7 @@ class Dataset:
             write_whole(self.folder / "_schema.json", json.dumps(state))
 
     def clear(self) -> None:
-        """Removes every file: they are made again from the results."""
+        """Removes every file: they are regenerated from the results."""
         for path in self.folder.glob("*.parquet"):
             path.unlink()
 

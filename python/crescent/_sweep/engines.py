@@ -8,24 +8,27 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import itertools
 import logging
 import os
 import queue
 import threading
 import time
 import tomllib
+import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from .. import _crescent
-from .grid import UsageError
+from .grid import UsageError, hint
 from .runner import Runner, TaskStopped
 from .tasks import Result, Task, host
 
 _threads = threading.local()
 _LOST_TRIES = 3  # submissions of a task whose reference was lost with its worker
+_BATCH = 64  # results in one request
 _ANSWER_S = 6.0  # a scheduler that is silent for longer is gone: exit within 10 s
 _NO_WORKER_S = 60.0
 
@@ -50,6 +53,8 @@ def on_worker(task: Task, reference: Any = None) -> Result:
 
     if reference is not None and "error" in reference:
         return {"error": f"its reference: {reference['error']}"}
+    if task.get("reference") and reference is None:
+        return {"error": "its reference was not computed"}
     if reference is not None and reference["id"] != task["reference"]:
         return {"error": f"another scene's reference arrived: {reference['id']}, expected {task['reference']}"}
     runner = getattr(_threads, "runner", None)
@@ -85,8 +90,25 @@ def usable_cores() -> int:
     return max(count, 1)
 
 
-_SCHEDULERS = {"slurm": "SLURMCluster", "pbs": "PBSCluster", "sge": "SGECluster", "lsf": "LSFCluster", "local": "LocalCluster"}
-_PROFILE_KEYS = ("scheduler", "jobs", "cores", "processes", "memory", "queue", "walltime", "account", "extra", "prologue")
+_SCHEDULERS = {
+    "slurm": "SLURMCluster",
+    "pbs": "PBSCluster",
+    "sge": "SGECluster",
+    "lsf": "LSFCluster",
+    "local": "LocalCluster",
+}
+_PROFILE_KEYS = (
+    "scheduler",
+    "jobs",
+    "cores",
+    "processes",
+    "memory",
+    "queue",
+    "walltime",
+    "account",
+    "extra",
+    "prologue",
+)
 
 
 def profile_of(name: str) -> dict[str, Any]:
@@ -103,15 +125,11 @@ def profile_of(name: str) -> dict[str, Any]:
     for key in profile:
         if key not in _PROFILE_KEYS:
             near = _crescent.nearest(key, list(_PROFILE_KEYS))
-            raise UsageError(
-                f"{path}: no key '{key}': expected {', '.join(_PROFILE_KEYS)}" + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise UsageError(f"{path}: no key '{key}': expected {', '.join(_PROFILE_KEYS)}" + hint(near))
     kind = profile.setdefault("scheduler", "slurm")
     if kind not in _SCHEDULERS:
         near = _crescent.nearest(str(kind), list(_SCHEDULERS))
-        raise UsageError(
-            f"{path}: no scheduler '{kind}': expected {', '.join(_SCHEDULERS)}" + (f"; did you mean '{near}'?" if near else "")
-        )
+        raise UsageError(f"{path}: no scheduler '{kind}': expected {', '.join(_SCHEDULERS)}" + hint(near))
     return profile
 
 
@@ -145,10 +163,12 @@ class DaskEngine:
         self._lost = threading.Event()
         self._closing = False
         self.slots = 1
+        self._call, self._numbers = uuid.uuid4().hex[:8], itertools.count()
         self.later: list[Job] = []  #: jobs that the caller adds while it reads results
 
     def __enter__(self) -> DaskEngine:
         import dask
+
         distributed = _module("distributed")
 
         for name in ("distributed", "distributed.client", "distributed.scheduler", "tornado", "asyncio"):
@@ -241,6 +261,7 @@ class DaskEngine:
         running: dict[str, tuple[Any, Job]] = {}
         shared: dict[str, Any] = {}  # references of the current points, as futures
         waiting = self.later
+        held: list[Job] = []  # a job whose references must wait
         exhausted = False
         last_worker = time.monotonic()
 
@@ -258,29 +279,32 @@ class DaskEngine:
             if job.avoid:
                 others = [address for address in self.workers() if address != job.avoid]
                 where = others or None
-            key = f"{job.id}-{job.tries}-{id(job):x}"
-            future = self.client.submit(
-                on_worker, job.task, reference, key=key, pure=False, workers=where, retries=0
-            )
+            key = f"{job.id}-{self._call}-{next(self._numbers)}"  # never one that a scheduler has seen
+            future = self.client.submit(on_worker, job.task, reference, key=key, pure=False, workers=where, retries=0)
             if job.task["kind"] == "reference":
                 shared[job.id] = future
             running[key] = (future, job)
             future.add_done_callback(done.put)
 
         def release() -> None:
-            needed = {job.needs for _, job in running.values()} | {job.needs for job in waiting}
+            needed = {job.needs for _, job in running.values()} | {job.needs for job in waiting + held}
+            needed |= {job.id for _, job in running.values() if job.task["kind"] == "reference"}
             for name in [name for name in list(shared)[:-2] if name not in needed]:
                 del shared[name]
 
         try:
             while True:
-                while len(running) < max(32, 4 * self.slots) and not (exhausted and not waiting):
-                    job = waiting.pop() if waiting else next(jobs, None)
+                while len(running) < max(2 * _BATCH, 4 * self.slots) and not (exhausted and not waiting and not held):
+                    job = waiting.pop() if waiting else held.pop() if held else next(jobs, None)
                     if job is None:
                         exhausted = True
                         break
+                    new = job.task["kind"] == "reference" or bool(job.needs) and job.needs not in shared
+                    if new and running and len(shared) > self.slots + 2:  # references fill the memory of workers
+                        held.append(job)
+                        break
                     submit(job)
-                if exhausted and not running and not waiting:
+                if exhausted and not running and not waiting and not held:
                     return
                 try:
                     future = done.get(timeout=0.5)
@@ -293,16 +317,26 @@ class DaskEngine:
                     elif time.monotonic() - last_worker > _NO_WORKER_S and not self._engine.startswith("slurm:"):
                         raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s") from None
                     continue
-                if future.key not in running:
-                    continue
-                _, job = running.pop(future.key)
-                result, again = self._result(future, job)
-                if again:
-                    shared.pop(job.needs, None)
-                    waiting.append(job)
-                    continue
+                futures = [future]
+                while len(futures) < _BATCH:
+                    try:
+                        futures.append(done.get_nowait())
+                    except queue.Empty:
+                        break
+                futures = [future for future in futures if future.key in running]
+                together = self._together([f for f in futures if running[f.key][1].task["kind"] != "reference"])
+                for future in futures:
+                    _, job = running.pop(future.key)
+                    if future.key in together:
+                        result, again = together[future.key], False
+                    else:
+                        result, again = self._result(future, job)
+                    if again:
+                        shared.pop(job.needs, None)
+                        waiting.append(job)
+                        continue
+                    yield job, result
                 release()
-                yield job, result
         except BaseException as error:
             if isinstance(error, Exception) and not isinstance(error, EngineError) and self._gone():
                 self._lost.set()
@@ -311,6 +345,15 @@ class DaskEngine:
                 if not self._lost.is_set():
                     self.client.cancel([future for future, _ in running.values()], force=True)
             raise
+
+    def _together(self, futures: list[Any]) -> dict[str, Result]:
+        """The results of finished futures in one request; empty if one of them has none."""
+        if any(future.status != "finished" for future in futures):
+            return {}
+        try:
+            return dict(self.client.sync(self.client._gather, {f.key: f for f in futures}, callback_timeout=60))
+        except Exception:  # noqa: BLE001: each is asked for by itself, which says what is wrong with it
+            return {}
 
     def _result(self, future: Any, job: Job) -> tuple[Result, bool]:
         """The result of a finished future, and whether the job must be submitted again."""
@@ -328,7 +371,9 @@ class DaskEngine:
                 problem = error
         self._check()
         if type(problem).__name__ == "KilledWorker":
-            return {"error": f"{getattr(problem, 'allowed_failures', 3) + 1} workers were lost while they computed it"}, False
+            return {
+                "error": f"{getattr(problem, 'allowed_failures', 3) + 1} workers were lost while they computed it"
+            }, False
         if job.tries < _LOST_TRIES:
             return {}, True
         return {"error": f"{type(problem).__name__}: {problem}"}, False
@@ -355,7 +400,12 @@ def engine_of(text: str) -> str:
     kind, colon, rest = text.partition(":")
     if text in ("local", "commands"):
         return text
-    if kind == "dask" and rest.startswith("//") and rest[2:].rpartition(":")[2].isdecimal() and rest[2:].rpartition(":")[0]:
+    if (
+        kind == "dask"
+        and rest.startswith("//")
+        and rest[2:].rpartition(":")[2].isdecimal()
+        and rest[2:].rpartition(":")[0]
+    ):
         return text
     if kind == "slurm" and rest:
         return text

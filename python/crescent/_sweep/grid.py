@@ -24,6 +24,11 @@ class Axis:
     values: tuple[Any, ...]
 
 
+def hint(near: str) -> str:
+    """The end of a message that has the nearest valid word; empty if none is near."""
+    return f"; did you mean '{near}'?" if near else ""
+
+
 _SPACINGS = ("log", "lin")
 
 
@@ -85,9 +90,7 @@ def axis_of(text: str) -> Axis:
     if colon and kind.isalpha():
         if kind not in _SPACINGS:
             near = _crescent.nearest(kind, list(_SPACINGS))
-            raise UsageError(
-                f"--over {path}: no spacing '{kind}': expected log or lin" + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise UsageError(f"--over {path}: no spacing '{kind}': expected log or lin" + hint(near))
         return Axis(path, tuple(_spaced(path, kind, rest)))
     return _axis(path, [_item(item) for item in _items(values)])
 
@@ -97,7 +100,9 @@ def _axis(path: str, values: Iterable[Any]) -> Axis:
     for value in values:
         value = value.item() if hasattr(value, "item") and not isinstance(value, (list, tuple)) else value
         if value == "" or (isinstance(value, float) and not math.isfinite(value)):
-            raise UsageError(f"--over {path}: {value!r} is no value: expected numbers, words or lists, with commas between")
+            raise UsageError(
+                f"--over {path}: {value!r} is no value: expected numbers, words or lists, with commas between"
+            )
         if value not in out:
             out.append(value)
     if not out:

@@ -22,6 +22,7 @@ from .._callable_arms import source_of
 from .._files import names_a_file
 from .._sampler import Sampler
 from ..experiments import Experiment
+from .grid import hint
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
 _NOT_OF_THE_SCENE = (
@@ -142,7 +143,7 @@ class Arm:
 
     def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | None, version: str | None) -> None:
         self.name = name
-        self.most = max(table["n"])  #: the largest sample count
+        self.most: int = max(table["n"])  #: the largest sample count
         self.sampler = str(table.get("sampler") or table.get("python") or table.get("plugin") or table.get("exec"))
         self.code: Code | None = None
         self.built_in = not {"python", "plugin", "exec"} & set(table) and given is None
@@ -165,8 +166,5 @@ def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
     for name in versions:
         if name not in tables:
             near = _crescent.nearest(name, list(tables))
-            raise ValueError(
-                f"--sampler-version: no arm '{name}': expected one of {', '.join(tables)}"
-                + (f"; did you mean '{near}'?" if near else "")
-            )
+            raise ValueError(f"--sampler-version: no arm '{name}': expected one of {', '.join(tables)}" + hint(near))
     return {name: Arm(name, table, e.samplers.get(name), versions.get(name)) for name, table in tables.items()}

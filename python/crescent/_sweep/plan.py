@@ -63,7 +63,7 @@ class Point:
         return {
             "kind": kind, "numerics": NUMERICS, "text": more.pop("text", self.experiment.text),
             "file": self.experiment._core.file, "changes": more.pop("changes", self.changes), "arms": named,
-            "code_id": digest([arm["code"] for arm in named.values()]) if any(a["code"] for a in named.values()) else "",
+            "code_id": digest(codes) if any(codes := [arm["code"] for arm in named.values()]) else "",
             **more,
         }  # fmt: skip
 
@@ -79,7 +79,9 @@ def points_of(
             e = base.with_({**at, "seeds": seeds})
             with_arms = e._with_arms()
             changes = _overrides({**at, "seeds": seeds})
-            point = Point(dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions))
+            point = Point(
+                dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions)
+            )
         except (ValueError, TypeError, OSError) as error:
             bad[label(at)] = said(error) if not isinstance(error, OSError) else str(error)
             continue
@@ -107,7 +109,11 @@ def _small(base: Experiment) -> tuple[Experiment, int]:
     import tomllib
 
     whole = tomllib.loads(base._with_arms()._core.text)
-    kept = {k: v for k, v in whole.items() if k not in ("plates", "assertions", "furnaces", "exponent", "regions", "published")}
+    kept = {
+        k: v
+        for k, v in whole.items()
+        if k not in ("plates", "assertions", "furnaces", "exponent", "regions", "published")
+    }
     kept["note_evidence"] = False
     width, height = whole["image"]["width"], whole["image"]["height"]
     scale = min(1.0, (_CALIBRATION_PIXELS / (width * height)) ** 0.5)
@@ -152,11 +158,12 @@ class Costs:
     def samples(self, point: Point, name: str) -> float:
         """Samples of one seed of an arm; misses are not counted."""
         arm = point.arms[name]
-        counts = [arm.most]
+        counts: list[int] = [arm.most]
         control = point.tree.get("exponent")
         if control and control["arm"] == name:
             counts += [control["n"]] * len(control["s"])
-        return float(self._known["seen"]) * self._pixels(point) * sum(counts)
+        pixels = float(self._known["seen"]) * self._pixels(point)
+        return pixels * sum(counts)
 
     def seconds(self, point: Point, name: str) -> float:
         """Seconds of one seed of an arm."""
@@ -260,7 +267,9 @@ class Plan:
             parts = self._parts(point)
             if parts and not self._has_reference(point) and point.reference not in made:
                 made.add(point.reference)
-                yield Job(point.reference, point.task("reference", threads=spread, id=point.reference), ("reference", point))
+                yield Job(
+                    point.reference, point.task("reference", threads=spread, id=point.reference), ("reference", point)
+                )
             for arms, first, last, _, samples in parts:
                 task = point.task("part", arms, first=first, last=last, reference=point.reference, films=self._films)
                 name = digest(point.scene, [point.arms[a].id for a in arms], first, last)
@@ -271,7 +280,9 @@ class Plan:
                 yield Job(name, point.task("studies", list(point.arms)), ("studies", point))
 
 
-def kept_points(base: Experiment, out: Path, seeds: int, versions: Mapping[str, str], new: Sequence[Point]) -> list[Point]:
+def kept_points(
+    base: Experiment, out: Path, seeds: int, versions: Mapping[str, str], new: Sequence[Point]
+) -> list[Point]:
     """The points of earlier calls that are points of this experiment still, without those of `new`."""
     known = read_json(out / "sweep.json") or {}
     scenes = {point.scene for point in new}

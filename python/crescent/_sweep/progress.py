@@ -54,6 +54,11 @@ class Progress:
         if self._bar:
             width = 24
             full = round(width * min(self.done / max(self.tasks, 1), 1))
-            print(f"\r[{'#' * full}{'.' * (width - full)}] {text}\x1b[K", end="\n" if last else "", file=sys.stderr, flush=True)
+            print(
+                f"\r[{'#' * full}{'.' * (width - full)}] {text}\x1b[K",
+                end="\n" if last else "",
+                file=sys.stderr,
+                flush=True,
+            )
         else:
             print(text, file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""DIR/report.html: heat maps over two axes and ladders of the points, drawn by matplotlib in the style of crescent.plot."""
+"""DIR/report.html: heat maps over two axes and ladders of the points, in the style of crescent.plot."""
 
 from __future__ import annotations
 
@@ -100,10 +100,20 @@ def _heat_maps(numbers: Numbers, metric: str, region: str) -> str:
                 for (y, x), value in np.ndenumerate(values):
                     if np.isfinite(value):
                         dark = norm(value) < 0.55
-                        ax.text(x, y, f"{value:.3g}", ha="center", va="center", fontsize=6, color="white" if dark else "black")
+                        ax.text(
+                            x,
+                            y,
+                            f"{value:.3g}",
+                            ha="center",
+                            va="center",
+                            fontsize=6,
+                            color="white" if dark else "black",
+                        )
         figure.colorbar(drawn, ax=list(grid_axes.ravel()), label=plot._label(metric, region), shrink=0.9)
     more = "" if len(axes) < 3 else f'<p class="note">Mean over {", ".join(path for path, _ in axes[2:])}.</p>\n'
-    return f"<h2>{metric}{' of ' + region if region else ''} over {across[0]} and {up[0]}</h2>\n{more}" + _image(figure, "heat maps")
+    return f"<h2>{metric}{' of ' + region if region else ''} over {across[0]} and {up[0]}</h2>\n{more}" + _image(
+        figure, "heat maps"
+    )
 
 
 def _curves(numbers: Numbers, metric: str, region: str) -> str:
@@ -187,7 +197,8 @@ def _ladders(numbers: Numbers, metric: str, region: str) -> str:
         axes[0][0].legend(frameon=False)
         figure.supxlabel("samples a pixel, N", fontsize=8)
         figure.supylabel(plot._label(metric, region), fontsize=8)
-    note = "Lines are medians over seeds; bands reach from the smallest to the largest seed, from 20 seeds on from 5 % to 95 %."
+    note = "Lines are medians over seeds. Bands reach from the smallest to the largest seed, or from 5 % to 95 % of 20 "
+    note += "seeds or more."
     if len(shown) < len(points):
         note += f" {len(shown)} of {len(points)} points are shown."
     return f'<h2>Ladders</h2>\n<p class="note">{note}</p>\n' + _image(figure, "ladders")
@@ -210,8 +221,8 @@ def write_report(out: str | PathLike[str], metric: str = "") -> Path | None:
     name, region = numbers.chosen(metric)
     parts = [_HEAD.format(title=html.escape(f"Sweep: {state['title']}"))]
     parts.append(
-        f'<p class="note">{html.escape(state["file"])}, {len(state["points"])} points, {state["seeds"]} seeds; crescent '
-        f"{html.escape(state['numerics'])}</p>\n"
+        f'<p class="note">{html.escape(state["file"])}, {len(state["points"])} points, {state["seeds"]} seeds; '
+        f"crescent {html.escape(state['numerics'])}</p>\n"
     )
     for place, error in state.get("failed", {}).items():
         parts.append(f'<p class="failed">failed: {html.escape(place)}: {html.escape(error)}</p>\n')

@@ -61,7 +61,9 @@ class Store:
         out = []
         folder = self._folder(scene, arm)
         for name in os.listdir(folder) if folder.is_dir() else ():
-            if (found := re.fullmatch(r"(\d+)-(\d+)\.json", name)) and self.key(scene, arm, name[:-5]) not in self._suspect:
+            if (found := re.fullmatch(r"(\d+)-(\d+)\.json", name)) and self.key(
+                scene, arm, name[:-5]
+            ) not in self._suspect:
                 out.append((int(found[1]), int(found[2])))
         return sorted(out)
 

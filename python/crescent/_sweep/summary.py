@@ -12,7 +12,7 @@ import numpy as np
 from .. import _crescent
 from .._intervals import log_interval
 from .dataset import read
-from .grid import UsageError, short
+from .grid import UsageError, hint, short
 from .store import read_json
 
 Rows = list[dict[str, Any]]
@@ -42,7 +42,9 @@ class Numbers:
         self.metrics: dict[str, list[str]] = {}
         self.suspect = 0
         own = {point["scene"]: table for point in self.state["points"]}
-        columns = {name: table[name].to_pylist() for name in ("point", "arm", "n", "s", "metric", "region", "value", "suspect")}
+        columns = {
+            name: table[name].to_pylist() for name in ("point", "arm", "n", "s", "metric", "region", "value", "suspect")
+        }
         main = self._main_exponents(columns)
         for at, arm, n, s, metric, region, value, marked in zip(*columns.values(), strict=True):
             self.suspect += bool(marked)
@@ -67,16 +69,20 @@ class Numbers:
         if not self.metrics:
             raise UsageError("the sweep has no results yet")
         if not given:
-            metric = "rmse" if "rmse" in self.metrics else "rmse_frame" if "rmse_frame" in self.metrics else next(iter(self.metrics))
+            metric = (
+                "rmse"
+                if "rmse" in self.metrics
+                else "rmse_frame"
+                if "rmse_frame" in self.metrics
+                else next(iter(self.metrics))
+            )
             return metric, self.metrics[metric][0]
         metric, _, region = given.partition(".")
         words = [f"{m}.{r}" if r else m for m, regions in self.metrics.items() for r in regions]
         if metric in self.metrics and (region in self.metrics[metric] or not region):
             return metric, region or self.metrics[metric][0]
         near = _crescent.nearest(given, [*words, *self.metrics])
-        raise UsageError(
-            f"--metric {given}: expected one of {', '.join(words)}" + (f"; did you mean '{near}'?" if near else "")
-        )
+        raise UsageError(f"--metric {given}: expected one of {', '.join(words)}" + hint(near))
 
     def points(self) -> list[dict[str, Any]]:
         """The points in the order of the axes' values."""

@@ -1,4 +1,4 @@
-"""Runs an experiment over a grid: plans the missing tasks, computes them on an engine, writes what follows from them."""
+"""Runs an experiment over a grid: plans the missing tasks, computes them on an engine, writes what follows."""
 
 from __future__ import annotations
 
@@ -156,7 +156,8 @@ class Run:
             for p in self.all_points
         ]  # fmt: skip
         state = {
-            "format": "crescent sweep 1", "file": self.base._core.file, "title": self.base["title"], "seeds": self.seeds,
+            "format": "crescent sweep 1", "file": self.base._core.file, "title": self.base["title"],
+            "seeds": self.seeds,
             "axes": self.axes, "points": points, "numerics": NUMERICS, "failed": self.failed,
         }  # fmt: skip
         write_whole(self.options.out / "sweep.json", json.dumps(state, indent=1))
@@ -304,7 +305,7 @@ class Run:
                 complete = complete and covered == self.seeds
             folder = self.options.out / "points" / point.folder
             identity = digest(point.experiment.hash, self.seeds, names)
-            if not complete:
+            if studies is None or not complete:
                 continue
             if known.get(point.folder, [""])[0] == identity and (folder / "metrics.json").is_file():
                 failing += known[point.folder][1]
@@ -327,7 +328,9 @@ def _estimate(run: Run, plan: Plan) -> list[str]:
     """What is missing, in words."""
     cost = plan.cost()
     cores = run.options.workers or usable_cores()
-    head = f"{len(run.points)} points, {run.seeds} seeds, {len(run.points[0].arms)} samplers: {int(cost['tasks'])} tasks"
+    head = (
+        f"{len(run.points)} points, {run.seeds} seeds, {len(run.points[0].arms)} samplers: {int(cost['tasks'])} tasks"
+    )
     if not cost["tasks"]:
         return [f"{head}; every result is there"]
     time = f"{duration(cost['seconds'])} on one core, {duration(cost['seconds'] / cores)} on {cores}"
@@ -348,7 +351,14 @@ def _commands(run: Run, plan: Plan) -> Iterator[str]:
         place: list[Any] = [kind, point.reference if kind == "reference" else job.id]
         if kind == "part":
             arms, first, last = job.about[2:]
-            place = ["part", point.scene, {name: point.arms[name].id for name in arms}, first, last, point.experiment.hash]
+            place = [
+                "part",
+                point.scene,
+                {name: point.arms[name].id for name in arms},
+                first,
+                last,
+                point.experiment.hash,
+            ]
             reference = point.task("reference", id=point.reference)
         else:
             reference = None
@@ -395,7 +405,12 @@ def run_task(path: Path) -> int:
         else:
             for name, arm in arms.items():
                 part = result["parts"][name]
-                more = {"experiment": experiment, "version": NUMERICS, "worker": result["worker"], "host": result["host"]}
+                more = {
+                    "experiment": experiment,
+                    "version": NUMERICS,
+                    "worker": result["worker"],
+                    "host": result["host"],
+                }
                 store.add(scene, arm, first, last, {**part, **more, "isa": result["isa"]})
             for name, data in result["films"].items():
                 write_whole(Path(given["films"]) / name, data)
