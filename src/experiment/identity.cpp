@@ -67,10 +67,10 @@ std::string toml(const Key& key, const Value& value) {
 /// A number of 0 and an empty list represent an optional key that was not given.
 bool is_given(const Key& key, const Value& value) {
     if (key.type == Type::sampler) return !value.text.empty();
-    if (key.need != Requirement::optional) return true;
     if (key.type == Type::integers || key.type == Type::numbers || key.type == Type::counts)
         return !value.numbers.empty();
     if (key.type == Type::formulas || key.type == Type::texts) return !value.texts.empty();
+    if (key.need != Requirement::optional) return true;
     return (key.type != Type::integer && key.type != Type::number) || value.number != 0;
 }
 

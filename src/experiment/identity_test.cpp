@@ -116,7 +116,9 @@ Value changed(const Key& key, Value value) {
     value.number = std::nextafter(value.number, 1e300);
     if (key.type == Type::integer) value.number = value.number < 2 ? value.number + 2 : std::ceil(value.number + 1);
     for (double& x : value.numbers) x += 1;
+    if (key.type == Type::counts) value.numbers.push_back(2);
     value.text += "x";
+    value.texts.push_back("x");
     return value;
 }
 

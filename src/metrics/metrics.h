@@ -20,7 +20,7 @@ struct RegionMetrics {
     std::string region;
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
     std::uint64_t pixels = 0;  // geometry pixels in the box count the same as misses: |box|
-    std::optional<Tail> tail;  // of the samples X of the region; published seed only
+    std::optional<Tail> tail{};  // of the samples X of the region; published seed only
 };
 
 /// The metrics of one film; for the whole frame a field for each metric of the list.
@@ -79,7 +79,7 @@ struct FurnaceResult {
     std::uint64_t n = 0;
     double measured = 0, expected = 0;  // Y
     double se = 0;                      // standard error from the samples
-    std::optional<Tail> tail;
+    std::optional<Tail> tail{};
     std::uint64_t bad = 0;
     std::optional<double> published;
 };

@@ -33,7 +33,7 @@ void sort_results(const RunPlan& plan, std::vector<JobResult>& results) {
             return job.arm == r.job.arm && job.n == r.job.n && job.s == r.job.s && job.seed == r.job.seed;
         });
     };
-    std::ranges::stable_sort(results, {}, place);
+    std::ranges::sort(results, {}, place);
 }
 
 void take_results(std::vector<JobResult>&& results, Measured& out) {
