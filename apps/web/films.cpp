@@ -102,7 +102,8 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     const auto samples = static_cast<std::uint64_t>(n);
     const bool whole = std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
     if (!whole) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
-    s.film.n = samples, s.film.directions = directions_per_sample(plan.sampler), s.film.invalid = 0;
+    s.film.n = samples, s.film.invalid = 0;
+    s.film.directions = s.film.evaluations = directions_per_sample(plan.sampler);
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }
 

@@ -112,8 +112,8 @@ double median_seconds(const RunSoFar& run, const Job& job, double first, int rep
     return seconds.size() % 2 ? seconds[half] : (seconds[half - 1] + seconds[half]) / 2;
 }
 
-/// The result of the seeds of which every job is done; empty if there is none.
-std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& run, bool studies) {
+/// The result of the seeds of which every job is done, without studies; empty if there is none.
+std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& run) {
     std::erase_if(run.results, [](const JobResult& r) { return r.stopped; });
     int seeds = 0;
     for (const std::uint32_t seed : run.plan.seeds) {
@@ -130,7 +130,7 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
     PolledMonitor monitor;
     const Work here(&monitor);
     return result_of(collect(
-        part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies}));
+        part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false}));
 }
 
 /// `kept` receives the result of the complete seeds if the run is interrupted.
@@ -163,7 +163,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         watched(monitor, raised, progress, serial, work);
     } catch (nb::python_error& error) {
         if (!error.matches(PyExc_KeyboardInterrupt)) throw;
-        if (std::optional<RunResult> part = finished_seeds(experiment, run, studies))
+        if (std::optional<RunResult> part = finished_seeds(experiment, run))
             kept.append(nb::cast(std::move(*part)));
         throw;
     }
@@ -211,13 +211,13 @@ Experiment settled_paths(Experiment e) {
     return e;
 }
 
-using Plane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using FloatPlane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 /// HDR-FLIP of each pixel.
-nb::object flip_of(const Plane& r0, const Plane& g0, const Plane& b0, const Plane& r, const Plane& g, const Plane& b) {
+nb::object flip_of(const FloatPlane& r0, const FloatPlane& g0, const FloatPlane& b0, const FloatPlane& r, const FloatPlane& g, const FloatPlane& b) {
     const auto height = r0.shape(0), width = r0.shape(1);
-    const auto image = [&](const Plane& red, const Plane& green, const Plane& blue) {
-        for (const Plane* plane : {&red, &green, &blue})
+    const auto image = [&](const FloatPlane& red, const FloatPlane& green, const FloatPlane& blue) {
+        for (const FloatPlane* plane : {&red, &green, &blue})
             if (plane->shape(0) != height || plane->shape(1) != width)
                 throw nb::value_error("expected six planes of one size");
         return FlipImage{static_cast<int>(width), static_cast<int>(height), {red.data(), red.size()},

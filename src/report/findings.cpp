@@ -118,8 +118,9 @@ std::uint64_t Findings::bad_samples() const {
 
 std::vector<std::string> headline_metrics(const Experiment& experiment) {
     std::vector<std::string> all;
+    const bool combined = std::ranges::any_of(experiment.arms, &ArmPlan::is_combination);
     for (const MetricName& metric : metric_names(experiment))
-        if (metric.info->in_tables) all.push_back(metric.name);
+        if (metric.info->in_tables && (combined || !metric.info->of_combinations)) all.push_back(metric.name);
     return all;
 }
 

@@ -6,8 +6,8 @@
 namespace crescent::inline render {
 
 struct FEvaluationsMetric {
-    static constexpr MetricInfo info = {.means = "evaluations of f of one sample",
-        .label = "evaluations of f a sample"};
+    static constexpr MetricInfo info = {
+        .means = "evaluations of f of one sample", .label = "evaluations of f a sample", .of_combinations = true};
     void add(const FilmPixel&, const FilmFacts&) {}
     std::uint64_t value(const FilmFacts& f) const { return f.evaluations; }
 };

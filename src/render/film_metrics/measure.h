@@ -33,6 +33,7 @@ struct MetricInfo {
     std::string_view means;
     std::string_view label{};        // markup, if the report shows something else than the name
     bool in_tables = true;           // in the report and on the terminal
+    bool of_combinations = false;    // in tables only if an arm combines samplers
     bool from_two_samples = false;   // unknown at one sample per pixel
     bool of_single_samples = false;  // the highest sample count includes the samples of all others; no spread over
                                      // seeds

@@ -7,7 +7,8 @@ namespace crescent::inline render {
 
 struct RaysMetric {
     static constexpr MetricInfo info = {.means = "rays of one sample, one for each direction that it estimates",
-        .label = "rays a sample"};
+        .label = "rays a sample",
+        .of_combinations = true};
     void add(const FilmPixel&, const FilmFacts&) {}
     std::uint64_t value(const FilmFacts& f) const { return f.directions; }
 };
