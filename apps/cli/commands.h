@@ -65,7 +65,7 @@ struct SchemaFlags {
 int schema(const SchemaFlags& flags);
 
 struct CheckFlags {
-    std::string arm;                    // "": all built-in arms; an experiment: `sampler` is an arm of it
+    std::string arm;  // "": all built-in arms; an experiment: `sampler` is an arm of it
     std::string sampler;
     std::vector<std::string> settings;  // s=128
     std::string exec, plugin, samples, table;

@@ -97,11 +97,11 @@ void add_check(CLI::App& app, Work& work) {
     c->footer(verdicts_in_order() + check_footer);
     auto* arm =
         c->add_option("ARM", f->arm, "a built-in arm, FILE.py:NAME, or an experiment; without it, all")->type_name("");
-    auto* sampler = c->add_option("--sampler", f->sampler,
-                         "of an experiment: the arm to check, with its materials and lights")
-                        ->type_name("NAME")
-                        ->needs(arm)
-                        ->check(not_empty);
+    auto* sampler =
+        c->add_option("--sampler", f->sampler, "of an experiment: the arm to check, with its materials and lights")
+            ->type_name("NAME")
+            ->needs(arm)
+            ->check(not_empty);
     c->add_option("--pixels", f->pixels, "check it at this many pixels of the scene, not on the grid of w_o")
         ->type_name("N")
         ->needs(sampler)
@@ -109,12 +109,12 @@ void add_check(CLI::App& app, Work& work) {
     c->add_flag("--no-code", f->no_code, "refuse an experiment that names a plugin, a program or a Python file")
         ->needs(sampler);
     c->add_flag("--light", f->light, "the sampler is a light with its radiance: compare its irradiance");
-    auto* set = c->add_option("--set", f->settings,
-                     "s, alpha, rho_d or rho_s; a key of the experiment; may be given again")
-                    ->type_name("KEY=VALUE")
-                    ->take_all()
-                    ->expected(1)
-                    ->allow_extra_args(false);
+    auto* set =
+        c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; a key of the experiment; may be given again")
+            ->type_name("KEY=VALUE")
+            ->take_all()
+            ->expected(1)
+            ->allow_extra_args(false);
     auto* quick = c->add_flag("--quick", f->quick, "seconds an arm (the default)");
     c->add_flag("--full", f->full, "minutes: more directions, more draws")->excludes(quick);
     c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")

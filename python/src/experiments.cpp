@@ -129,8 +129,8 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
     std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
     PolledMonitor monitor;
     const Work here(&monitor);
-    return result_of(collect(
-        part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false}));
+    return result_of(
+        collect(part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false}));
 }
 
 /// `kept` receives the result of the complete seeds if the run is interrupted.
@@ -163,8 +163,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         watched(monitor, raised, progress, serial, work);
     } catch (nb::python_error& error) {
         if (!error.matches(PyExc_KeyboardInterrupt)) throw;
-        if (std::optional<RunResult> part = finished_seeds(experiment, run))
-            kept.append(nb::cast(std::move(*part)));
+        if (std::optional<RunResult> part = finished_seeds(experiment, run)) kept.append(nb::cast(std::move(*part)));
         throw;
     }
     return out;
@@ -214,7 +213,8 @@ Experiment settled_paths(Experiment e) {
 using FloatPlane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 /// HDR-FLIP of each pixel.
-nb::object flip_of(const FloatPlane& r0, const FloatPlane& g0, const FloatPlane& b0, const FloatPlane& r, const FloatPlane& g, const FloatPlane& b) {
+nb::object flip_of(const FloatPlane& r0, const FloatPlane& g0, const FloatPlane& b0, const FloatPlane& r,
+    const FloatPlane& g, const FloatPlane& b) {
     const auto height = r0.shape(0), width = r0.shape(1);
     const auto image = [&](const FloatPlane& red, const FloatPlane& green, const FloatPlane& blue) {
         for (const FloatPlane* plane : {&red, &green, &blue})

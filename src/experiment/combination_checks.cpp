@@ -118,8 +118,8 @@ private:
         if (!context_.is_valid(path + ".of")) return;
         const std::size_t least = c.kind == CombinationKind::ris ? 1 : 2;
         if (!c.of.empty() && (c.of.size() < least || c.of.size() > most_samplers))
-            report(path + ".of",
-                fmt::format("expected {} to {} samplers, found {}", least, most_samplers, c.of.size()));
+            report(
+                path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_samplers, c.of.size()));
         for (std::size_t i = 0; i < c.of.size(); ++i)
             if (const std::string why = why_no_part(arm, c.of[i]); !why.empty()) {
                 const std::string at = fmt::format("{}.of.{}", path, i);
@@ -140,8 +140,7 @@ private:
     /// Keys that exclude each other.
     void form(const ArmPlan& arm, const std::string& path) {
         const CombinationPlan& c = arm.combination;
-        if (c.heuristic && !c.weights.empty())
-            report(path + ".weights", "expected weights or a heuristic, found both");
+        if (c.heuristic && !c.weights.empty()) report(path + ".weights", "expected weights or a heuristic, found both");
         if (c.kind == CombinationKind::mis && c.draw != MisDraw::one && !c.probabilities.empty())
             report(path + ".probabilities", "expected draw = \"one\" beside it: otherwise every sampler is drawn from");
         if (c.draw == MisDraw::one && !c.samples.empty())
@@ -169,8 +168,8 @@ private:
         list("probabilities", c.probabilities, false);
         if (!c.samples.empty() && c.samples.size() != 1 && c.samples.size() != c.of.size())
             report(path + ".samples",
-                fmt::format("expected one integer, or {}, one for each of 'of', found {}", c.of.size(),
-                    c.samples.size()));
+                fmt::format(
+                    "expected one integer, or {}, one for each of 'of', found {}", c.of.size(), c.samples.size()));
         return good;
     }
 
@@ -198,9 +197,7 @@ private:
 
     static FormulaInputs probe(const Shape& shape, std::uint32_t k, std::vector<double>& p) {
         const Surface m = surface_of(shape.material, shape.material.s.value_or(1));
-        const auto unit = [&](std::uint32_t i) {
-            return static_cast<double>(simd::draw(1, k, 0, i).x);
-        };
+        const auto unit = [&](std::uint32_t i) { return static_cast<double>(simd::draw(1, k, 0, i).x); };
         for (std::size_t i = 0; i < p.size(); ++i) p[i] = 10 * unit(static_cast<std::uint32_t>(i) + 2);
         FormulaInputs in;
         in.s = m.s, in.alpha = m.alpha, in.rho_d = luminance(m.rho_d), in.rho_s = m.rho_s;

@@ -59,7 +59,8 @@ Json type_of(const Key& key) {
         case Type::counts:
             return {{"anyOf",
                 {number(key, true),
-                    {{"type", "array"}, {"items", number(key, true)}, {"minItems", 1}, {"maxItems", most_schema_items}}}}};
+                    {{"type", "array"}, {"items", number(key, true)}, {"minItems", 1},
+                        {"maxItems", most_schema_items}}}}};
         case Type::formulas:
             return {{"type", "array"},
                 {"items",

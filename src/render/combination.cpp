@@ -15,9 +15,9 @@ namespace crescent::inline render {
 
 namespace {
 
-constexpr std::size_t batch_rows = 4096;         // directions of a batch: they stay in a cache of the processor
-constexpr std::uint32_t repeat_stride = 1024;    // blocks of one set of directions: 16 samplers, at most 4 pairs each
-constexpr std::uint32_t selection = 0x800000;    // the block that chooses among candidates
+constexpr std::size_t batch_rows = 4096;       // directions of a batch: they stay in a cache of the processor
+constexpr std::uint32_t repeat_stride = 1024;  // blocks of one set of directions: 16 samplers, at most 4 pairs each
+constexpr std::uint32_t selection = 0x800000;  // the block that chooses among candidates
 
 /// The block of pair `pair` of repetition `repeat` of sampler k.
 std::uint32_t block_of(std::size_t k, std::size_t pair, std::size_t repeat) {
@@ -55,7 +55,9 @@ WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight
 class Products {
 public:
     Products(const ShadingPoints& points, bool with_light)
-        : points_(points), with_light_(with_light), memory_(memory_of_light * points.light_count()),
+        : points_(points),
+          with_light_(with_light),
+          memory_(memory_of_light * points.light_count()),
           room_(points, memory_.data()) {}
 
     double operator()(const PointRun& run, const PointDraw& drawn) {
@@ -69,10 +71,12 @@ public:
             return double(cos) * (double(points_.diffuse[at]) / pi + points_.rho_s_exact[at] * double(lobe));
         const int k = light_met(run, drawn);
         const std::size_t light = static_cast<std::size_t>(k), disks = points_.disks.size();
-        const float d = k < 0 ? points_.fill_d[at] : light < disks ? points_.disks[light].d[at]
-                                                                   : points_.others[light - disks].d[at];
-        const float s = k < 0 ? points_.fill_s[at] : light < disks ? points_.disks[light].s[at]
-                                                                   : points_.others[light - disks].s[at];
+        const float d = k < 0 ? points_.fill_d[at]
+            : light < disks   ? points_.disks[light].d[at]
+                              : points_.others[light - disks].d[at];
+        const float s = k < 0 ? points_.fill_s[at]
+            : light < disks   ? points_.disks[light].s[at]
+                              : points_.others[light - disks].s[at];
         return double(cos) * (double(d) + double(lobe) * double(s));
     }
 
@@ -107,8 +111,8 @@ private:
 
 }  // namespace
 
-Combination::Combination(std::string name, CombinationPlan plan, Techniques of,
-    std::shared_ptr<const Technique> target, const SourceLocation& weights_at, const SourceLocation& probabilities_at)
+Combination::Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
+    const SourceLocation& weights_at, const SourceLocation& probabilities_at)
     : name_(std::move(name)),
       plan_(std::move(plan)),
       of_(std::move(of)),
@@ -183,8 +187,7 @@ void Combination::sample_every(const PointRows& at, const NumberBlocks& u, std::
     std::size_t next = 0;
     for (std::size_t k = 0; k < of_.size(); ++k)
         for (std::size_t repeat = 0; repeat < samples_of(k); ++repeat, ++next) {
-            of_[k]->draw(
-                at, numbers_of(at, u, k, repeat, static_cast<std::size_t>(of_[k]->numbers())), drawn);
+            of_[k]->draw(at, numbers_of(at, u, k, repeat, static_cast<std::size_t>(of_[k]->numbers())), drawn);
             for (std::size_t i = 0; i < rows; ++i) wi[i] = drawn[i].wi, p[k][i] = drawn[i].pdf;
             for (std::size_t j = 0; j < of_.size(); ++j)
                 if (j != k) of_[j]->density(at, wi, p[j]);
@@ -233,15 +236,13 @@ void Combination::sample_one(const PointRows& at, const NumberBlocks& u, std::sp
                 out[row] = direction_of(drawn[row], sum, 1);
             } else {
                 in.cos_i = double(drawn[row].wi.z);
-                out[row] = direction_of(
-                    drawn[row], drawn[row].pdf, mis_weight(k, in, here) / c[r * of_.size() + k]);
+                out[row] = direction_of(drawn[row], drawn[row].pdf, mis_weight(k, in, here) / c[r * of_.size() + k]);
             }
         }
     }
 }
 
-void Combination::sample_resampled(
-    const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
+void Combination::sample_resampled(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
     const std::size_t rows = at.count(), m = static_cast<std::size_t>(*plan_.candidates), samplers = of_.size();
     const auto candidates_of = [&](std::size_t k) { return double((m + samplers - 1 - k) / samplers); };
     Products product(at.points, *plan_.target == target_product);
@@ -342,15 +343,15 @@ void estimate_combination(const Combination& combination, const KernelCall& call
             for (std::size_t at = i; at < end; ++at)
                 runs.push_back({at, {points.wox[at], points.woy[at], points.woz[at]}, rows});
             part.resize(runs.size() * rows * count);
-            combination.sample({points, runs},
+            combination.sample(
+                {points, runs},
                 [&](std::size_t run, std::size_t row, std::uint32_t block) {
                     return simd::draw(call.seed, points.pixel[runs[run].point], first + row, block);
                 },
                 part);
             for (std::size_t r = 0; r < runs.size(); ++r) {
                 const auto begin = part.begin() + static_cast<std::ptrdiff_t>(r * rows * count);
-                directions[r].insert(
-                    directions[r].end(), begin, begin + static_cast<std::ptrdiff_t>(rows * count));
+                directions[r].insert(directions[r].end(), begin, begin + static_cast<std::ptrdiff_t>(rows * count));
             }
         }
         for (std::size_t at = i; at < end; ++at) kernel(call, at, directions[at - i].data(), count);

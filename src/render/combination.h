@@ -27,15 +27,15 @@ using NumberBlocks = std::function<Vec2<float>(std::size_t run, std::size_t row,
 
 /// The directions and evaluations of one sample.
 struct SampleCost {
-    std::uint64_t directions = 1;     // that are estimated, and so also rays
-    std::uint64_t f = 1;              // evaluations of f
-    std::uint64_t densities = 0;      // evaluations of a density, apart from those of draws
+    std::uint64_t directions = 1;  // that are estimated, and so also rays
+    std::uint64_t f = 1;           // evaluations of f
+    std::uint64_t densities = 0;   // evaluations of a density, apart from those of draws
 };
 
 class Combination : public ExternalSampler {
 public:
-    /// `target`: the density of ris with a sampler as target; else null. `at`: of the arm's weights and probabilities in
-    /// the experiment. Throws InputError if they cannot be read.
+    /// `target`: the density of ris with a sampler as target; else null. `at`: of the arm's weights and probabilities
+    /// in the experiment. Throws InputError if they cannot be read.
     Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
         const SourceLocation& weights_at, const SourceLocation& probabilities_at);
 

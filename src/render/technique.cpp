@@ -99,8 +99,7 @@ private:
     /// Calls work(batch, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
     template <class Work> void in_batches(const PointRows& at, Work&& work) const {
         const ShadingPoints& p = at.points;
-        const std::vector<ExternalLight> lights =
-            sampler_->uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
+        const std::vector<ExternalLight> lights = sampler_->uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
         std::vector<ExternalRun> runs;
         std::vector<ExternalLightAt> lights_at;
         std::size_t first = 0, rows = 0;

@@ -298,7 +298,8 @@ PageSection ladders(Page& page) {
                                          : "the fit’s own, from its residuals; two sample counts leave none"));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
         "RMSE against <i>N</i> at the " + page.seed_name() + " seed, by region" +
-            (page.in.experiment.seeds > 1 ? ", with the 5–95 % band over seeds" : "") + ". Dashed: slope −1/2 through each arm’s first point." + published,
+            (page.in.experiment.seeds > 1 ? ", with the 5–95 % band over seeds" : "") +
+            ". Dashed: slope −1/2 through each arm’s first point." + published,
         "metrics.json, ladders");
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }

@@ -31,9 +31,8 @@ class AtPoint : public InProcessAdapter {
 public:
     AtPoint(std::string name, Point point, bool limited)
         : name_(std::move(name)), point_(std::move(point)), limited_(limited) {
-        surface_ = {point_->lobe < 0 ? LobeKind::none : static_cast<LobeKind>(point_->lobe),
-            double(point_->diffuse[0]), point_->lobe < 0 ? 0 : point_->rho_s_exact[0], double(point_->s[0]),
-            double(point_->alpha[0])};
+        surface_ = {point_->lobe < 0 ? LobeKind::none : static_cast<LobeKind>(point_->lobe), double(point_->diffuse[0]),
+            point_->lobe < 0 ? 0 : point_->rho_s_exact[0], double(point_->s[0]), double(point_->alpha[0])};
     }
     std::string name() const override { return name_; }
     bool limited() const override { return limited_; }
@@ -56,8 +55,8 @@ protected:
             runs.clear(), wi.clear();
             for (const Pair& pair : at.subspan(first, rows)) {
                 const Vec3<float> wo = as<float>(pair.wo);
-                const bool same = !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y &&
-                    runs.back().wo.z == wo.z;
+                const bool same =
+                    !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
                 if (!same) runs.push_back({0, wo, 0});
                 ++runs.back().rows;
                 wi.push_back(as<float>(pair.wi));
@@ -112,8 +111,7 @@ private:
 /// Multiple importance sampling: the densities of its samplers, each with its weights.
 class WeightedTechniques : public AtPoint {
 public:
-    WeightedTechniques(
-        std::string name, Point point, bool limited, std::shared_ptr<const Combination> combination)
+    WeightedTechniques(std::string name, Point point, bool limited, std::shared_ptr<const Combination> combination)
         : AtPoint(std::move(name), std::move(point), limited), combination_(std::move(combination)) {}
     Traits traits() const override {
         int numbers = 2;
@@ -160,7 +158,8 @@ public:
             const std::size_t rows = std::min(rows_a_batch, u.size() - first);
             drawn.assign(rows, {}), at.clear(), value.resize(rows);
             const PointRun run{0, as<float>(wo), rows};
-            combination_->sample({points(), {&run, 1}},
+            combination_->sample(
+                {points(), {&run, 1}},
                 [&](std::size_t, std::size_t row, std::uint32_t block) { return hashed(u[first + row], block); },
                 drawn);
             for (const WeightedDirection& d : drawn) at.push_back({wo, widen(d.drawn.wi)});
@@ -178,8 +177,8 @@ private:
     static Vec2<float> hashed(const PrimarySample& u, std::uint32_t block) {
         const auto x = std::bit_cast<std::uint64_t>(u.x), y = std::bit_cast<std::uint64_t>(u.y);
         const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v ^ (v >> 32)); };
-        const auto h = simd::pcg4d(simd::Vec4u<std::uint32_t>{low(x), low(y), block,
-            static_cast<std::uint32_t>(x >> 32) ^ static_cast<std::uint32_t>(y >> 29)});
+        const auto h = simd::pcg4d(simd::Vec4u<std::uint32_t>{
+            low(x), low(y), block, static_cast<std::uint32_t>(x >> 32) ^ static_cast<std::uint32_t>(y >> 29)});
         return {simd::unit_float<float>(h.x), simd::unit_float<float>(h.y)};
     }
     std::shared_ptr<const Combination> combination_;
@@ -197,8 +196,7 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
         const double radiance = luminance(lights[k].radiance);
         const Vec3d c = at[k].center, n = at[k].normal, u = at[k].edge_u, v = at[k].edge_v;
         if (dot(u, u) > 0) {
-            out.area_lights.push_back(
-                {radiance, lights::Rectangle{c - u - v, 2.0 * u, 2.0 * v, true}});
+            out.area_lights.push_back({radiance, lights::Rectangle{c - u - v, 2.0 * u, 2.0 * v, true}});
         } else if (dot(n, n) > 0) {  // a disk; a side that shines faces the point
             out.disks.push_back({radiance, c, dot(c, n) < 0 ? n : n * -1.0, lights[k].radius});
         } else {
@@ -247,7 +245,8 @@ private:
                 if (scene_.primary(i, j)) out.push_back(static_cast<std::uint32_t>(j * image.width + i));
         if (out.empty())
             throw InputError(experiment_.place_of("camera"),
-                "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+                "nothing is in view: every ray of the camera misses every shape; expected eye and target that face "
+                "one");
         return out;
     }
 
@@ -357,8 +356,8 @@ Experiment with_arms_of(Experiment experiment, const std::string& sampler) {
         for (std::string& part : parts)
             if (std::ranges::find(needed, part) == needed.end()) needed.push_back(std::move(part));
     }
-    std::erase_if(experiment.arms,
-        [&](const ArmPlan& arm) { return std::ranges::find(needed, arm.name) == needed.end(); });
+    std::erase_if(
+        experiment.arms, [&](const ArmPlan& arm) { return std::ranges::find(needed, arm.name) == needed.end(); });
     return experiment;
 }
 

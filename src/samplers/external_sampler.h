@@ -79,8 +79,8 @@ public:
     virtual bool has_density() const { return false; }
     /// Evaluates the density of each wi, 0 if it is never drawn; the batch has no u. Threads and exceptions as for
     /// draw().
-    virtual void density(const ExternalBatch& /*batch*/, std::span<const Vec3<double>> /*wi*/,
-        std::span<double> out) const {
+    virtual void density(
+        const ExternalBatch& /*batch*/, std::span<const Vec3<double>> /*wi*/, std::span<double> out) const {
         for (double& p : out) p = 0;
     }
     /// Returns itself if it is a combination of samplers (render/combination.h), else null.

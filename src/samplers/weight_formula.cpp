@@ -15,8 +15,8 @@ namespace crescent::inline samplers {
 
 namespace {
 
-constexpr std::size_t deepest = 64;      // values on the stack, and nested brackets
-constexpr double sum_tolerance = 1e-9;   // of weights written as decimals: 0.3333333333 three times
+constexpr std::size_t deepest = 64;     // values on the stack, and nested brackets
+constexpr double sum_tolerance = 1e-9;  // of weights written as decimals: 0.3333333333 three times
 constexpr std::string_view rest = "rest";
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -115,9 +115,8 @@ private:
         const std::size_t first = at_;
         while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
         const std::string word(text_.substr(first, at_ - first));
-        static constexpr std::array<std::pair<std::string_view, Code>, 5> of_point = {
-            {{"s", Code::s}, {"alpha", Code::alpha}, {"rho_d", Code::rho_d}, {"rho_s", Code::rho_s},
-                {"cos_o", Code::cos_o}}};
+        static constexpr std::array<std::pair<std::string_view, Code>, 5> of_point = {{{"s", Code::s},
+            {"alpha", Code::alpha}, {"rho_d", Code::rho_d}, {"rho_s", Code::rho_s}, {"cos_o", Code::cos_o}}};
         static constexpr std::array<std::pair<std::string_view, Code>, 5> functions = {
             {{"min", Code::min}, {"max", Code::max}, {"sqrt", Code::sqrt}, {"exp", Code::exp}, {"log", Code::log}}};
         for (const auto& [known, code] : of_point)
@@ -241,8 +240,9 @@ void WeightList::evaluate(const FormulaInputs& in, std::span<double> out) const 
         return;
     }
     throw InputError(at_,
-        fmt::format("expected weights from 0 to 1 whose sum is one, found {} with sum {} at s = {:.6g}, alpha = {:.6g}, "
-                    "rho_d = {:.6g}, rho_s = {:.6g}, cos_o = {:.6g}",
+        fmt::format(
+            "expected weights from 0 to 1 whose sum is one, found {} with sum {} at s = {:.6g}, alpha = {:.6g}, "
+            "rho_d = {:.6g}, rho_s = {:.6g}, cos_o = {:.6g}",
             fmt::join(out, ", "), sum, in.s, in.alpha, in.rho_d, in.rho_s, in.cos_o));
 }
 

@@ -37,16 +37,34 @@ class WeightFormula {
 public:
     /// Reads a formula for `samplers` samplers. `of_direction`: it may use cos_i and p1, p2, ... Returns the mistake in
     /// `mistake`, whose message is empty if there is none.
-    static WeightFormula read(
-        std::string_view text, std::size_t samplers, bool of_direction, FormulaMistake& mistake);
+    static WeightFormula read(std::string_view text, std::size_t samplers, bool of_direction, FormulaMistake& mistake);
 
     double operator()(const FormulaInputs& in) const;
     /// Whether it is a number.
     bool is_constant() const { return steps_.size() == 1 && steps_[0].code == Code::number; }
 
 private:
-    enum class Code { number, s, alpha, rho_d, rho_s, cos_o, cos_i, p, add, subtract, multiply, divide, power, negate,
-        min, max, sqrt, exp, log };
+    enum class Code {
+        number,
+        s,
+        alpha,
+        rho_d,
+        rho_s,
+        cos_o,
+        cos_i,
+        p,
+        add,
+        subtract,
+        multiply,
+        divide,
+        power,
+        negate,
+        min,
+        max,
+        sqrt,
+        exp,
+        log
+    };
     struct Step {
         Code code;
         double number = 0;  // of Code::p: the index

@@ -65,8 +65,8 @@ Experiment with(const std::string& arms) { return parse(room + arms, "room.toml"
 Film film_of(const Experiment& e, const std::string& arm, std::uint64_t n = 64) {
     const ExternalSamplers outside = runs::open_external(e);
     ProgressMonitor monitor;
-    return estimate_films(Scene(e), SamplerRef(e.find_arm(arm)->sampler, external_of(outside, arm)), {n}, e.seed, "",
-        monitor)[0];
+    return estimate_films(
+        Scene(e), SamplerRef(e.find_arm(arm)->sampler, external_of(outside, arm)), {n}, e.seed, "", monitor)[0];
 }
 
 /// The difference of the sums of two films, in the standard errors of `a`.
@@ -89,16 +89,15 @@ struct BuiltInPair {
 };
 
 TEST(Combinations, HaveTheFilmsOfTheBuiltInOnes) {
-    for (const auto& [built_in, declared] :
-        {BuiltInPair{"mixture",
-             R"toml(kind = "mixture"
+    for (const auto& [built_in, declared] : {BuiltInPair{"mixture",
+                                                 R"toml(kind = "mixture"
 of = ["phong", "cosine"]
 weights = ["min(rho_s / (rho_s + rho_d), 0.9)", "rest"])toml"},
-            BuiltInPair{"mis-balance", "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]"},
-            BuiltInPair{"mis-power", "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]\nheuristic = \"power\""},
-            BuiltInPair{"mis-power",
-                "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]\n"
-                "weights = [\"p1^2 / (p1^2 + p2^2)\", \"p2^2 / (p1^2 + p2^2)\"]"}}) {
+             BuiltInPair{"mis-balance", "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]"},
+             BuiltInPair{"mis-power", "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]\nheuristic = \"power\""},
+             BuiltInPair{"mis-power",
+                 "kind = \"mis\"\nof = [\"mixture\", \"light-area\"]\n"
+                 "weights = [\"p1^2 / (p1^2 + p2^2)\", \"p2^2 / (p1^2 + p2^2)\"]"}}) {
         SCOPED_TRACE(declared);
         const Experiment e = with(std::string("[arms.") + built_in + "]\n[arms.tested]\n" + declared + "\n");
         const Film a = film_of(e, built_in), b = film_of(e, "tested");
@@ -134,8 +133,8 @@ TEST(Combinations, AgreeWithTheReference) {
 
 TEST(Combinations, ABiasedOneIsNoticed) {
     // No other sampler reaches the fill, and half of each direction is dropped.
-    const Experiment e = with(
-        "[arms.tested]\nkind = \"mis\"\nof = [\"cosine\", \"light-area\"]\nweights = [0.5, 0.5]\n");
+    const Experiment e =
+        with("[arms.tested]\nkind = \"mis\"\nof = [\"cosine\", \"light-area\"]\nweights = [0.5, 0.5]\n");
     EXPECT_GT(std::fabs(errors_between(film_of(e, "tested", 256), reference_of(e).y)), 10);
 }
 
@@ -192,8 +191,7 @@ TEST(Combinations, KeepTheWhiteFurnace) {
 CheckResult checked(const Experiment& e, int pixels) {
     ProgressMonitor monitor;
     TestSettings settings = TestSettings::quick();
-    return run_checks(
-        runs::arm_cases(e, "tested", runs::open_external(e), {.pixels = pixels}), settings, monitor);
+    return run_checks(runs::arm_cases(e, "tested", runs::open_external(e), {.pixels = pixels}), settings, monitor);
 }
 
 TEST(ArmCases, PassACorrectCombinationAtPixelsOfItsScene) {
@@ -207,8 +205,8 @@ TEST(ArmCases, PassACorrectCombinationAtPixelsOfItsScene) {
 }
 
 TEST(ArmCases, FailABiasedCombination) {
-    const CheckResult result = checked(
-        with("[arms.tested]\nkind = \"mis\"\nof = [\"cosine\", \"light-area\"]\nweights = [0.5, 0.5]\n"), 1);
+    const CheckResult result =
+        checked(with("[arms.tested]\nkind = \"mis\"\nof = [\"cosine\", \"light-area\"]\nweights = [0.5, 0.5]\n"), 1);
     EXPECT_EQ(result.state, State::wrong);
 }
 

@@ -199,8 +199,8 @@ private:
         return d;
     }
 
-    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked. `context`: the columns
-    /// of all rows, or of each.
+    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked. `context`: the
+    /// columns of all rows, or of each.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
         std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
         const std::size_t columns_of_context = context_columns(hello_.uses, lights), given = 6 + columns_of_context;

@@ -22,9 +22,9 @@ struct FilmPixel {
 struct FilmFacts {
     double pixels = 0;  // of the box
     std::uint64_t n = 0;
-    std::uint64_t directions = 1;  // drawn per sample
+    std::uint64_t directions = 1;   // drawn per sample
     std::uint64_t evaluations = 1;  // of f per sample
-    std::uint64_t bad = 0;         // samples of the whole film
+    std::uint64_t bad = 0;          // samples of the whole film
     double firefly_k = 0;
 };
 

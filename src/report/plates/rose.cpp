@@ -176,13 +176,13 @@ std::string why_no_density(const Sheet& sheet, const std::string& arm) {
     const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
     const ExternalSampler* own = from_external(sheet, arm);
     return arm_name(arm, e) +
-        (own && own->as_combination() ? " joins several densities, each with its own weight"
-                : own && own->uses_lights()   ? " uses lights, and there are none here"
-                : own && own->has_density()   ? " says that its density is 0 in the plane of incidence"
-                : own              ? " is a library without crescent_sampler_pdf: its density is not known"
-                : !info            ? " is external, and its density cannot be evaluated"
-                : info->combines   ? " joins several densities, each with its own weight"
-                                   : " aims at lights: none reaches what the camera sees");
+        (own && own->as_combination()       ? " joins several densities, each with its own weight"
+                : own && own->uses_lights() ? " uses lights, and there are none here"
+                : own && own->has_density() ? " says that its density is 0 in the plane of incidence"
+                : own                       ? " is a library without crescent_sampler_pdf: its density is not known"
+                : !info                     ? " is external, and its density cannot be evaluated"
+                : info->combines            ? " joins several densities, each with its own weight"
+                                            : " aims at lights: none reaches what the camera sees");
 }
 
 void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
