@@ -154,11 +154,11 @@ export class FilmView {
 
   /** After metrics: the scales, and what is measured by them. */
   async measured(): Promise<void> {
-    const scales = await this.host.model.scales();
+    const scales = await this.host.model.scales().catch(() => undefined); // the model reports what fails
     if (!scales) return;
     this.scales = scales;
     this.legend();
-    await Promise.all(this.layers.filter(({ kind }) => kind === "error" || kind === "variance").map((layer) => this.paint(layer)));
+    await Promise.all(this.layers.filter(({ kind }) => kind === "error" || kind === "variance").map((layer) => this.paint(layer).catch(() => {})));
   }
 
   private async repaint(): Promise<void> {
@@ -425,7 +425,7 @@ export class FilmView {
   private async read(pixel: [number, number] | undefined): Promise<void> {
     const at = pixel ?? this.pixel, mine = ++this.asked, { era } = this;
     if (!at) return;
-    const values = await this.host.model.values(() => mine === this.asked && era === this.era, ...at);
+    const values = await this.host.model.values(() => mine === this.asked && era === this.era, ...at).catch(() => undefined);
     if (!values) return;
     const one = (words: string, value: string | undefined): string => (value === undefined ? "" : `, ${words} ${value.replace(/^-/, "−")}`);
     this.readout.replaceChildren(el("b", {}, `(${at.join(", ")}) ${values.shape || "nothing"}`), values.reference === undefined ? "" : `: reference Y ${values.reference} ${unit}`,

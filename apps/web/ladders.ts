@@ -19,7 +19,7 @@ export async function showLadders(root: HTMLElement, model: Model): Promise<void
       points: s.sampleCounts.map((r) => [r.n, Number(r.metrics.metrics[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)),
     }));
     if (series.every(({ points }) => points.length === 0)) return undefined;
-    return model.chart(() => described === model.described, { region: name, series });
+    return model.chart(() => described === model.described, { region: name, series }).catch(() => undefined);
   }));
   if (described !== model.described || charts.some((chart) => chart === undefined)) return;
   const figures = [...root.querySelectorAll<HTMLElement>("figure[data-chart]")];

@@ -234,9 +234,9 @@ def two_hundred_settings(driver):
           f"{nodes} nodes, then {nodes_after}")
     assert len(sizes) == 200 and max(own[1]) <= max(own[0]), f"the page's module grew: {own[0][::20]}, {own[1][::20]}"
     # Which worker gets which tile is random, and so is when it uses the most memory. 2.5 kB per setting contain no
-    # picture.
+    # picture, ten nodes per setting no table; the pictures of the setting before the last may still be on their way.
     assert max(workers[1]) <= max(workers[0]) + 2**20, f"the workers grew: {workers[0][::20]}, {workers[1][::20]}"
-    assert second <= first + 2**18 and nodes_after <= 1.2 * nodes, f"the scripts kept {scripts}"
+    assert second <= first + 2**18 and nodes_after <= nodes + 1000, f"the scripts kept {scripts}"
     assert settings[-1].split("arms=")[1].split("&")[0] in driver.execute_script("return location.hash")
 
 
