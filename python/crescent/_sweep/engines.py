@@ -258,7 +258,8 @@ class DaskEngine:
         """Runs jobs and yields them with their results as they end. A job that needs references comes after the job
         that computes them, whose id is their identity; or `references` has them."""
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        running: dict[str, tuple[Any, Job]] = {}
+        running: dict[Any, tuple[Any, Job]] = {}
+        length = 1.0  # of a task in s, a running mean: long ones are submitted late, so that workers end together
         shared: dict[str, Any] = {}  # references of the current points, as futures
         waiting = self.later
         held: list[Job] = []  # a job whose references must wait
@@ -279,7 +280,8 @@ class DaskEngine:
             if job.avoid:
                 others = [address for address in self.workers() if address != job.avoid]
                 where = others or None
-            key = f"{job.id}-{self._call}-{next(self._numbers)}"  # never one that a scheduler has seen
+            # Never a key that the scheduler has seen. Tasks of one group stay in its queue until a worker is free.
+            key = (f"{job.needs or job.task['kind']}-{self._call}", next(self._numbers))
             future = self.client.submit(on_worker, job.task, reference, key=key, pure=False, workers=where, retries=0)
             if job.task["kind"] == "reference":
                 shared[job.id] = future
@@ -294,7 +296,8 @@ class DaskEngine:
 
         try:
             while True:
-                while len(running) < max(2 * _BATCH, 4 * self.slots) and not (exhausted and not waiting and not held):
+                most = max(2 * _BATCH, 4 * self.slots) if length < 0.5 else 3 * self.slots + 1
+                while len(running) < most and not (exhausted and not waiting and not held):
                     job = waiting.pop() if waiting else held.pop() if held else next(jobs, None)
                     if job is None:
                         exhausted = True
@@ -331,6 +334,7 @@ class DaskEngine:
                         result, again = together[future.key], False
                     else:
                         result, again = self._result(future, job)
+                    length += (result.get("seconds", length) - length) / 8
                     if again:
                         shared.pop(job.needs, None)
                         waiting.append(job)
@@ -346,12 +350,13 @@ class DaskEngine:
                     self.client.cancel([future for future, _ in running.values()], force=True)
             raise
 
-    def _together(self, futures: list[Any]) -> dict[str, Result]:
+    def _together(self, futures: list[Any]) -> dict[Any, Result]:
         """The results of finished futures in one request; empty if one of them has none."""
         if any(future.status != "finished" for future in futures):
             return {}
         try:
-            return dict(self.client.sync(self.client._gather, {f.key: f for f in futures}, callback_timeout=60))
+            results = self.client.sync(self.client._gather, futures, callback_timeout=60)
+            return {future.key: result for future, result in zip(futures, results, strict=True)}
         except Exception:  # noqa: BLE001: each is asked for by itself, which says what is wrong with it
             return {}
 

@@ -38,7 +38,10 @@ def _code_folder(files: Mapping[str, str]) -> Path:
     """The folder of these files on this machine; its name is that of their content."""
     name = hashlib.sha256(repr(sorted(files.items())).encode()).hexdigest()[:24]
     folder = Path(tempfile.gettempdir()) / f"crescent-sweep-{os.getuid()}" / name
-    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    folder.parent.mkdir(exist_ok=True, mode=0o700)
+    if folder.parent.stat().st_uid != os.getuid():
+        raise ValueError(f"{folder.parent} is another user's folder")
+    folder.mkdir(exist_ok=True)
     for file, text in files.items():
         data = base64.b64decode(text)
         if not (folder / file).is_file() or (folder / file).read_bytes() != data:
