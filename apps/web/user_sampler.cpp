@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "check/sources/context_columns.h"
-#include "check/verdict_names.h"
 #include "disk.h"
 
 extern "C" {

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "check/check.h"
 #include "check/sources/cases.h"
+#include "check/sources/context_columns.h"
 #include "check/sources/primary_sample.h"
 #include "check/sources/sampler_adapter.h"
 #include "experiment/experiment.h"

@@ -48,8 +48,10 @@ struct CommonGround {
     std::vector<Vec3d> drawn;                 // some of the pilot directions of each
 };
 
+/// What both samplers have in common, by pilot draws of each.
 CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);
 
+/// The quantities of a draw whose means are compared.
 enum AgainstSum : int { log_density, mean_x, mean_y, mean_z, against_sums };
 
 /// What one side draws in one stage.
@@ -70,6 +72,7 @@ void draw_on(const AgainstSide& side, const CommonGround& ground, const Look& to
 
 /// One question to both.
 struct AgainstAnswer {
+    /// What it compares.
     enum Family { kinds, sums, sums_by_sets, nodes, nodes_by_sets, families } family;
     int member = 0;
     double difference = 0, sd = 0, floor = 0, p = 1;  // share of A less that of B, or mean

@@ -50,6 +50,7 @@ struct JointP {
     double p = std::nan("");
     std::size_t quantity = 0;
 };
+/// Of the p of each quantity, NaN where it was not tested.
 inline JointP joint_p(std::span<const double> each) {
     JointP out;
     for (std::size_t q = 0; q < each.size(); ++q) {

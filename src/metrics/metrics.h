@@ -19,7 +19,7 @@ namespace crescent::inline metrics {
 struct RegionMetrics {
     std::string region;
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
-    std::uint64_t pixels = 0;  // geometry pixels in the box count the same as misses: |box|
+    std::uint64_t pixels = 0;    // geometry pixels in the box count the same as misses: |box|
     std::optional<Tail> tail{};  // of the samples X of the region; published seed only
 };
 
