@@ -10,6 +10,7 @@
 #include "check/sources/context_columns.h"
 #include "check/sources/primary_sample.h"
 #include "check/sources/sampler_adapter.h"
+#include "check/verdict_names.h"
 #include "experiment/experiment.h"
 #include "experiment/queries.h"
 #include "math/functions.h"

@@ -69,7 +69,7 @@ def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
     from . import _crescent
 
     film, reference = result.films[arm, n, s], result.references[s]
-    image = _crescent.flip(*(np.ascontiguousarray(reference[c]) for c in "rgb"), *(film.planes[c] for c in "rgb"))
+    image: Any = _crescent.flip(*(np.ascontiguousarray(reference[c]) for c in "rgb"), *(film.planes[c] for c in "rgb"))
     if region:
         x0, y0, x1, y1 = result.boxes[region]
         image = image[y0 : y1 + 1, x0 : x1 + 1]
@@ -78,7 +78,7 @@ def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
 
 def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Summary:
     tail = _rows(result, "tail_k", arm, n, region, s)
-    heavy = bool(tail) and tail[0]["value"] >= 0.5 and metric not in ("tail_k", "flip")
+    heavy = bool(tail) and float(tail[0]["value"]) >= 0.5 and metric not in ("tail_k", "flip")
     if metric == "flip":
         values = _flip(result, arm, n, region, s)
     elif metric == "efficiency_n":

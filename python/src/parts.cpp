@@ -84,13 +84,14 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
         RunPlan what = plan(experiment, {first, last});
         const auto other = [&](const std::string& name) { return std::ranges::find(arms, name) == arms.end(); };
         std::erase_if(what.jobs, [&](const Job& job) { return other(job.arm); });
-        Experiment& seen = what.experiment;  // with these arms alone: no other sampler is opened
+        Experiment& seen = what.experiment;  // no other sampler is opened
         const Names kept = with_components(arms, seen.arms);
         std::erase_if(seen.arms, [&](const ArmPlan& arm) { return std::ranges::find(kept, arm.name) == kept.end(); });
         seen.assertions.clear();
         if (seen.exponent && other(seen.exponent->arm)) seen.exponent.reset();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Prepared prepared = look(what, engine);
+        std::erase_if(seen.arms, [&](const ArmPlan& arm) { return other(arm.name); });
         prepared.quadrature = given.quadrature, prepared.monte_carlo = given.monte_carlo;
         const Scene scene = prepared.scene;
         std::vector<Job> jobs;

@@ -209,7 +209,7 @@ def test_records_have_numbers_as_numbers(measured):
     kinds = {"arm": str, "n": int, "s": float, "seed": int, "meter": str, "region": str}
     for row in measured.records():
         assert {key: type(row[key]) for key in kinds} == kinds
-        whole = row["meter"] in ("fireflies", "pixels", "tail_exceedances", "bad")
+        whole = row["meter"] in ("fireflies", "pixels", "tail_exceedances", "bad", "rays", "f_evaluations")
         assert row["value"] is None or type(row["value"]) is (int if whole else float), row
     changed = crescent.parse(TINY).with_({"fill.radiance": [1, 2, 3], "image.width": 40, "title": "x", "n": 16})
     row = crescent.run(changed, seeds=(1, 1)).records()[0]

@@ -374,6 +374,32 @@ def test_a_sampler_of_a_notebook_travels(tiny, tmp_path):
     assert mine and len({row["seed"] for row in mine}) == 2
 
 
+def test_a_combination_comes_with_the_samplers_that_it_is_of(tiny, tmp_path):
+    def draw(wo, u):
+        z = np.sqrt(1 - u[:, 0])
+        r, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
+        return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), z / np.pi
+
+    def pdf(wo, wi):
+        return np.maximum(wi[:, 2], 0) / np.pi
+
+    e = crescent.load(tiny)
+    e.samplers["mine"] = crescent.Sampler(draw, pdf)
+    e.samplers["both"] = crescent.mis("mine", "phong")
+    made = crescent.sweep(e, over={"ball.s": [8]}, seeds=2, out=tmp_path / "out", workers=1)
+    assert not made.failed
+    at = e.with_({"ball.s": 8})
+    at.samplers.update(e.samplers)
+    there = [r["value"] for r in crescent.run(at, seeds=(1, 2)).records() if (r["arm"], r["meter"]) == ("both", "y_mean")]
+    swept = [r["value"] for r in made.to_arrow().to_pylist() if (r["arm"], r["metric"]) == ("both", "y_mean")]
+    assert there and sorted(swept) == sorted(there)
+    e.samplers["mine"] = crescent.Sampler(lambda wo, u: draw(wo, 1 - u), pdf)  # the combination is another one, too
+    again = crescent.sweep(e, over={"ball.s": [8]}, seeds=2, out=tmp_path / "out", workers=1)
+    assert sorted(r["value"] for r in again.to_arrow().to_pylist() if (r["arm"], r["metric"]) == ("both", "y_mean")) != (
+        sorted(there)
+    )
+
+
 def children_of(pid):
     """The processes below a process."""
     found = subprocess.run(["ps", "-eo", "pid=,ppid=,args="], text=True, capture_output=True).stdout

@@ -11,6 +11,7 @@ import importlib
 import itertools
 import logging
 import os
+import signal
 import queue
 import threading
 import time
@@ -136,11 +137,14 @@ def profile_of(name: str) -> dict[str, Any]:
 def _queue_cluster(name: str) -> tuple[Any, int]:
     """A cluster whose workers are jobs of a queueing system, and the number of jobs."""
     profile = profile_of(name)
+    handler = signal.getsignal(signal.SIGINT)
     try:
         import dask_jobqueue  # type: ignore[import-untyped,import-not-found,unused-ignore]
         from dask_jobqueue.local import LocalCluster as LocalJobs  # type: ignore[import-untyped,import-not-found,unused-ignore]
     except ImportError:
         raise EngineError("crescent sweep: needs dask-jobqueue: pip install 'crescent-bench[sweep]'") from None
+    finally:
+        signal.signal(signal.SIGINT, handler)  # dask-jobqueue takes it by being imported
     kind = _SCHEDULERS[profile.pop("scheduler")]
     jobs = int(profile.pop("jobs", 1))
     options: dict[str, Any] = {"cores": 1, "memory": "4GB", **profile}

@@ -13,7 +13,7 @@ import importlib.metadata
 import inspect
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -158,6 +158,13 @@ class Arm:
         kept = {k: v for k, v in table.items() if k not in ("python", "plugin")}
         self.id = digest(NUMERICS, name, kept, source if version is None else ["declared", version])
         self.kind = "callable" if given is not None else kind
+        self.of: list[str] = []  #: the arms that a combination is of
+
+    def set_parts(self, of: Sequence[Arm]) -> None:
+        """Of a combination: the arms that it is of, themselves complete."""
+        self.of = list(dict.fromkeys(name for arm in of for name in (arm.name, *arm.of)))
+        self.built_in = all(arm.built_in for arm in of)
+        self.id = digest(self.id, [arm.id for arm in of])
 
 
 def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
@@ -167,4 +174,16 @@ def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
         if name not in tables:
             near = _crescent.nearest(name, list(tables))
             raise ValueError(f"--sampler-version: no arm '{name}': expected one of {', '.join(tables)}" + hint(near))
-    return {name: Arm(name, table, e.samplers.get(name), versions.get(name)) for name, table in tables.items()}
+    arms: dict[str, Arm] = {}
+
+    def add(name: str) -> Arm:
+        if name not in arms:
+            given = e.samplers.get(name)
+            arm = Arm(name, tables[name], given if isinstance(given, Sampler) else None, versions.get(name))
+            if "kind" in tables[name]:
+                parts = [*tables[name]["of"], *([tables[name]["target"]] if "target" in tables[name] else [])]
+                arm.set_parts([add(part) for part in parts if part in tables])
+            arms[name] = arm
+        return arms[name]
+
+    return {name: add(name) for name in tables}

@@ -54,11 +54,14 @@ class Point:
         return safe if len(safe) <= 120 else f"{safe[:100]}-{self.scene}"
 
     def task(self, kind: str, arms: Sequence[str] = (), **more: Any) -> dict[str, Any]:
-        """A task of this point."""
+        """A task of this point, with the arms that combinations among these are of."""
         named = {
-            name: {"kind": arm.kind, "code": arm.code, "sampler": arm.sampler, "most": arm.most}
+            name: {
+                "kind": arm.kind, "code": arm.code, "sampler": arm.sampler, "most": arm.most,
+                "of": arm.of, "run": name in arms,
+            }  # fmt: skip
             for name, arm in self.arms.items()
-            if name in arms
+            if name in arms or any(name in self.arms[other].of for other in arms)
         }
         return {
             "kind": kind, "numerics": NUMERICS, "text": more.pop("text", self.experiment.text),

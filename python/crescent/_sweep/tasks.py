@@ -84,12 +84,12 @@ def _part(task: Task, references: Any) -> Result:
     callables = {arm[0]: arm for arm in _callables(task)}
     parts = {}
     films: dict[str, bytes] = {}
-    for name in task["arms"]:
+    for name, arm in task["arms"].items():
+        if not arm["run"]:
+            continue
         start = time.perf_counter()
-        run = _crescent.run_part(
-            e, task["first"], task["last"], [name], references, 1, isa, None,
-            [callables[name]] if name in callables else [],
-        )  # fmt: skip
+        given = [callables[it] for it in (name, *arm["of"]) if it in callables]
+        run = _crescent.run_part(e, task["first"], task["last"], [name], references, 1, isa, None, given)
         parts[name] = {"json": run.json, "csv": run.csv, "seconds": time.perf_counter() - start}
         if task.get("films") and task["first"] == 1:
             films |= _films(run)
@@ -154,11 +154,13 @@ def _rates(task: Task) -> Result:
     errors: dict[str, str] = {}
     seen = 1.0
     for name, arm in task["arms"].items():
+        if not arm["run"]:
+            continue
         last = 1
         try:
             while True:
                 start = time.perf_counter()
-                given = [callables[name]] if name in callables else []
+                given = [callables[it] for it in (name, *arm["of"]) if it in callables]
                 run = _crescent.run_part(e, 2, 1 + last, [name], references, 1, "", None, given)
                 seconds = time.perf_counter() - start
                 if seconds > 0.25 or last >= 64:
