@@ -1,4 +1,4 @@
-// Twelve samplers to judge, eleven with one planted fault of a kind that public bug reports show. `repair`: what is
+// Twelve samplers to check, eleven with one planted fault of a kind that public bug reports show. `repair`: what is
 // replaced, and by what; the code of the exercise has the first. The page checks both; no verdict is typed in here.
 import { templates } from "./templates";
 

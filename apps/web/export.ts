@@ -1,5 +1,5 @@
 // The user's sampler elsewhere: a program for `crescent check --exec`, which runs the same code, and skeletons in C++
-// and Python with the code to translate beside them.
+// and Python with the code to translate next to them.
 
 export const exports: [string, string][] = [["program", "a program for node, and its command"], ["cpp", "a C++ struct"], ["python", "a Python function"]];
 

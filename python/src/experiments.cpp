@@ -135,7 +135,8 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
 
 /// `kept` receives the result of the complete seeds if the run is interrupted.
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
-    bool studies, const nb::object& progress, const CallableArms& callables, int repeats, nb::typed<nb::list, RunResult> kept) {
+    bool studies, const nb::object& progress, const CallableArms& callables, int repeats,
+    nb::typed<nb::list, RunResult> kept) {
     PolledMonitor monitor;
     Raised raised(monitor);
     RunResult out;

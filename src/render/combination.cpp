@@ -307,18 +307,19 @@ template <class F> struct DirectionsOfSamples {
     std::size_t count;
 };
 
-using PointKernel = void (*)(const KernelCall&, std::size_t at, const WeightedDirection* first, std::size_t count);
+using SampleKernel = void (*)(const KernelCall&, std::size_t at, const WeightedDirection* first, std::size_t count);
 
 template <class L>
-void estimate_point(const KernelCall& call, std::size_t at, const WeightedDirection* first, std::size_t count) {
+void estimate_samples_at(const KernelCall& call, std::size_t at, const WeightedDirection* first, std::size_t count) {
     scalar::LightRoom<float> room(*call.shading_points, call.memory);
     scalar::estimate_pack<DirectionsOfSamples<float>, L, scalar::Lights<float>, float>(
         call, at, room, [&](const ShadingPoint<float>&) { return DirectionsOfSamples<float>{first, count}; });
 }
 
 /// [lobe + 1]
-template <template <class> class... L> constexpr std::array<PointKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
-    return {estimate_point<NoLobe<float>>, estimate_point<L<float>>...};
+template <template <class> class... L>
+constexpr std::array<SampleKernel, sizeof...(L) + 1> sample_kernels(LobeList<L...>) {
+    return {estimate_samples_at<NoLobe<float>>, estimate_samples_at<L<float>>...};
 }
 
 }  // namespace
@@ -327,7 +328,7 @@ void estimate_combination(const Combination& combination, const KernelCall& call
     const ShadingPoints& points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
     const std::size_t count = combination.directions();
-    const PointKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(points.lobe + 1)];
+    const SampleKernel kernel = sample_kernels(Lobes{})[static_cast<std::size_t>(points.lobe + 1)];
     const std::uint64_t longest = std::max<std::uint64_t>(1, batch_rows / count);
     const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest / n);
     std::vector<PointRun> runs;

@@ -29,7 +29,7 @@ using NumberBlocks = std::function<Vec2<float>(std::size_t run, std::size_t row,
 struct SampleCost {
     std::uint64_t directions = 1;  // that are estimated, and so also rays
     std::uint64_t f = 1;           // evaluations of f
-    std::uint64_t densities = 0;   // evaluations of a density, apart from those of draws
+    std::uint64_t densities = 0;   // evaluations of a density, except those of draws
 };
 
 class Combination : public ExternalSampler {

@@ -1,5 +1,5 @@
-// A sampler as a part of a combination: it draws and evaluates its density at shading points, whatever it is written
-// in. Directions are float, as in the estimator; densities in 1/sr.
+// A sampler as a part of a combination: it draws and evaluates its density at shading points, in any language.
+// Directions are float, as in the estimator; densities in 1/sr.
 #pragma once
 
 #include <memory>

@@ -58,8 +58,8 @@ def tests(page, folder):
             ".map((e) => [e.dataset.verdict, e.dataset.state]))")
 
     def a_sampler_is_written(driver):
-        """A template runs and is right; a wrong one is told with its verdict and its picture; the code comes back from
-        the address; its film stands beside a built-in one."""
+        """A template runs and is right; a wrong one is reported with its verdict and its picture; the code comes back from
+        the address; its film is next to a built-in one."""
         browser.open_page(driver, page, "#part=write", until=LOOKED)
         found = verdicts(driver)
         assert len(found) == 8 and set(found.values()) == {"right"}, found
@@ -83,7 +83,7 @@ def tests(page, folder):
 
     def mistakes_have_lines(driver):
         """What is no JavaScript, what throws, what returns something else, what never returns and what asks the network
-        is told in one sentence, three of them with their line."""
+        gives one sentence, three of them with their line."""
         browser.open_page(driver, page, "#part=write", until=LOOKED)
         for code, line, word in (
                 (COSINE.replace("z = Math", "z = = Math"), 2, "SyntaxError"),
