@@ -66,7 +66,7 @@ export class Workshop implements Viewer {
   private readonly out = el("pre", {}, el("code", { id: "exported", tabindex: 0 }));
   private ground = "lambert";
   private scene: string;
-  private next to = "cosine";
+  private beside = "cosine";
   private n = 16;
   private layer = "pdf";
   private wo: [number, number] = [30, 0];
@@ -95,7 +95,7 @@ export class Workshop implements Viewer {
             el("label", { class: "file" }, "Open a file", el("input", { type: "file", id: "open-code", accept: ".js,.mjs,.txt", onchange: (e: Event) => void this.openFile(e) })))),
         el("div", {}, this.views, el("figure", { class: "hemisphere" }, this.hemisphere, this.caption))),
       this.verdicts,
-      el("h3", {}, "Its film next to a built-in one"), this.options, this.film.root, this.charts,
+      el("h3", {}, "Its film beside a built-in one"), this.options, this.film.root, this.charts,
       el("details", { id: "export", ontoggle: () => this.export() }, el("summary", {}, "Export: C++, Python, the program"), formats,
         this.out, el("p", {}, button("copy-export", "Copy", () => void this.copyExport()), " ", button("save-export", "Save as a file", () => this.saveExport()))));
     window.setInterval(() => this.guard(), 500);
@@ -230,8 +230,8 @@ export class Workshop implements Viewer {
     const pool = (this.films = new Pool(this.at.module, source, count, 300_000));
     this.model.pool = pool;
     const counts = `[4, 16${this.n > 16 ? ", 64" : ""}]`;
-    const opening: Opening = { file: from.file, text: from.text, published: "", set: [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.next to}.n=${counts}`] };
-    this.model.run(opening, [yours, this.next to], this.n).catch((error: unknown) => this.failedIn(era, error));
+    const opening: Opening = { file: from.file, text: from.text, published: "", set: [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`] };
+    this.model.run(opening, [yours, this.beside], this.n).catch((error: unknown) => this.failedIn(era, error));
   }
   opened(d: Described, shown: Shown[]): void { this.film.opened(d, shown); }
   painted(index: number, box: Box): void {
@@ -251,7 +251,7 @@ export class Workshop implements Viewer {
     const again = (): void => { this.at.changed(this.work); this.restart(); };
     this.options.replaceChildren(
       choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.quadrature || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
-      choice("your-next to", "beside", samplers().map(({ name, label }) => [name, label]), this.beside, (value) => { this.beside = value; again(); }),
+      choice("your-beside", "beside", samplers().map(({ name, label }) => [name, label]), this.beside, (value) => { this.beside = value; again(); }),
       choice("your-n", "samples a pixel", [["4", "4"], ["16", "16"], ["64", "64"]], String(this.n), (value) => { this.n = Number(value); again(); }));
     const angle = el("output", { for: "your-theta" }, `${this.wo[0]}°`);
     const theta = el("input", {
