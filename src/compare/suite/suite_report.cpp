@@ -145,7 +145,7 @@ std::string pictures(const ViewResult& view) {
         html::number(percent(p.scale, 2)));
 }
 
-std::string relative(double candidate, double baseline) {
+std::string relative_to_baseline(double candidate, double baseline) {
     return baseline == 0 ? "" : (candidate < baseline ? "-" : "+") + percent(std::fabs(candidate / baseline - 1), 2);
 }
 
@@ -160,7 +160,7 @@ std::string numbers(const ViewResult& view) {
         const VarianceTest* v = r < view.variances.size() ? &view.variances[r] : nullptr;
         const bool varied = v && v->why.empty() && v->baseline > 0;
         table.row({html::heading(escape(t.region)), html::figure(figures(t.b)), html::figure(figures(t.a)),
-            html::figure(relative(t.a, t.b)), html::figure(tested ? figures(t.joint_p, 2) : ""),
+            html::figure(relative_to_baseline(t.a, t.b)), html::figure(tested ? figures(t.joint_p, 2) : ""),
             html::figure(tested ? percent(t.smallest, 2) : ""),
             html::figure(varied ? "×" + figures(v->candidate / v->baseline, 3) : ""),
             html::figure(varied ? figures(v->welch.p, 2) : "")});
