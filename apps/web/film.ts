@@ -417,9 +417,10 @@ export class FilmView {
 
   /** Selects a pixel, and shows its values. */
   select(pixel: [number, number] | undefined): void {
-    this.pixel = pixel;
+    const { width, height } = this.host.model.described;
+    this.pixel = pixel && pixel[0] < width && pixel[1] < height ? pixel : undefined; // the address may be of a larger film
     this.draw();
-    if (pixel) void this.read(pixel);
+    if (this.pixel) void this.read(this.pixel);
   }
 
   private async read(pixel: [number, number] | undefined): Promise<void> {

@@ -171,7 +171,7 @@ CRESCENT_EXPORT(pixel_values)()->void {
     if (known) out["reference"] = figures(double(b.reference.y[at]));
     for (int k = 0; k < query.at("count").get<int>(); ++k) {
         const Film& film = slot(k).film;
-        if (film.y.size() != b.pixels()) continue;  // not begun yet
+        if (film.y.size() != b.pixels() || at >= film.y.size()) continue;  // not begun yet; outside
         const double directions = static_cast<double>(film.n * film.directions);
         ordered_json one = {{"y", figures(double(film.y.at(at)))}, {"n", film.n},
             {"se", figures(std::sqrt(double(film.var.at(at))), 2)},

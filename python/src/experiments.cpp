@@ -142,6 +142,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     RunResult out;
     const auto [samplers, serial] = samplers_of(callables, raised);
     RunSoFar run;
+    bool complete = false;
     const auto work = [&] {
         run.plan = plan(experiment, {first, last});
         run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
@@ -157,14 +158,16 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         Measured all = collect(
             run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies});
         run.results.clear(), run.prepared.reset();
-        monitor.check();
         out = result_of(std::move(all));
+        complete = true;
     };
     try {
         watched(monitor, raised, progress, serial, work);
     } catch (nb::python_error& error) {
         if (!error.matches(PyExc_KeyboardInterrupt)) throw;
-        if (std::optional<RunResult> part = finished_seeds(experiment, run)) kept.append(nb::cast(std::move(*part)));
+        if (complete) kept.append(nb::cast(std::move(out)));
+        else if (std::optional<RunResult> part = finished_seeds(experiment, run))
+            kept.append(nb::cast(std::move(*part)));
         throw;
     }
     return out;

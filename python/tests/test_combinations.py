@@ -3,6 +3,7 @@
 import os
 import signal
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -110,6 +111,7 @@ def test_an_interrupted_run_keeps_the_complete_seeds(tmp_path):
 
     def slow(wo, u):
         calls.append(1)
+        time.sleep(0.05)
         if threading.current_thread() and len(calls) == 20:
             os.kill(os.getpid(), signal.SIGINT)
         return cosine(wo, u)
