@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "check/against_draws.h"
 #include "check/check.h"
 #include "check/constants.h"
 #include "check/explain/text.h"

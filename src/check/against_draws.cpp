@@ -1,7 +1,7 @@
 // Given how many draws of both fall into a node, those of A in its first half follow a hypergeometric law if both are
 // of one distribution, which is that of a sum of independent indicators (Vatutin and Mikhailov 1982): Bennett's
 // inequality holds with its variance at every count.
-#include "check/against.h"
+#include "check/against_draws.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // f is compared within what a few roundings of the directions move it by. Variances are ranked by a test of their
 // difference that fails at both stages; where f is known at A's draws alone, B's variance follows from them by p_A /
 // p_B.
-#include "check/against.h"
+#include "check/against_draws.h"
 
 #include <algorithm>
 #include <cmath>

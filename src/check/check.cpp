@@ -9,7 +9,7 @@
 #include "check/decide/check_sampler.h"
 #include "check/decide/efficiency.h"
 #include "check/explain/causes.h"
-#include "check/report/print.h"
+#include "check/report/pictures.h"
 #include "check/report/sentences.h"
 #include "check/sources/sampler_adapter.h"
 #include "check/verdict_names.h"

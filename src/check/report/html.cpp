@@ -1,4 +1,5 @@
 // The page of a result: what was found, in sentences, tables and pictures.
+#include "check/report/html.h"
 #include "check/report/print.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Bins need not lie along the leaves: a leaf is shared out by area, and leaves are small where mass is.
-#include "check/report/print.h"
+#include "check/report/pictures.h"
 
 #include <algorithm>
 #include <cmath>

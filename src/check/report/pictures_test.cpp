@@ -1,5 +1,5 @@
 // Maps sum to the draws, follow the lobe, and show what is off.
-#include "check/report/print.h"
+#include "check/report/pictures.h"
 
 #include <gtest/gtest.h>
 #include <numeric>

@@ -2,12 +2,9 @@
 // its pictures.
 #pragma once
 
-#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "check/decide/tail.h"
 #include "check/verdict.h"
 
 namespace crescent::inline results {
@@ -43,30 +40,4 @@ std::string settling(const Verdict& verdict, FrontEnd front_end = FrontEnd::comm
 /// How to check the sampler at one w_o alone: theta and azimuth in degrees.
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end);
 
-// ---- The figures of the HTML page, each with its axes: maps of bins, roses of p over f L cos.
-
-/// Observed, expected and standardised difference, painted by the page's script; the worst bin has a frame. Of an
-/// implied density one map.
-std::string map_figures(const BinHistogram& map);
-/// Nothing where there is no p.
-std::string rose_figure(const WeightHistogram& weights);
-/// The table of the density that the draws imply, by rings about n; "" of any other verdict.
-std::string implied_html(const Verdict& verdict);
-
 }  // namespace crescent::inline results
-
-namespace crescent::check {
-
-// ---- What the HTML page draws of one w_o: draws by bin beside what p expects, the weights, and p over f L cos in the
-// plane of incidence.
-
-/// Draws of one technique by bins of theta and phi about n, from the leaves of its tree: finer where most draws are.
-/// Both sides count h = q / (p + q), in draws. Without a density what the draws imply, in 1/sr. None if nothing was
-/// drawn.
-std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& c);
-/// Histogram of the weights with the fitted tail. x: of all techniques together.
-WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail);
-/// Adds p and f L cos along the plane of incidence, which costs evaluations of both at 179 directions.
-void add_rose(const CheckCase& check_case, WeightHistogram& to);
-
-}  // namespace crescent::check

@@ -82,7 +82,8 @@ def address_is_data(driver):
                  "n twice", "set=n=[3]", "set=arms.phong.n=[3]", "set=reference.kind=", "answer=sparkle:evil",
                  "answer=firefly:l", "answer=four-times:99", "answer=sparkle:1,1,960,9"):
         assert word in said, f"{word} is not told: {said}"
-    browser.open_page(driver, page, "#lesson=none", until="document.getElementById('wrong').textContent")
+    browser.open_page(driver, page, "#lesson=none", until="document.getElementById('wrong').textContent && "
+                      "document.getElementById('lessons').textContent.includes('minutes')")
     assert "lesson=none" in browser.text(driver, "#wrong")
     assert browser.text(driver, "#lessons").count("minutes") == 12
     browser.open_page(driver, page, small + "&pixel=160,3")
