@@ -51,8 +51,9 @@ class _Radiance:
 
     of: Callable[..., Any]
 
-    def __call__(self, wo: Any, wi: Any) -> Any:
-        return self.of(wi)
+    def __call__(self, *at: Any) -> Any:
+        """at: w_o and w_i, or w_i alone."""
+        return self.of(at[-1])
 
 
 @dataclass(frozen=True)
