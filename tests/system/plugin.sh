@@ -53,7 +53,7 @@ told 'plugin = "mine.toml"' 3 "cannot open the plugin"
 told 'exec = "./nowhere"' 2 "arms.mine.exec: the shell cannot start"
 told 'exec = "read hello; echo hello 1 x; exit 3"' 3 "exit code 3"
 told 'exec = ""' 2 "arms.mine.exec"
-told 'sampler = "cosine"\nplugin = "libcosine.so"' 2 "one of sampler, exec, plugin and python"
+told 'sampler = "cosine"\nplugin = "libcosine.so"' 2 "one of sampler, kind, exec, plugin and python"
 cc_shared() { expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/src" -I"$CRESCENT_SOURCE/include" -o "$1.so" "$1.c" -lm; }
 sed 's/return 0;/return 7;/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >fails.c && cc_shared fails
 told 'plugin = "fails.so"' 3 "gave 7, expected 0, in crescent_sampler_sample"
