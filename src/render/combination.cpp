@@ -8,8 +8,7 @@
 
 #include "base/errors.h"
 
-#define CRESCENT_ISA scalar
-#include "render/kernel_body.h"
+#include "render/point_kernel.h"
 
 namespace crescent::inline render {
 
@@ -119,6 +118,7 @@ Combination::Combination(std::string name, CombinationPlan plan, Techniques of, 
       target_(std::move(target)),
       weights_(plan_.weights, of_.size(), plan_.kind == CombinationKind::mis, weights_at),
       probabilities_(plan_.probabilities, of_.size(), false, probabilities_at) {
+    if (plan_.kind == CombinationKind::mixture) mixture_ = mixture_technique(of_, weights_);
     if (!plan_.target) plan_.target = target_product;
     if (plan_.samples.size() == 1) plan_.samples.assign(of_.size(), plan_.samples[0]);
 }
@@ -146,11 +146,12 @@ SampleCost Combination::cost() const {
     return out;
 }
 
-double Combination::share_of(std::size_t k, const FormulaInputs& in) const {
-    if (plan_.draw != MisDraw::one) return static_cast<double>(samples_of(k));
+std::vector<double> Combination::shares(const FormulaInputs& in) const {
     std::vector<double> c(of_.size());
-    probabilities_.evaluate(in, c);
-    return c[k];
+    if (plan_.draw == MisDraw::one) probabilities_.evaluate(in, c);
+    else
+        for (std::size_t k = 0; k < c.size(); ++k) c[k] = static_cast<double>(samples_of(k));
+    return c;
 }
 
 double Combination::mis_weight(std::size_t k, FormulaInputs in, std::span<const double> p) const {
@@ -163,18 +164,19 @@ double Combination::mis_weight(std::size_t k, FormulaInputs in, std::span<const 
         return w[k];
     }
     // Relative to p[k]: a large density does not overflow.
-    const double own = share_of(k, in);
+    const std::vector<double> share = shares(in);
     double sum = 0;
     for (std::size_t j = 0; j < p.size(); ++j) {
-        const double ratio = j == k ? 1 : share_of(j, in) * p[j] / (own * p[k]);
+        const double ratio = j == k ? 1 : share[j] * p[j] / (share[k] * p[k]);
         sum += plan_.heuristic == MisHeuristic::power ? ratio * ratio : ratio;
     }
-    return own > 0 ? 1 / sum : 0;
+    return share[k] > 0 ? 1 / sum : 0;
 }
 
 void Combination::sample(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
     if (plan_.kind == CombinationKind::ris) sample_resampled(at, u, out);
     else if (plan_.kind == CombinationKind::mis && plan_.draw != MisDraw::one) sample_every(at, u, out);
+    else if (mixture_) sample_mixture(at, u, out);
     else sample_one(at, u, out);
 }
 
@@ -209,12 +211,16 @@ void Combination::sample_every(const PointRows& at, const NumberBlocks& u, std::
         }
 }
 
+void Combination::sample_mixture(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
+    std::vector<PointDraw> drawn(out.size());
+    mixture_->draw(at, numbers_of(at, u, 0, 0, static_cast<std::size_t>(mixture_->numbers())), drawn);
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = direction_of(drawn[i], drawn[i].pdf, drawn[i].pdf == 0 ? 0 : 1);
+}
+
 void Combination::sample_one(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
-    const bool mixture = plan_.kind == CombinationKind::mixture;
-    const WeightList& shares = mixture ? weights_ : probabilities_;
-    std::size_t numbers = 2;
-    for (const auto& part : of_) numbers = std::max(numbers, static_cast<std::size_t>(part->numbers()));
-    const std::vector<double> c = weights_at(at, shares), given = numbers_of(at, u, 0, 0, numbers);
+    const auto numbers = static_cast<std::size_t>(most_numbers(of_));
+    const std::vector<double> c = weights_at(at, probabilities_), given = numbers_of(at, u, 0, 0, numbers);
     const Choices choices = choose(at, given, numbers, c, of_.size());
     std::vector<PointDraw> drawn(choices.part.size());
     std::vector<std::vector<double>> p;
@@ -230,14 +236,8 @@ void Combination::sample_one(const PointRows& at, const NumberBlocks& u, std::sp
             }
             const std::size_t k = choices.part[row];
             for (std::size_t j = 0; j < of_.size(); ++j) here[j] = p[j][row];
-            if (mixture) {
-                double sum = 0;
-                for (std::size_t j = 0; j < of_.size(); ++j) sum += c[r * of_.size() + j] * here[j];
-                out[row] = direction_of(drawn[row], sum, 1);
-            } else {
-                in.cos_i = double(drawn[row].wi.z);
-                out[row] = direction_of(drawn[row], drawn[row].pdf, mis_weight(k, in, here) / c[r * of_.size() + k]);
-            }
+            in.cos_i = double(drawn[row].wi.z);
+            out[row] = direction_of(drawn[row], drawn[row].pdf, mis_weight(k, in, here) / c[r * of_.size() + k]);
         }
     }
 }
@@ -289,7 +289,7 @@ void Combination::sample_resampled(const PointRows& at, const NumberBlocks& u, s
 }
 
 std::shared_ptr<const Technique> Combination::technique() const {
-    if (plan_.kind == CombinationKind::mixture) return mixture_technique(of_, weights_);
+    if (mixture_) return mixture_;
     const bool balance = plan_.weights.empty() && plan_.heuristic != MisHeuristic::power;
     if (plan_.kind == CombinationKind::mis && plan_.draw == MisDraw::one && balance)
         return mixture_technique(of_, probabilities_);
@@ -307,28 +307,13 @@ template <class F> struct DirectionsOfSamples {
     std::size_t count;
 };
 
-using SampleKernel = void (*)(const KernelCall&, std::size_t at, const WeightedDirection* first, std::size_t count);
-
-template <class L>
-void estimate_samples_at(const KernelCall& call, std::size_t at, const WeightedDirection* first, std::size_t count) {
-    scalar::LightRoom<float> room(*call.shading_points, call.memory);
-    scalar::estimate_pack<DirectionsOfSamples<float>, L, scalar::Lights<float>, float>(
-        call, at, room, [&](const ShadingPoint<float>&) { return DirectionsOfSamples<float>{first, count}; });
-}
-
-/// [lobe + 1]
-template <template <class> class... L>
-constexpr std::array<SampleKernel, sizeof...(L) + 1> sample_kernels(LobeList<L...>) {
-    return {estimate_samples_at<NoLobe<float>>, estimate_samples_at<L<float>>...};
-}
-
 }  // namespace
 
 void estimate_combination(const Combination& combination, const KernelCall& call) {
     const ShadingPoints& points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
     const std::size_t count = combination.directions();
-    const SampleKernel kernel = sample_kernels(Lobes{})[static_cast<std::size_t>(points.lobe + 1)];
+    const PointKernel<DirectionsOfSamples<float>> kernel = point_kernel<DirectionsOfSamples<float>>(points);
     const std::uint64_t longest = std::max<std::uint64_t>(1, batch_rows / count);
     const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest / n);
     std::vector<PointRun> runs;
@@ -355,7 +340,7 @@ void estimate_combination(const Combination& combination, const KernelCall& call
                 directions[r].insert(directions[r].end(), begin, begin + static_cast<std::ptrdiff_t>(rows * count));
             }
         }
-        for (std::size_t at = i; at < end; ++at) kernel(call, at, directions[at - i].data(), count);
+        for (std::size_t at = i; at < end; ++at) kernel(call, at, {directions[at - i].data(), count});
     }
 }
 

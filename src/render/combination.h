@@ -62,17 +62,19 @@ public:
 
 private:
     void sample_every(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_mixture(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
     void sample_one(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
     void sample_resampled(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
     std::uint64_t samples_of(std::size_t k) const;
     /// n_k of draw = "every", c_k of draw = "one".
-    double share_of(std::size_t k, const FormulaInputs& in) const;
+    std::vector<double> shares(const FormulaInputs& in) const;
 
     std::string name_;
     CombinationPlan plan_;
     Techniques of_;
     std::shared_ptr<const Technique> target_;
     WeightList weights_, probabilities_;
+    std::shared_ptr<const Technique> mixture_;  // of a mixture
 };
 
 /// Has the form of a kernel of the table.

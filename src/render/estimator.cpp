@@ -230,8 +230,7 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
 // ---- Fetches the draws of many shading points in one batch and passes them to the scalar kernel one by one; an
 // unusable draw becomes a NaN pdf, which kernels count as bad.
 
-#define CRESCENT_ISA scalar
-#include "render/kernel_body.h"
+#include "render/point_kernel.h"
 
 namespace crescent::inline render {
 
@@ -244,15 +243,10 @@ template <class F> struct Prefetched {
     Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> /*u*/) const { return *next++; }
 };
 
-/// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
-/// precision, in which the estimate is computed. pdf 0: nothing was drawn.
 Drawn<float> usable(const Vec3<double>& wi, double p) {
     if (p == 0) return {{0, 0, 1}, {0}};
-    const double length2 = wi.x * wi.x + wi.y * wi.y + wi.z * wi.z;
-    const auto pdf = static_cast<float>(p);
-    const bool good = std::fabs(length2 - 1) <= 2e-4 && pdf > 0 && pdf <= std::numeric_limits<float>::max();
-    if (!good) return {{0, 0, 1}, {std::numeric_limits<float>::quiet_NaN()}};
-    return {{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}, {pdf}};
+    if (!is_usable(wi, p)) return {{0, 0, 1}, {std::numeric_limits<float>::quiet_NaN()}};
+    return {as<float>(wi), {static_cast<float>(p)}};
 }
 
 /// Appends the random numbers of `n` samples of a pixel from `first` on, `count` per sample. The first two are those of
@@ -277,29 +271,13 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
     }
 }
 
-/// rho_d of rho_d / pi.
-Rgb albedo(const Rgb& lambert) { return {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}; }
-
-using PointKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
-
-template <class L> void estimate_point(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
-    scalar::LightRoom<float> room(*call.shading_points, call.memory);
-    scalar::estimate_pack<Prefetched<float>, L, scalar::Lights<float>, float>(
-        call, at, room, [&](const ShadingPoint<float>&) { return Prefetched<float>(drawn); });
-}
-
-/// [lobe + 1]
-template <template <class> class... L> constexpr std::array<PointKernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
-    return {estimate_point<NoLobe<float>>, estimate_point<L<float>>...};
-}
-
 }  // namespace
 
 void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
     const ShadingPoints& shading_points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
     const auto numbers = static_cast<std::size_t>(sampler.numbers());
-    const PointKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(shading_points.lobe + 1)];
+    const PointKernel<Prefetched<float>> kernel = point_kernel<Prefetched<float>>(shading_points);
     // The same batches for any number of threads; a shading point of more samples is fetched in parts.
     const std::uint64_t longest_batch = sampler.batch_rows();
     const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
@@ -320,10 +298,7 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
             for (std::size_t at = i; at < end; ++at) {
                 const Vec3<double> wo{
                     double(shading_points.wox[at]), double(shading_points.woy[at]), double(shading_points.woz[at])};
-                runs.push_back({wo,
-                    {double(shading_points.s[at]), double(shading_points.alpha[at]), double(shading_points.diffuse[at]),
-                        shading_points.rho_s_exact[at]},
-                    static_cast<std::size_t>(count), albedo(shading_points.lambert[at])});
+                runs.push_back(run_at(shading_points, at, wo, static_cast<std::size_t>(count)));
                 if (!lights.empty()) add_lights_at(shading_points, at, lights_at);
                 add_numbers(shading_points.pixel[at], call.seed, first, count, numbers, u);
             }
@@ -331,7 +306,7 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
             sampler.draw({runs, u, lights, lights_at}, {wi, pdf});
             for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
         }
-        for (std::size_t at = i; at < end; ++at) kernel(call, at, drawn.data() + (at - i) * n);
+        for (std::size_t at = i; at < end; ++at) kernel(call, at, Prefetched<float>(drawn.data() + (at - i) * n));
     }
 }
 

@@ -2,6 +2,7 @@
 #include "render/external_lights.h"
 
 #include <cmath>
+#include <limits>
 
 namespace crescent::inline render {
 
@@ -48,6 +49,17 @@ void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vec
     for (const DiskArrays& disk : shading_points.disks) to.push_back(disk_at(disk, at));
     for (const LightArrays& arrays : shading_points.others)
         with_light_kind(arrays.kind, [&]<class Kind>() { to.push_back(light_at<Kind>(local_light(arrays, at))); });
+}
+
+ExternalRun run_at(const ShadingPoints& points, std::size_t at, Vec3<double> wo, std::size_t rows) {
+    const Rgb& lambert = points.lambert[at];
+    return {wo, {double(points.s[at]), double(points.alpha[at]), double(points.diffuse[at]), points.rho_s_exact[at]},
+        rows, {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}};
+}
+
+bool is_usable(const Vec3<double>& wi, double p) {
+    const auto pdf = static_cast<float>(p);
+    return std::fabs(dot(wi, wi) - 1) <= 2e-4 && pdf > 0 && pdf <= std::numeric_limits<float>::max();
 }
 
 }  // namespace crescent::inline render

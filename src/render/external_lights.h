@@ -1,4 +1,4 @@
-// The lights of a scene as samplers from outside receive them.
+// What samplers from outside receive of shading points, and which of their draws are usable.
 #pragma once
 
 #include <vector>
@@ -13,5 +13,12 @@ std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points);
 
 /// Appends each of these lights as shading point `at` sees it.
 void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vector<ExternalLightAt>& to);
+
+/// Rows at shading point `at`.
+ExternalRun run_at(const ShadingPoints& shading_points, std::size_t at, Vec3<double> wo, std::size_t rows);
+
+/// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
+/// precision, in which the estimate is computed. pdf 0, which means that nothing was drawn, is for the caller.
+bool is_usable(const Vec3<double>& wi, double pdf);
 
 }  // namespace crescent::inline render

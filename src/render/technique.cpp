@@ -87,12 +87,9 @@ public:
     }
 
 private:
-    /// As in estimate_external.
     static PointDraw usable(const Vec3<double>& wi, double p) {
         if (p == 0) return {};
-        const bool good = std::fabs(dot(wi, wi) - 1) <= 2e-4 && p > 0 && p <= std::numeric_limits<float>::max() &&
-            static_cast<float>(p) > 0;
-        if (!good) return {{0, 0, 1}, not_usable};
+        if (!is_usable(wi, p)) return {{0, 0, 1}, not_usable};
         return {as<float>(wi), p};
     }
 
@@ -111,11 +108,7 @@ private:
         for (const PointRun& run : at.runs)
             for (std::size_t done = 0; done < run.rows;) {
                 const std::size_t part = std::min(run.rows - done, sampler_->batch_rows() - rows);
-                const Rgb& lambert = p.lambert[run.point];
-                runs.push_back({widen(run.wo),
-                    {double(p.s[run.point]), double(p.alpha[run.point]), double(p.diffuse[run.point]),
-                        p.rho_s_exact[run.point]},
-                    part, {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}});
+                runs.push_back(run_at(p, run.point, widen(run.wo), part));
                 if (!lights.empty()) add_lights_at(p, run.point, lights_at);
                 done += part, rows += part;
                 if (rows == sampler_->batch_rows()) flush();
@@ -129,11 +122,7 @@ private:
 class MixtureTechnique : public Technique {
 public:
     MixtureTechnique(Techniques parts, WeightList weights) : parts_(std::move(parts)), weights_(std::move(weights)) {}
-    int numbers() const override {
-        int most = 2;
-        for (const auto& part : parts_) most = std::max(most, part->numbers());
-        return most;
-    }
+    int numbers() const override { return most_numbers(parts_); }
     void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
         const std::vector<double> weights = weights_at(at, weights_);
@@ -182,6 +171,12 @@ std::shared_ptr<const Technique> built_in_technique(std::string_view sampler) {
     });
     ensure(out != nullptr, "the parser lets only samplers with one direction through");
     return out;
+}
+
+int most_numbers(const Techniques& parts) {
+    int most = 2;
+    for (const auto& part : parts) most = std::max(most, part->numbers());
+    return most;
 }
 
 std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler) {

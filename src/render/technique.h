@@ -48,6 +48,8 @@ public:
 };
 
 using Techniques = std::vector<std::shared_ptr<const Technique>>;
+/// Random numbers that suffice for a row of any of these; at least 2.
+int most_numbers(const Techniques& parts);
 
 /// A sampler of samplers/all.h with one direction a sample, in scalar code.
 std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);
