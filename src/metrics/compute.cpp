@@ -239,6 +239,11 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     std::vector<Ladder> out;
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.n.size() < 2) continue;
+        // Of a part of a run, some arms have no rows.
+        const auto rows = std::ranges::count_if(runs, [&](const RunMetrics& run) {
+            return run.key.arm == arm.name && run.key.s == experiment.s() && run.key.seed == experiment.seed;
+        });
+        if (rows == 0) continue;
         for (const Region& region : experiment.regions)
             out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
     }

@@ -142,6 +142,13 @@ TEST(Metrics, ANaNInTheFilmShowsInTheNumber) {
         std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
 }
 
+TEST(Ladders, OfArmsWithoutRowsAreLeftOut) {
+    Experiment e;
+    e.arms = {{"a", "cosine", {4, 16}, {}}};
+    e.regions = {{"r", {0, 0, 1, 1}, {}}};
+    EXPECT_TRUE(ladders(e, {}).empty());
+}
+
 /// Returns one arm with three sample counts; seed k's RMSE falls as N^slopes[k].
 std::vector<Ladder> ladders_falling_as(
     const std::vector<double>& slopes, const std::vector<std::uint64_t>& sample_counts = {4, 16, 64}) {
