@@ -149,7 +149,7 @@ std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
         if (given) throw InputError({flag, 0, 0}, "is not for an arm of an experiment");
     const Experiment experiment = load(flags.arm, flags.settings);
     if (flags.no_code) refuse_code(experiment);
-    return arm_cases(experiment, flags.sampler, open_external(with_arms_of(experiment, flags.sampler), flags.timeout),
+    return arm_cases(experiment, flags.sampler, open_external(with_arms_of(experiment, {flags.sampler}), flags.timeout),
         {flags.pixels, flags.full});
 }
 

@@ -5,7 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include "doors.h"
+#include "module.h"
 #include "watched.h"
 
 namespace crescent::python {

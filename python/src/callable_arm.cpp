@@ -121,58 +121,54 @@ std::vector<Table> context_of(const ExternalBatch& batch, std::size_t rows, cons
     return all;
 }
 
+constexpr const char* another_shape = "crescent._context let an array of another shape through";
+
+/// Calls callable(wo, second, context) for a batch, and take(answer) with the lock held.
+template <class Take> void call_for(const CallableArmPlan& plan, Raised& raised, const nb::object& callable,
+    const ExternalBatch& batch, std::size_t rows, Table second, Take&& take) {
+    Table wo =
+        per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
+    std::vector<Table> tables = context_of(batch, rows, plan.uses);
+    const Locked held;
+    try {
+        nb::dict context;
+        for (Table& table : tables) context[table.name().c_str()] = table.take();
+        if (plan.uses.contains("lights")) put_lights(batch.lights, context);
+        take(call_python(callable, wo.take(), second.take(), context));
+        if (plan.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
+    } catch (...) {
+        raised.keep();
+        throw Interrupted{};
+    }
+}
+
 }  // namespace
 
 void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) const {
     raised_->check();
     const std::size_t rows = out.pdf.size();
-    Table wo =
-        per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
     Table u = numbers_of(batch, rows, static_cast<std::size_t>(plan_.numbers));
-    std::vector<Table> tables = context_of(batch, rows, plan_.uses);
-    const Locked held;
-    try {
-        nb::dict context;
-        for (Table& table : tables) context[table.name().c_str()] = table.take();
-        if (plan_.uses.contains("lights")) put_lights(batch.lights, context);
-        const nb::tuple answer = nb::cast<nb::tuple>(call_python(plan_.draw, wo.take(), u.take(), context));
+    call_for(plan_, *raised_, plan_.draw, batch, rows, std::move(u), [&](const nb::object& given) {
+        const nb::tuple answer = nb::cast<nb::tuple>(given);
         const Rows wi = nb::cast<Rows>(answer[0]);
         const Column pdf = nb::cast<Column>(answer[1]);
-        if (wi.shape(0) != rows || wi.shape(1) != 3 || pdf.shape(0) != rows)
-            throw nb::value_error("crescent._context let an array of another shape through");
-        {
-            const Unlocked free;
-            for (std::size_t i = 0; i < rows; ++i) out.wi[i] = {wi(i, 0), wi(i, 1), wi(i, 2)}, out.pdf[i] = pdf(i);
-        }
-        if (plan_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
-    } catch (...) {
-        raised_->keep();
-        throw Interrupted{};
-    }
+        if (wi.shape(0) != rows || wi.shape(1) != 3 || pdf.shape(0) != rows) throw nb::value_error(another_shape);
+        const Unlocked free;
+        for (std::size_t i = 0; i < rows; ++i) out.wi[i] = {wi(i, 0), wi(i, 1), wi(i, 2)}, out.pdf[i] = pdf(i);
+    });
 }
 
 void CallableArm::density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const {
     raised_->check();
     const std::size_t rows = out.size();
-    Table wo =
-        per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
     Table directions("wi", rows, {3});
     for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t i = 0; i < rows; ++i) directions.column(j)[i] = component(wi[i], j);
-    std::vector<Table> tables = context_of(batch, rows, plan_.uses);
-    const Locked held;
-    try {
-        nb::dict context;
-        for (Table& table : tables) context[table.name().c_str()] = table.take();
-        if (plan_.uses.contains("lights")) put_lights(batch.lights, context);
-        const Column pdf = nb::cast<Column>(call_python(plan_.pdf, wo.take(), directions.take(), context));
-        if (pdf.shape(0) != rows) throw nb::value_error("crescent._context let an array of another shape through");
+    call_for(plan_, *raised_, plan_.pdf, batch, rows, std::move(directions), [&](const nb::object& answer) {
+        const Column pdf = nb::cast<Column>(answer);
+        if (pdf.shape(0) != rows) throw nb::value_error(another_shape);
         for (std::size_t i = 0; i < rows; ++i) out[i] = pdf(i);
-        if (plan_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
-    } catch (...) {
-        raised_->keep();
-        throw Interrupted{};
-    }
+    });
 }
 
 }  // namespace crescent::python

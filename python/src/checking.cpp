@@ -9,7 +9,7 @@
 
 #include "callable_arm.h"
 #include "callables.h"
-#include "doors.h"
+#include "module.h"
 
 namespace crescent::python {
 
@@ -59,8 +59,8 @@ CheckCases of_experiment(
     ExternalSamplers samplers;
     for (const auto& [name, arm] : samplers_of(callables)) samplers[name] = arm, out.arms.push_back(arm);
     const Work here;
-    out.all = arm_cases(
-        experiment, sampler, open_external(with_arms_of(experiment, sampler), 0, std::move(samplers)), {pixels, full});
+    out.all = arm_cases(experiment, sampler, open_external(with_arms_of(experiment, {sampler}), 0, std::move(samplers)),
+        {pixels, full});
     return out;
 }
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "doors.h"
+#include "module.h"
 #include "run_result.h"
 #include "watched.h"
 

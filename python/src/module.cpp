@@ -3,7 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
-#include "doors.h"
+#include "module.h"
 #include "interpreter.h"
 
 NB_MODULE(_crescent, m) {

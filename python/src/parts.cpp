@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "doors.h"
+#include "module.h"
 #include "run_result.h"
 #include "watched.h"
 
@@ -59,19 +59,6 @@ void leave_out_files(const RunPlan& what, Provenance& provenance) {
     provenance.experiment_hash = fmt::format("{:016x}", hash(plain));
 }
 
-/// These arms, and those that combinations among them are of.
-Names with_components(Names names, const std::vector<ArmPlan>& arms) {
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const auto arm = std::ranges::find(arms, names[k], &ArmPlan::name);
-        if (arm == arms.end()) continue;
-        std::vector<std::string> more = arm->combination.of;
-        if (arm->combination.target) more.push_back(*arm->combination.target);
-        for (const std::string& name : more)
-            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-    }
-    return names;
-}
-
 /// Runs these arms with seeds first to last against given references. The part with the experiment's own seed has the
 /// tail indices of its arms.
 RunResult run_part(const Experiment& experiment, int first, int last, const Names& arms, const References& given,
@@ -85,13 +72,11 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
         const auto other = [&](const std::string& name) { return std::ranges::find(arms, name) == arms.end(); };
         std::erase_if(what.jobs, [&](const Job& job) { return other(job.arm); });
         Experiment& seen = what.experiment;  // no other sampler is opened
-        const Names kept = with_components(arms, seen.arms);
-        std::erase_if(seen.arms, [&](const ArmPlan& arm) { return std::ranges::find(kept, arm.name) == kept.end(); });
+        seen = with_arms_of(std::move(seen), arms);
         seen.assertions.clear();
         if (seen.exponent && other(seen.exponent->arm)) seen.exponent.reset();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Prepared prepared = look(what, engine);
-        std::erase_if(seen.arms, [&](const ArmPlan& arm) { return other(arm.name); });
         prepared.quadrature = given.quadrature, prepared.monte_carlo = given.monte_carlo;
         const Scene scene = prepared.scene;
         std::vector<Job> jobs;

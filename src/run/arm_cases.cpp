@@ -15,8 +15,10 @@
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "render/combination.h"
+#include "render/estimator.h"
 #include "render/external_lights.h"
 #include "render/shading_points.h"
+#include "run/execute.h"
 #include "samplers/info.h"
 
 namespace crescent::inline runs {
@@ -113,11 +115,7 @@ class WeightedTechniques : public AtPoint {
 public:
     WeightedTechniques(std::string name, Point point, bool limited, std::shared_ptr<const Combination> combination)
         : AtPoint(std::move(name), std::move(point), limited), combination_(std::move(combination)) {}
-    Traits traits() const override {
-        int numbers = 2;
-        for (const auto& part : combination_->parts()) numbers = std::max(numbers, part->numbers());
-        return {.numbers = numbers};
-    }
+    Traits traits() const override { return {.numbers = most_numbers(combination_->parts())}; }
     int techniques() const override { return static_cast<int>(combination_->parts().size()); }
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         draw_with(part(t), wo, u, out);
@@ -209,7 +207,15 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
 class Cases {
 public:
     Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside)
-        : scene_(experiment), experiment_(experiment), sampler_(std::move(sampler)), outside_(outside) {}
+        : scene_(experiment),
+          experiment_(experiment),
+          sampler_(std::move(sampler)),
+          outside_(outside),
+          shapes_(shape_map(scene_)),
+          limited_(std::ranges::any_of(
+              with_arms_of(experiment, {sampler_}).arms, [](const ArmPlan& arm) { return arm.is_external(); })) {
+        count_in_view(experiment, shapes_);
+    }
 
     std::vector<CheckCase> at_pixels(int count) {
         const std::vector<std::uint32_t> seen = geometry_pixels();
@@ -238,26 +244,16 @@ private:
     }
 
     std::vector<std::uint32_t> geometry_pixels() const {
-        const Image& image = scene_.image();
         std::vector<std::uint32_t> out;
-        for (int j = 0; j < image.height; ++j)
-            for (int i = 0; i < image.width; ++i)
-                if (scene_.primary(i, j)) out.push_back(static_cast<std::uint32_t>(j * image.width + i));
-        if (out.empty())
-            throw InputError(experiment_.place_of("camera"),
-                "nothing is in view: every ray of the camera misses every shape; expected eye and target that face "
-                "one");
+        for (std::size_t i = 0; i < shapes_.shape.size(); ++i)
+            if (shapes_.shape[i] >= 0) out.push_back(static_cast<std::uint32_t>(i));
         return out;
     }
 
     /// The middle one of the pixels of each shape in view, in the order of the scene's shapes.
     std::vector<std::uint32_t> middle_of_each_shape() const {
-        const Image& image = scene_.image();
         std::map<int, std::vector<std::uint32_t>> of_shape;
-        for (const std::uint32_t pixel : geometry_pixels()) {
-            const int i = static_cast<int>(pixel) % image.width, j = static_cast<int>(pixel) / image.width;
-            of_shape[static_cast<int>(scene_.primary(i, j)->shape)].push_back(pixel);
-        }
+        for (const std::uint32_t pixel : geometry_pixels()) of_shape[shapes_.shape[pixel]].push_back(pixel);
         std::vector<std::uint32_t> out;
         for (const auto& [shape, pixels] : of_shape) out.push_back(pixels[pixels.size() / 2]);
         return out;
@@ -301,16 +297,15 @@ private:
     std::shared_ptr<const SamplerAdapter> adapter_at(const Point& point) const {
         const ArmPlan* arm = experiment_.find_arm(sampler_);
         if (const auto own = outside_.find(sampler_); own != outside_.end()) {
-            const bool limited = calls_code(*arm);
             if (own->second->as_combination()) {
                 const std::shared_ptr<const Combination> c(own->second, own->second->as_combination());
                 if (c->plan().kind == CombinationKind::ris)
-                    return std::make_shared<Resampled>(sampler_, point, limited, c);
+                    return std::make_shared<Resampled>(sampler_, point, limited_, c);
                 if (const auto technique = c->technique())
-                    return std::make_shared<OneTechnique>(sampler_, point, limited, technique);
-                return std::make_shared<WeightedTechniques>(sampler_, point, limited, c);
+                    return std::make_shared<OneTechnique>(sampler_, point, limited_, technique);
+                return std::make_shared<WeightedTechniques>(sampler_, point, limited_, c);
             }
-            return std::make_shared<OneTechnique>(sampler_, point, limited, external_technique(own->second));
+            return std::make_shared<OneTechnique>(sampler_, point, limited_, external_technique(own->second));
         }
         const std::string name = arm ? arm->sampler : sampler_;
         if (name == "mis-balance" || name == "mis-power") {
@@ -327,27 +322,19 @@ private:
         return std::make_shared<OneTechnique>(sampler_, point, false, built_in_technique(name));
     }
 
-    /// Whether any part of an arm is a program, a library or Python.
-    bool calls_code(const ArmPlan& arm) const {
-        if (arm.is_external()) return true;
-        return std::ranges::any_of(arm.combination.of, [&](const std::string& name) {
-            const ArmPlan* part = experiment_.find_arm(name);
-            return part && (part->is_external() || (part->is_combination() && calls_code(*part)));
-        });
-    }
-
     Scene scene_;
     const Experiment& experiment_;
     std::string sampler_;
     const ExternalSamplers& outside_;
+    ShapeMap shapes_;
+    bool limited_;  // a part of the sampler is a program, a library or Python
     std::vector<CheckCase> cases_, peers_;
     mutable std::shared_ptr<const Combination> built_in_;
 };
 
 }  // namespace
 
-Experiment with_arms_of(Experiment experiment, const std::string& sampler) {
-    std::vector<std::string> needed = {sampler};
+Experiment with_arms_of(Experiment experiment, std::vector<std::string> needed) {
     for (std::size_t i = 0; i < needed.size(); ++i) {
         const ArmPlan* arm = experiment.find_arm(needed[i]);
         if (!arm) continue;

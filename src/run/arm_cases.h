@@ -17,8 +17,8 @@ struct ArmCasesPlan {
     bool full = false;  // 16 w_o of the grid in place of 8
 };
 
-/// Returns the experiment with this arm and the arms that it combines alone.
-Experiment with_arms_of(Experiment experiment, const std::string& sampler);
+/// Returns the experiment with these arms and the arms that they combine alone.
+Experiment with_arms_of(Experiment experiment, std::vector<std::string> names);
 
 /// `sampler`: an arm of the experiment, or a built-in sampler. `outside`: what open_external() returned for it; it must
 /// live as long as the cases. Throws InputError if there is no such arm, or nothing is in view.

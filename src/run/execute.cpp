@@ -75,6 +75,16 @@ const TiledScene& view_at(const Prepared& prepared, double s) {
     return *view;
 }
 
+std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const ShapeMap& shapes) {
+    std::vector<std::uint64_t> out(experiment.shapes.size());
+    for (const std::int16_t shape : shapes.shape)
+        if (shape >= 0) ++out[static_cast<std::size_t>(shape)];
+    if (std::ranges::all_of(out, [](std::uint64_t pixels) { return pixels == 0; }))
+        throw InputError(experiment.place_of("camera"),
+            "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+    return out;
+}
+
 Prepared look(const RunPlan& plan, const Engine& engine) {
     const Experiment& experiment = plan.experiment;
     check_memory(experiment);
@@ -83,12 +93,8 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
         out.scene.remember_primaries();
         out.shapes = shape_map(out.scene);
     });
-    out.shape_pixels.resize(experiment.shapes.size());
-    for (const std::int16_t shape : out.shapes.shape)
-        if (shape >= 0) ++out.shape_pixels[static_cast<std::size_t>(shape)], ++out.geometry_pixels;
-    if (out.geometry_pixels == 0)
-        throw InputError(experiment.place_of("camera"),
-            "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+    out.shape_pixels = count_in_view(experiment, out.shapes);
+    for (const std::uint64_t pixels : out.shape_pixels) out.geometry_pixels += pixels;
     out.outside = open_external(experiment, engine.timeout_s, engine.samplers);
     TiledScene view = out.scene;
     if (can_keep_points(plan, out.scene, available_memory())) view.keep_points();

@@ -46,6 +46,9 @@ struct Prepared {
     bool stopped = false;
 };
 
+/// The pixels of each shape, in the experiment's order. Throws InputError if the camera sees nothing.
+std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const ShapeMap& shapes);
+
 /// Prepares what the camera sees, and the samplers that are not built in. Throws InputError if it sees nothing,
 /// OutputError if memory is insufficient or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
