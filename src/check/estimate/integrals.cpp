@@ -87,7 +87,7 @@ public:
     Integrals run(const std::vector<Grid>& grids) {
         std::size_t first = 0;
         while (first < grids.size()) {
-            w_.clear();
+            w_.clear(), chart_.clear();
             std::size_t last = first;
             for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place(grids[last]);
             p_.resize(w_.size()), f_.assign(w_.size(), {});
@@ -109,6 +109,7 @@ private:
     bool of_f_, tabulated_ = !source_.adapter.can_draw();
     Stream stream_;
     Integrals out_;
+    std::vector<ChartPoint> chart_;  // of w_
     std::vector<Vec3d> w_, f_;
     std::vector<double> p_, mis_;
 
@@ -159,7 +160,8 @@ private:
             for (int pair = 0; pair < 2; ++pair) {
                 const double x = (j % g.rows + stream_.number()) / g.rows,
                              y = (j / g.rows + stream_.number()) / g.columns;
-                w_.push_back(from_chart(rect.at(x, y)));
+                chart_.push_back(rect.at(x, y));
+                w_.push_back(from_chart(chart_.back()));
             }
     }
 
@@ -171,15 +173,15 @@ private:
         bool lit = false;
         for (int j = 0; j < g.cells(); ++j, at += 2) {
             Values h[2];
+            double second[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 const double p = p_[at + a];
                 h[a] = plan_.values(leaf, w_[at + a], p);
                 least = std::min(least, p), most = std::max(most, p);
                 lit = lit || (of_f_ && lit_at(at + a) > 0);
-                if (k * p > heavy_point) out_.heavy.push_back({to_chart(w_[at + a]), p});
-                const double second = k * h[a][bridge] * h[a][bridge] * p;
-                to.second += second;
-                if (source_.has_density()) add_second_to_bands(to_chart(w_[at + a]), second);
+                if (k * p > heavy_point) out_.heavy.push_back({chart_[at + a], p});
+                second[a] = k * h[a][bridge] * h[a][bridge] * p;
+                to.second += second[a];
                 if (w_[at + a].z > 0 || p > 0) out_.domain += k;
                 if (p > 0) {
                     to.solid_angle += k * h[a][bridge];
@@ -191,7 +193,7 @@ private:
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
-            if (source_.has_density()) add_to_bands(at, h[0][bridge], h[1][bridge], k);
+            if (source_.has_density()) add_to_bands(at, {h[0][bridge], h[1][bridge]}, second, k);
             if (of_f_) take_light(g.leaf, at, k);
         }
         if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
@@ -200,19 +202,15 @@ private:
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
     }
 
-    void add_second_to_bands(ChartPoint point, double second) {
-        for (std::size_t axis = 0; axis < chart_axes; ++axis) out_.second_by_band[band_of(point, axis)] += second;
-    }
-
-    /// Values of h p of a pair.
-    void add_to_bands(std::size_t at, double a, double b, double k) {
-        const ChartPoint first = to_chart(w_[at]), second = to_chart(w_[at + 1]);
+    /// Of a pair: values of h p, and of h^2 p times k.
+    void add_to_bands(std::size_t at, std::array<double, 2> value, const double (&second)[2], double k) {
         for (std::size_t axis = 0; axis < chart_axes; ++axis) {
-            const std::size_t i = band_of(first, axis), j = band_of(second, axis);
+            const std::size_t i = band_of(chart_[at], axis), j = band_of(chart_[at + 1], axis);
+            out_.second_by_band[i] += second[0], out_.second_by_band[j] += second[1];
             if (i == j) {
-                out_.bridge_by_band[i].add_pair(a, b, k);
+                out_.bridge_by_band[i].add_pair(value[0], value[1], k);
             } else {
-                out_.bridge_by_band[i].add_pair(a, 0, k), out_.bridge_by_band[j].add_pair(0, b, k);
+                out_.bridge_by_band[i].add_pair(value[0], 0, k), out_.bridge_by_band[j].add_pair(0, value[1], k);
             }
         }
     }

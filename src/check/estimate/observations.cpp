@@ -247,8 +247,8 @@ private:
     }
 
     /// Where rounding leaves few directions, one of them may lie on a cut: draws are spread over half a step about it.
-    std::size_t leaf_of(Vec3d w, const PrimarySample& u) const {
-        const std::size_t l = plan_.tree.find(to_chart(w));
+    std::size_t leaf_of(Vec3d w, ChartPoint at, const PrimarySample& u) const {
+        const std::size_t l = plan_.tree.find(at);
         const double step = plan_.tree.nodes()[static_cast<std::size_t>(plan_.tree.leaves()[l].node)].step;
         if (step <= plan_.step) return l;
         const auto bits = [](double x) { return static_cast<std::uint32_t>(x * 0x1p31); };
@@ -259,7 +259,8 @@ private:
     }
 
     void take(Vec3d w, double p, int set, const PrimarySample& u) {
-        const std::size_t l = leaf_of(w, u);
+        const ChartPoint point = to_chart(w);
+        const std::size_t l = leaf_of(w, point, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
         const Values v = plan_.values(leaf, w, p);
         if (set >= 0) {
@@ -270,7 +271,6 @@ private:
         ++to_.checks.directions;
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
-        const ChartPoint point = to_chart(w);
         for (std::size_t axis = 0; axis < chart_axes; ++axis) to_.bands[band_of(point, axis)] += v[bridge];
         ++to_.counts[l];
         const double density = source_.has_density() ? p : leaf.q;
