@@ -116,8 +116,8 @@ def _look(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
     for parameter in paths:
         if known is not None and parameter not in known:
             near = _crescent.nearest(parameter, known)
-            told = f"expected {', '.join(known)}" if known else "it takes none"
-            raise UsageError(f"--over {parameter}: {inside} has no parameter '{parameter}': {told}" + hint(near))
+            choice = f"expected {', '.join(known)}" if known else "it takes none"
+            raise UsageError(f"--over {parameter}: {inside} has no parameter '{parameter}': {choice}" + hint(near))
     return _of_python(str(path.resolve()) + colon + inside)
 
 
@@ -285,17 +285,15 @@ def _first(point: Mapping[str, Any], kind: str) -> Mapping[str, Any] | None:
 
 def page_of_checks(out: str | PathLike[str]) -> str:
     """report.html of a check sweep: the map, and a table of the points that are not right."""
-    from .report import _HEAD, _image
+    from .report import _image, opening
 
     state = read_json(Path(out) / "sweep.json")
     points = _found(out)
-    parts = [_HEAD.format(title=html.escape(f"Check over a grid: {state['title']}"))]
-    parts.append(
-        f'<p class="note">{len(points)} points; the probability that any correct point is called wrong is at most '
-        f"{state['alpha']:g}. crescent {html.escape(state['numerics'])}</p>\n"
+    note = (
+        f"{len(points)} points; the probability that any correct point is called wrong is at most {state['alpha']:g}. "
+        f"crescent {state['numerics']}"
     )
-    for place, error in state.get("failed", {}).items():
-        parts.append(f'<p class="failed">failed: {html.escape(place)}: {html.escape(error)}</p>\n')
+    parts = opening(f"Check over a grid: {state['title']}", note, state)
     if points:
         try:
             parts.append(_image(_figure(points, state["axes"]), "map of kinds"))

@@ -139,8 +139,8 @@ def grid(axes: Sequence[Axis], zip_: bool = False) -> list[dict[str, Any]]:
     if zip_:
         lengths = {axis.path: len(axis.values) for axis in axes}
         if len(set(lengths.values())) > 1:
-            told = ", ".join(f"{path} has {count}" for path, count in lengths.items())
-            raise UsageError(f"--zip: expected axes of equal length; {told}")
+            found = ", ".join(f"{path} has {count}" for path, count in lengths.items())
+            raise UsageError(f"--zip: expected axes of equal length; {found}")
         rows: Iterable[tuple[Any, ...]] = zip(*(axis.values for axis in axes), strict=True)
     else:
         rows = itertools.product(*(axis.values for axis in axes))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import io
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,16 @@ pre{{overflow-x:auto;font:13px/1.45 ui-monospace,monospace;background:#f6f6f4;pa
 img{{max-width:100%}}.failed{{color:#a40000}}.note{{color:#555}}h1{{font-size:1.5rem}}h2{{font-size:1.15rem;margin-top:2rem}}
 </style><h1>{title}</h1>
 """
+
+
+def opening(title: str, note: str, state: Mapping[str, Any]) -> list[str]:
+    """The head of a page, a note in text, and what failed."""
+    failed = (f"failed: {place}: {error}" for place, error in state.get("failed", {}).items())
+    return [
+        _HEAD.format(title=html.escape(title)),
+        f'<p class="note">{html.escape(note)}</p>\n',
+        *(f'<p class="failed">{html.escape(line)}</p>\n' for line in failed),
+    ]
 
 
 def _image(figure: Any, alt: str) -> str:
@@ -219,13 +230,8 @@ def write_report(out: str | PathLike[str], metric: str = "") -> Path | None:
     if not numbers.metrics:
         return None
     name, region = numbers.chosen(metric)
-    parts = [_HEAD.format(title=html.escape(f"Sweep: {state['title']}"))]
-    parts.append(
-        f'<p class="note">{html.escape(state["file"])}, {len(state["points"])} points, {state["seeds"]} seeds; '
-        f"crescent {html.escape(state['numerics'])}</p>\n"
-    )
-    for place, error in state.get("failed", {}).items():
-        parts.append(f'<p class="failed">failed: {html.escape(place)}: {html.escape(error)}</p>\n')
+    note = f"{state['file']}, {len(state['points'])} points, {state['seeds']} seeds; crescent {state['numerics']}"
+    parts = opening(f"Sweep: {state['title']}", note, state)
     try:
         parts += [_heat_maps(numbers, name, region), _curves(numbers, name, region), _ladders(numbers, name, region)]
     except ImportError:
