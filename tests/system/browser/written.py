@@ -10,9 +10,9 @@ const r = Math.sqrt(u[0]), phi = 2 * Math.PI * u[1], z = Math.sqrt(1 - u[0]);
 return { wi: [r * Math.cos(phi), r * Math.sin(phi), z], pdf: z / Math.PI }
 }
 function pdf(wo, wi) { return Math.max(wi[2], 0) / Math.PI }"""
-told = "document.documentElement.dataset"
+data = "document.documentElement.dataset"
 FAULT = "document.getElementById('fault-line').textContent"
-LOOKED = f"{told}.code === 'runs' && {told}.looked"
+LOOKED = f"{data}.code === 'runs' && {data}.looked"
 
 
 def tests(page, folder):
@@ -21,7 +21,7 @@ def tests(page, folder):
     def reached_and_read(driver):
         """The new parts at every width, light and dark: nothing scrolls sideways, axe finds nothing; the tab key goes
         through the editor and on."""
-        for address, until in (("#part=write", f"{told}.written"), ("#part=faults", "document.querySelector('.cards')"),
+        for address, until in (("#part=write", f"{data}.written"), ("#part=faults", "document.querySelector('.cards')"),
                                ("#exercise=eta-squared", "document.getElementById('predict')")):
             browser.open_page(driver, page, address, until=until)
             if "write" in address:
@@ -41,7 +41,7 @@ def tests(page, folder):
 
     def write(driver, code):
         """Replaces the code, as a user pastes it."""
-        driver.execute_script(f"for (const name of ['looked', 'code', 'checked', 'written']) delete {told}[name]")
+        driver.execute_script(f"for (const name of ['looked', 'code', 'checked', 'written']) delete {data}[name]")
         driver.find_element(By.CSS_SELECTOR, ".cm-content").click()
         browser.keys(driver, Keys.CONTROL, "a")
         driver.execute_cdp_cmd("Input.insertText", {"text": code})
@@ -51,8 +51,8 @@ def tests(page, folder):
 
     def verdicts(driver):
         """Checks, and returns the state of each verdict."""
-        driver.execute_script(f"delete {told}.checked; document.getElementById('check-yours').click()")
-        browser.wait(driver, f"{told}.checked")
+        driver.execute_script(f"delete {data}.checked; document.getElementById('check-yours').click()")
+        browser.wait(driver, f"{data}.checked")
         return driver.execute_script(
             "return Object.fromEntries([...document.querySelectorAll('[data-verdict]')]"
             ".map((e) => [e.dataset.verdict, e.dataset.state]))")
@@ -63,14 +63,14 @@ def tests(page, folder):
         browser.open_page(driver, page, "#part=write", until=LOOKED)
         found = verdicts(driver)
         assert len(found) == 8 and set(found.values()) == {"right"}, found
-        took = int(driver.execute_script(f"return {told}.checked"))
+        took = int(driver.execute_script(f"return {data}.checked"))
         write(driver, COSINE.replace("z = Math.sqrt(1 - u[0])", "z = u[0]").replace("Math.sqrt(u[0])", "Math.sqrt(1 - u[0] * u[0])"))
         browser.wait(driver, LOOKED)
         found = verdicts(driver)
         assert found["density"] == "wrong" and found["normalised"] == "right", found
         assert "fix density first" in browser.text(driver, "#verdicts"), browser.text(driver, "#verdicts")
         assert driver.execute_script("return document.getElementById('your-layer').value") == "ratio"
-        browser.wait(driver, f"{told}.written")  # its film, to its last metric
+        browser.wait(driver, f"{data}.written")  # its film, to its last metric
         charts = len(driver.find_elements(By.CSS_SELECTOR, "#write .charts figure"))
         assert charts == 2, charts
         address = driver.execute_script("return location.hash")
@@ -94,10 +94,10 @@ def tests(page, folder):
                 ("function pdf() { return 1 }", 0, "there is no function sample")):
             write(driver, code)
             if not word:  # refused by the policy: the draws need no answer, and none comes
-                browser.wait(driver, f"{told}.looked", seconds=30)
+                browser.wait(driver, f"{data}.looked", seconds=30)
                 assert any("connect-src" in line for line in browser.console(driver)), "the policy lets a sampler ask"
                 continue
-            said = browser.wait(driver, f"{told}.code === 'fault' && {FAULT}", seconds=30)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=30)
             assert word in said and (not line or said.startswith(f"Line {line}: ")), f"{word} in line {line}: {said}"
             if line:
                 browser.wait(driver, "document.querySelector('.cm-lint-marker-error, .cm-lintRange-error')")
