@@ -85,7 +85,8 @@ def address_is_data(driver):
     browser.open_page(driver, page, "#lesson=none", until="document.getElementById('wrong').textContent && "
                       "document.getElementById('lessons').textContent.includes('minutes')")
     assert "lesson=none" in browser.text(driver, "#wrong")
-    assert browser.text(driver, "#lessons").count("minutes") == 12
+    lessons = [e.text for e in driver.find_elements(By.CSS_SELECTOR, "#lessons small")]
+    assert len(lessons) == 12 and all("minutes" in said for said in lessons), lessons
     browser.open_page(driver, page, small + "&pixel=160,3")
     assert "pixel=160,3" in browser.text(driver, "#wrong"), "a pixel outside the picture is not told"
 

@@ -7,6 +7,7 @@ import ast
 import json
 import os
 import re
+import shutil
 import subprocess
 import tomllib
 from dataclasses import dataclass, field
@@ -305,6 +306,14 @@ def run_yaml(page: Page, block: Block) -> str:
     return ""
 
 
+def run_js(page: Page, block: Block) -> str:
+    if not shutil.which("node"):
+        raise Absent("node")
+    script = page.folder / "block.mjs"
+    script.write_text("\n" * block.line + block.text, encoding="utf-8")
+    return page.must("node", script)
+
+
 def run_groovy(page: Page, block: Block) -> str:
     raise Absent("Jenkins")
 
@@ -315,6 +324,7 @@ RUNNERS = {
     "toml": run_toml,
     "json": run_json,
     "yaml": run_yaml,
+    "js": run_js,
     "groovy": run_groovy,
     "cmake": run_cmake,
     "c": run_cpp,
