@@ -27,6 +27,7 @@
 #include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "check/against.h"
 #include "check/check.h"
 #include "check/report/describe.h"

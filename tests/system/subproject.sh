@@ -38,9 +38,11 @@ foreach(target IN LISTS targets)
 endforeach()
 find_package(GTest REQUIRED)
 add_executable(mine mine.cpp)
-target_link_libraries(mine PRIVATE crescent::check GTest::gmock GTest::gtest_main)
+target_link_libraries(mine PRIVATE GTest::gmock GTest::gtest_main)
 if(CRESCENT_RUN)
-  target_link_libraries(mine PRIVATE crescent::crescent)
+  target_link_libraries(mine PRIVATE crescent::check crescent::crescent)
+else()  # whole: nothing in it needs a source that is left out
+  target_link_libraries(mine PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,crescent::check>")
 endif()
 END
 

@@ -25,10 +25,6 @@ std::string verdict_junit(const CheckResult& result);
 /// difference, weight histograms with their tail, and roses of p over f L cos; of a sampler without pdf(w) the map and
 /// the table of the density that its draws imply.
 std::string verdict_html(const CheckResult& result, const ResultSource& source = {});
-/// Throws OutputError where write_whole would.
-void can_write(const std::string& path);
-/// Writes beside the place and renames; throws OutputError.
-void write_whole(const std::string& path, const std::string& text);
 
 // ---- Next steps in the words of a front end: flags of the command line, calls of C++ or of Python.
 

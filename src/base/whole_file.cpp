@@ -1,6 +1,5 @@
-// One file that is seen whole or not at all. It is written without a name beside the place, so that a kill leaves
-// nothing, where the file system has that, else under a name of its own (mkstemp: nothing of anybody else's is opened,
-// followed or removed); it is brought to the disk and renamed. Pipes and devices are written to as they are.
+#include "base/whole_file.h"
+
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -12,9 +11,8 @@
 
 #include "base/errors.h"
 #include "base/text.h"
-#include "check/report/print.h"
 
-namespace crescent::inline results {
+namespace crescent::inline base {
 
 namespace {
 
@@ -114,4 +112,4 @@ void write_whole(const std::string& path, const std::string& text) {
     close(file);
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent::inline base
