@@ -27,7 +27,7 @@ export interface Checked { state: string; evaluations: number; verdicts: Verdict
 export interface Work { code: string; ground: string }
 
 const size = 320, draws = 1024;
-const longest = { film: 5000, check: 15000 }; // ms that the code may take for one job
+const longest = { film: 10_000, check: 20_000 }; // ms that the code may take for one job
 const yours = "yours";
 /** What a verdict speaks of, as a picture. */
 const pictures: Record<string, string> = { support: "lost", normalised: "ratio", density: "ratio", physics: "f", tail: "f", mean: "f" };

@@ -25,8 +25,9 @@ def wait(script, seconds=120):
         except WebDriverException:  # called while one page replaces another
             pass
         time.sleep(0.2)
-    raise SystemExit(f"after {seconds} s still not: {script}; "
-                     f"{driver.execute_script('return document.body.innerText.slice(0, 800)')}")
+    said = driver.execute_script(
+        "return [...document.querySelectorAll('[role=alert]'), document.body].map((e) => e.innerText.slice(0, 800))")
+    raise SystemExit(f"after {seconds} s still not: {script}; {said}")
 
 
 try:
