@@ -72,8 +72,10 @@ export class FilmView {
   opened(d: Described, shown: Shown[]): void {
     ++this.era;
     const same = this.d?.width === d.width && this.d.height === d.height;
+    const alike = same && this.shown.map(({ name }) => name).join() === shown.map(({ name }) => name).join();
     this.d = d;
     this.shown = shown;
+    if (alike) return void (this.layers = this.layers.map((layer) => ({ ...layer }))); // layout takes longer than the first tile
     if (!same) (this.zoom = 1), (this.centre = [d.width / 2, d.height / 2]), (this.layers = []);
     const keys = this.options().map(([key]) => key);
     const want = this.prefer ?? [keys[0]!, keys[1] ?? "reference"];

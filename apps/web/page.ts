@@ -36,6 +36,8 @@ export class Page implements Viewer {
   private seen: Described | undefined; // shown in the pictures; the model may have opened another
   private painting = 0; // counts repaints of the pictures, and opened pixels: only the last one continues
   private opening = 0;
+  private offered: { key: string; state?: State } = { key: "" }; // the choices that are shown
+  private names = ""; // of the samplers in the pictures
   private movedAt = 0; // time of the last change that is not open yet
   private awaited = 0; // and not painted yet
   private good: Opened | undefined; // the last one that opened
@@ -144,30 +146,33 @@ export class Page implements Viewer {
     history.replaceState(null, "", write(this.state));
     byId("command").textContent = command(this.state, this.source);
     this.choices();
-    const picking = {
-      pixel: (i: number, j: number): void => this.choose([i, j]),
-      region: (box: number[]): void => this.change(drawnRegion, `[${box.join(", ")}]`),
-    };
-    const same = this.pictures.length === shown.length + 1 && this.pictures[0]?.canvas.width === d.width && this.pictures[0].canvas.height === d.height;
-    this.pictures = [...shown.map((_, index) => new Picture(index, d, picking)), new Picture(-1, d, picking)].map((picture, k) => {
-      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stays until it is painted over
-      return picture;
-    });
+    const names = shown.map(({ name }) => name).join();
+    const same = this.names === names && this.pictures[0]?.canvas.width === d.width && this.pictures[0].canvas.height === d.height;
+    this.names = names;
     this.film.opened(d, shown);
     this.film.select(this.state.pixel);
+    if (same) this.pictures = this.pictures.map((picture) => { picture.opened(d); return picture; }); // a new list ends repaints
+    else this.newPictures(d, shown);
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
-      picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
       if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
       else picture.about(d.arms[shown[picture.index]!.arm]!), this.metrics(picture.index);
     }
-    const held = (document.activeElement as HTMLElement | null)?.dataset["corner"];
-    byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
-    if (held) document.querySelector<HTMLElement>(`#pictures .reference [data-corner="${held}"]`)?.focus();
     if (byId("charts").childElementCount !== d.regions.length)
       byId("charts").replaceChildren(...d.regions.map(() => el("figure", { class: "narrow chart-to-come" })));
     if (this.refused || !document.activeElement?.closest("[data-path]")) this.knobs();
     this.refused = false;
+  }
+
+  private newPictures(d: Described, shown: Shown[]): void {
+    const picking = {
+      pixel: (i: number, j: number): void => this.choose([i, j]),
+      region: (box: number[]): void => this.change(drawnRegion, `[${box.join(", ")}]`),
+    };
+    this.pictures = [...shown.map((_, index) => new Picture(index, d, picking)), new Picture(-1, d, picking)];
+    for (const picture of this.pictures)
+      picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
+    byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
   }
 
   /** All settings, or those that a lesson allows to change. They are not created again while the user moves one of
@@ -178,7 +183,11 @@ export class Page implements Viewer {
     if (held) document.querySelector<HTMLElement>(`#knobs [aria-label="${CSS.escape(held)}"]`)?.focus();
   }
 
+  /** Creates the choices again if they have changed. */
   private choices(): void {
+    const { experiment, arms, n, view } = this.state, key = JSON.stringify([experiment, arms, n, view, this.lesson?.play]);
+    if (this.offered.key === key && this.offered.state === this.state) return;
+    this.offered = { key, state: this.state };
     const move = (how: () => void) => (): void => { this.turn(); how(); };
     showChoices(byId("choices"), {
       state: this.state, sources: this.data.sources, samplers: this.samplers, only: this.lesson?.play,
@@ -267,6 +276,7 @@ export class Page implements Viewer {
       byId("command").textContent = command(this.state, this.source);
       for (const id of ["pictures", "charts", "pixel"]) byId(id).replaceChildren();
       this.pictures = [];
+      this.names = "";
       this.choices();
     }
     byId("wrong").replaceChildren(el("p", {}, error.sentence));

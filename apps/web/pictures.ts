@@ -17,11 +17,14 @@ export class Picture {
   private readonly versus = el("p", { class: "aim" });
   private readonly table = el("div", { class: "metrics" });
 
-  constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
+  constructor(readonly index: number, private d: Described, private readonly picking: Picking) {
     this.frame = new Frame(d, picking);
     this.canvas.tabIndex = 0;
     this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, this.frame.root, this.words, el("div", {}, this.versus, this.aim), this.table);
   }
+
+  /** The same film with other settings: the last picture stays until it is painted over. */
+  opened(d: Described): void { this.d = d; }
 
   get canvas(): HTMLCanvasElement { return this.frame.canvas; }
 

@@ -227,7 +227,7 @@ export class Workshop implements Viewer {
 
   private render(source: string): void {
     const { era } = this, count = Math.max(1, Math.min(4, navigator.hardwareConcurrency || 2)), from = this.at.sources[this.scene]!;
-    const pool = (this.films = new Pool(this.at.module, source, count, 300_000));
+    const pool = (this.films = new Pool(this.at.module, source, count, 100_000));
     this.model.pool = pool;
     const counts = `[4, 16${this.n > 16 ? ", 64" : ""}]`;
     const opening: Opening = { file: from.file, text: from.text, published: "", set: [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`] };
