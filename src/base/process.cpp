@@ -69,6 +69,7 @@ struct Stream {
         int ends[2];
 #ifdef __linux__
         const bool made = ::pipe2(ends, O_CLOEXEC) == 0;
+        if (made) ::fcntl(ends[0], F_SETPIPE_SZ, 1 << 20);  // blocks of rows in fewer turns; may be refused
 #else
         const bool made = ::pipe(ends) == 0;
         for (const int end : ends)

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
+#include <mutex>
+#include <vector>
 
 #include "base/errors.h"
 #include "check/sources/pipe.h"
@@ -45,6 +48,59 @@ private:
     std::shared_ptr<const ExternalSampler> of_;
 };
 
+/// Copies of a program, each a process that answers one batch at a time. Another one starts when a batch finds all of
+/// them at work, one for each thread at most.
+class Copies : public ExternalSampler {
+public:
+    using Start = std::function<std::shared_ptr<const ProgramSampler>()>;
+    explicit Copies(Start start) : start_(std::move(start)), first_(start_()), free_{first_} {}
+    std::string name() const override { return first_->name(); }
+    int numbers() const override { return first_->numbers(); }
+    std::size_t batch_rows() const override { return first_->batch_rows(); }
+    bool uses_lights() const override { return first_->uses_lights(); }
+    bool has_density() const override { return first_->has_density(); }
+    Traits traits() const { return first_->traits(); }
+    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override { Taken(*this)->draw(batch, out); }
+    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
+        Taken(*this)->density(batch, wi, out);
+    }
+
+private:
+    /// A copy that no other thread uses meanwhile.
+    class Taken {
+    public:
+        explicit Taken(const Copies& from) : from_(from), program_(from.take()) {}
+        ~Taken() {
+            const std::lock_guard<std::mutex> guard(from_.lock_);
+            from_.free_.push_back(std::move(program_));
+        }
+        Taken(const Taken&) = delete;
+        Taken& operator=(const Taken&) = delete;
+        const ProgramSampler* operator->() const { return program_.get(); }
+
+    private:
+        const Copies& from_;
+        std::shared_ptr<const ProgramSampler> program_;
+    };
+
+    std::shared_ptr<const ProgramSampler> take() const {
+        {
+            const std::lock_guard<std::mutex> guard(lock_);
+            if (!free_.empty()) {
+                std::shared_ptr<const ProgramSampler> program = std::move(free_.back());
+                free_.pop_back();
+                return program;
+            }
+        }
+        return start_();
+    }
+
+    Start start_;
+    std::shared_ptr<const ProgramSampler> first_;
+    mutable std::mutex lock_;
+    mutable std::vector<std::shared_ptr<const ProgramSampler>> free_;
+};
+
 /// An estimate divides f cos by the density of the draw: a sampler without one cannot be used as an arm.
 void refuse(const Traits& traits) {
     if (traits.delta) throw OutputError("it has delta parts, which have no density to divide by");
@@ -55,10 +111,10 @@ std::shared_ptr<const ExternalSampler> open(
     const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin, limits);
-        std::shared_ptr<const ProgramSampler> program =
-            arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits);
-        refuse(program->traits());
-        return program;
+        const auto copies = std::make_shared<Copies>(
+            [arm, limits] { return arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits); });
+        refuse(copies->traits());
+        return copies;
     } catch (const InputError& error) {
         if (arm.plugin) throw;
         const std::string key = fmt::format("arms.{}.{}", arm.name, arm.exec ? "exec" : "python");

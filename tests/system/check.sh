@@ -37,6 +37,8 @@ expect 0 "$CRESCENT" check --quiet
 expect 0 "$CRESCENT" check --quiet --exec ./cosine --json c.json --junit c.xml --html c.html
 grep -q '"state": "right"' c.json || die "cosine.c is not right: $(head -c 300 c.json)"
 expect 0 "$CRESCENT" check --quiet --exec "python3 $pipes/cosine.py" --wo 45
+expect 0 "${CC:-cc}" -O2 -Wall -Wextra -Werror -o cosine_block "$pipes/cosine_block.c" -lm
+expect 0 "$CRESCENT" check --quiet --exec ./cosine_block
 sed 's/0\.5 \/ pi/1.01 \/ pi/' "$pipes/cosine.c" >bright.c
 expect 0 "${CC:-cc}" -O2 -o bright bright.c -lm
 expect 1 "$CRESCENT" check --quiet --exec ./bright --wo 45

@@ -60,35 +60,29 @@ public:
     bool has_density() const override { return hello_.traits.has_pdf; }
 
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        const Vec3d o = asked(wo);
         std::vector<double> in;
-        for (const PrimarySample& v : u) {
-            in.insert(in.end(), {o.x, o.y, o.z});
-            for (int k = 0; k < hello_.traits.numbers; ++k) in.push_back(number_for(v[k]));
-            in.insert(in.end(), example_.begin(), example_.end());
-        }
-        query_samples(in, example_lights, out);
+        in.reserve(u.size() * columns_of_sample(example_lights));
+        for (const PrimarySample& v : u)
+            add_row(asked(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
+        query_samples(in, example_lights, out.size(), [&](std::size_t i, const Draw& d) { out[i] = d; });
     }
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
         const std::size_t numbers = static_cast<std::size_t>(hello_.traits.numbers), lights = batch.lights.size();
         std::vector<double> in, context;
+        in.reserve(out.pdf.size() * columns_of_sample(lights));
         const double* u = batch.u.data();
         for (std::size_t r = 0; r < batch.runs.size(); ++r) {
             const ExternalRun& run = batch.runs[r];
-            const Vec3d o = asked(run.wo);
             context.clear();
             add_context(hello_.uses, run, batch.lights,
                 lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
-            for (std::size_t i = 0; i < run.rows; ++i, u += numbers) {
-                in.insert(in.end(), {o.x, o.y, o.z});
-                for (std::size_t k = 0; k < numbers; ++k) in.push_back(number_for(u[k]));
-                in.insert(in.end(), context.begin(), context.end());
-            }
+            for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
+                add_row(asked(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
         }
-        std::vector<Draw> draws(out.pdf.size());
-        query_samples(in, lights, draws);
-        for (std::size_t i = 0; i < draws.size(); ++i) out.wi[i] = draws[i].wi, out.pdf[i] = draws[i].pdf;
+        query_samples(in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) {
+            out.wi[i] = d.wi, out.pdf[i] = d.pdf;
+        });
     }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
@@ -146,19 +140,33 @@ private:
         };
     }
     double number_for(double u) const { return hello_.protocol == 1 ? u : for_float(u); }
-    /// Rows of w_o, u and the context -> a draw for each.
-    void query_samples(const std::vector<double>& in, std::size_t lights, std::span<Draw> out) const {
-        const std::size_t given = 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights),
-                          got = 4 + weights();
-        std::vector<double> answers(out.size() * got);
-        std::vector<bool> delta(out.size());
-        if (hello_.blocks) query_block("smpl", "sample", out.size(), given, got, in, answers, lights);
+    std::size_t columns_of_sample(std::size_t lights) const {
+        return 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights);
+    }
+    /// Appends a row of a request for a sample; u(k): its random numbers.
+    template <class U> void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
+        const auto numbers = static_cast<std::size_t>(hello_.traits.numbers);
+        const std::size_t before = in.size();
+        in.resize(before + 3 + numbers + context.size());
+        double* to = in.data() + before;
+        to[0] = wo.x, to[1] = wo.y, to[2] = wo.z;
+        for (std::size_t k = 0; k < numbers; ++k) to[3 + k] = number_for(u(k));
+        std::copy(context.begin(), context.end(), to + 3 + numbers);
+    }
+    /// Rows of w_o, u and the context; calls take(i, draw) for each row in order.
+    template <class Take> void query_samples(
+        const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
+        const std::size_t given = columns_of_sample(lights), got = 4 + weights();
+        std::vector<double> answers(count * got);
+        std::vector<bool> delta(hello_.blocks ? 0 : count);
+        if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
             talk_.lines(
-                out.size(), sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
                     return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
                 });
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = drawn(std::span(answers).subspan(i * got, got), delta[i]);
+        for (std::size_t i = 0; i < count; ++i)
+            take(i, drawn(std::span(answers).subspan(i * got, got), !hello_.blocks && delta[i]));
     }
     void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
         const std::vector<double>& in, std::span<double> out, std::size_t lights) const {

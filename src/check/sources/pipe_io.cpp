@@ -53,17 +53,20 @@ std::string PipeConnection::end_of_output() const {
 bool PipeConnection::fill() {
     incoming_.erase(0, read_from_);
     read_from_ = 0;
-    char buffer[1 << 16];
-    const ssize_t n = program_.read(buffer, sizeof buffer);
-    if (n < 0) return errno == EAGAIN || errno == EINTR;
-    incoming_.append(buffer, static_cast<std::size_t>(n));
-    return n > 0;
+    constexpr std::size_t most = 1 << 18;
+    const std::size_t before = incoming_.size();
+    incoming_.resize(before + most);
+    const ssize_t n = program_.read(incoming_.data() + before, most);
+    const int error = errno;
+    incoming_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+    return n > 0 || (n < 0 && (error == EAGAIN || error == EINTR));
 }
 
-void PipeConnection::send(Exchange& x, bool answers_wait) {
-    const ssize_t n = program_.write(std::string_view(x.outgoing).substr(x.sent));
-    if (n > 0) x.sent += static_cast<std::size_t>(n);
-    else if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + why_closed());
+/// Returns how many bytes were written.
+std::size_t PipeConnection::send(Exchange& x, std::string_view bytes, bool answers_wait) {
+    const ssize_t n = program_.write(bytes);
+    if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + why_closed());
+    return static_cast<std::size_t>(std::max<ssize_t>(n, 0));
 }
 
 void PipeConnection::mind_the_time(Exchange& x, Clock::time_point last) {
@@ -82,13 +85,17 @@ void PipeConnection::mind_the_time(Exchange& x, Clock::time_point last) {
         fault(x, x.answered, fmt::format("got nothing for {:.0f} s{}", quiet, why_silent()));
 }
 
-/// Writes all requests and reads all answers, whichever side is ready.
-void PipeConnection::run(Exchange& x) {
+void PipeConnection::check_open() const {
     if (slow_) throw SamplerTimeout(broken_);
     if (!broken_.empty()) throw SamplerExited("the program was given up: " + broken_);
+}
+
+/// Writes all requests and reads all answers, whichever side is ready.
+void PipeConnection::run(Exchange& x) {
+    check_open();
     Clock::time_point last = Clock::now();
     while (x.answered < x.count) {
-        constexpr std::size_t ahead = 1 << 16;  // bytes of requests kept ready
+        constexpr std::size_t ahead = 1 << 18;  // bytes of requests kept ready
         if (x.outgoing.size() - x.sent < ahead / 2) {
             x.outgoing.erase(0, x.sent);
             x.sent = 0;
@@ -96,7 +103,7 @@ void PipeConnection::run(Exchange& x) {
         }
         const bool more = x.sent < x.outgoing.size();
         const Process::Ready ready = program_.wait_ready(more, true, 50);
-        if (ready.input) send(x, ready.output);
+        if (ready.input) x.sent += send(x, std::string_view(x.outgoing).substr(x.sent), ready.output);
         if (ready.output) {
             if (!fill()) fault(x, x.answered, end_of_output());
             last = Clock::now();
@@ -142,52 +149,91 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
     }
 }
 
+// Rows go from and to the caller's memory without a copy in between: they are most of what is exchanged.
 void PipeConnection::blocks(const Rows& rows) {
     constexpr std::size_t most_rows = 1 << 15;  // 65536 are allowed; smaller ones let both sides work at once
-    std::deque<std::size_t> due;
     const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
     Exchange x{rows.count, expected, rows.describe, {}, {}};
-    x.produce = [&] {
-        const std::size_t n = std::min(rows.count - x.written, most_rows);
-        const auto head = static_cast<std::uint32_t>(n);
-        x.outgoing.append(rows.operation, 4);
-        x.outgoing.append(reinterpret_cast<const char*>(&head), sizeof head);
-        x.outgoing += rows.header;
-        x.outgoing.append(
-            reinterpret_cast<const char*>(rows.in.data() + x.written * rows.given), n * rows.given * sizeof(double));
-        due.push_back(n);
-        x.written += n;
+    check_open();
+    const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, most_rows); };
+    const auto head_of = [&](std::size_t row) {
+        const auto n = static_cast<std::uint32_t>(rows_from(row));
+        std::string head(rows.operation, 4);
+        head.append(reinterpret_cast<const char*>(&n), sizeof n);
+        return head + rows.header;
     };
-    x.take = [&] { take_blocks(x, rows, due); };
-    run(x);
-    if (!pending().empty())
+    std::string head = head_of(0), answer_head;
+    std::size_t head_sent = 0, payload_sent = 0, payload_read = 0;
+    Clock::time_point last = Clock::now();
+    while (x.answered < x.count) {
+        const Process::Ready ready = program_.wait_ready(x.written < x.count, true, 50);
+        if (ready.input) {
+            const std::size_t bytes = rows_from(x.written) * rows.given * sizeof(double);
+            const auto* payload = reinterpret_cast<const char*>(rows.in.data() + x.written * rows.given);
+            if (head_sent < head.size()) head_sent += send(x, std::string_view(head).substr(head_sent), ready.output);
+            if (head_sent == head.size())
+                payload_sent += send(x, {payload + payload_sent, bytes - payload_sent}, ready.output);
+            if (payload_sent == bytes) {
+                x.written += rows_from(x.written);
+                head_sent = payload_sent = 0;
+                if (x.written < x.count) head = head_of(x.written);
+            }
+        }
+        if (ready.output) {
+            if (!take_block(x, rows, rows_from(x.answered), answer_head, payload_read)) {
+                incoming_ = answer_head;
+                fault(x, x.answered, end_of_output());
+            }
+            last = Clock::now();
+        }
+        mind_the_time(x, last);
+    }
+    if (program_.wait_ready(false, true, 0).output && fill() && !pending().empty())
         fault(x, rows.count - 1,
             fmt::format("got {} bytes more than were asked for: {}", pending().size(), shown(pending())));
     requests_ += rows.count;
 }
 
-void PipeConnection::take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& due) {
-    const auto number = [&](std::size_t at) {
-        std::uint32_t n = 0;
-        std::memcpy(&n, incoming_.data() + read_from_ + at, sizeof n);
-        return n;
+/// Reads what there is of the answer to `n` rows; false at the end of the program's output.
+bool PipeConnection::take_block(
+    Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read) {
+    const auto read = [&](char* to, std::size_t most, std::size_t& got) {
+        const ssize_t count = program_.read(to, most);
+        const bool open = count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
+        got = static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+        return open;
     };
-    while (pending().size() >= sizeof(std::uint32_t)) {
-        if (due.empty()) fault(x, std::min(x.answered, x.count - 1), "unexpected extra answer: " + shown(pending()));
-        const std::size_t n = number(0);
-        if (n == 0) {  // an error: its length and its text
-            if (pending().size() < 8 || pending().size() < 8 + std::min<std::size_t>(number(4), 4096)) return;
-            fault(x, x.answered, "got an error: " + shown(pending().substr(8, std::min<std::size_t>(number(4), 4096))));
-        }
-        if (n != due.front()) fault(x, x.answered, fmt::format("got a block of {} rows for one of {}", n, due.front()));
-        const std::size_t bytes = n * rows.got * sizeof(double);
-        if (pending().size() < sizeof(std::uint32_t) + bytes) return;
-        std::memcpy(
-            rows.out.data() + x.answered * rows.got, incoming_.data() + read_from_ + sizeof(std::uint32_t), bytes);
-        read_from_ += sizeof(std::uint32_t) + bytes;
-        x.answered += n;
-        due.pop_front();
+    const auto read_head = [&](std::size_t size) {
+        const std::size_t before = head.size();
+        std::size_t got = 0;
+        head.resize(size);
+        const bool open = read(head.data() + before, size - before, got);
+        head.resize(before + got);
+        return open;
+    };
+    const auto number = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, head.data() + at, sizeof value);
+        return value;
+    };
+    if (head.size() < 4) return read_head(4);
+    if (number(0) == 0) {  // an error: its length and its text
+        const std::size_t length = head.size() < 8 ? 0 : std::min<std::size_t>(number(4), 4096);
+        if (head.size() < 8 + length || head.size() < 8) return read_head(8 + length);
+        fault(x, x.answered, "got an error: " + shown(std::string_view(head).substr(8, length)));
     }
+    if (number(0) != n) fault(x, x.answered, fmt::format("got a block of {} rows for one of {}", number(0), n));
+    const std::size_t bytes = n * rows.got * sizeof(double);
+    auto* to = reinterpret_cast<char*>(rows.out.data() + x.answered * rows.got);
+    std::size_t got = 0;
+    const bool open = read(to + payload_read, bytes - payload_read, got);
+    payload_read += got;
+    if (payload_read == bytes) {
+        x.answered += n;
+        payload_read = 0;
+        head.clear();
+    }
+    return open;
 }
 
 }  // namespace crescent::inline sources

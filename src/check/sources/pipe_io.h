@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <deque>
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
@@ -136,10 +135,11 @@ private:
         return std::chrono::duration<double>(Clock::now() - then).count();
     }
     void run(Exchange& x);
-    void send(Exchange& x, bool answers_wait);
+    void check_open() const;
+    std::size_t send(Exchange& x, std::string_view bytes, bool answers_wait);
     void mind_the_time(Exchange& x, Clock::time_point last);
     void take_lines(Exchange& x, const Read& read);
-    void take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& due);
+    bool take_block(Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read);
     [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
         fault(x.describe(i), i, what, x.expected);
     }
