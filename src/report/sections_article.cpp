@@ -371,7 +371,7 @@ std::string remarks(const Page& page) {
 PageSection disagreements(Page& page) {
     if (!page.find.anything_published()) return {};
     html::Table table("Published values outside the 5–95 % band of this run (metrics with a heavy tail have no band)",
-        {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
+        {words("Metric"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
             {"Median against published", true}});
     std::size_t checked = 0, outside = 0;
     for (const SeedSpread& b : page.in.metrics.bands) {

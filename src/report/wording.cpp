@@ -160,7 +160,7 @@ html::Cell metric_cell(const Page& page, const SeedSpread* band) {
 }  // namespace
 
 std::string metrics_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns) {
-    std::vector<html::Cell> head{html::words("Meter")};
+    std::vector<html::Cell> head{html::words("Metric")};
     for (const Column& column : columns) head.push_back({column.title_html, true});
     html::Table table(caption_html, head);
     for (const std::string& metric : headline_metrics(page.in.experiment)) {
