@@ -25,7 +25,7 @@ function native() {
 const { Api } = await import(join(build, "api.mjs"));
 const module = await WebAssembly.compile(readFileSync(join(build, "crescent.wasm")));
 const api = new Api(module);
-const d = api.ask("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: [], published: "" });
+const d = api.json("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: [], published: "" });
 
 /** Seconds of all tiles of one call; `before` is called first, uncounted. */
 function page(call, given, before) {
@@ -55,7 +55,7 @@ async function written() {
   globalThis.crescentUser(new Function(`${templates.cosine.code}; return { sample, pdf };`));
   const user = take(), own = new Api(module, user.calls);
   own.number("user_takes", user.numbers, user.context ? 1 : 0);
-  const arms = own.ask("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: ['arms.yours.exec="page"', "arms.yours.n=[16]"], published: "" }).arms;
+  const arms = own.json("open", { file: experiment, text: readFileSync(join(root, experiment), "utf8"), set: ['arms.yours.exec="page"', "arms.yours.n=[16]"], published: "" }).arms;
   const arm = arms.findIndex(({ name }) => name === "yours"), box = [448, 320, 512, 384], draws = 64 * 64 * 16; // all of it on the sphere
   let rate = 0;
   for (let turn = 0; turn < 4 * times; ++turn) {

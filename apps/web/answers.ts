@@ -32,7 +32,7 @@ export class Asker {
     const all = [...builtIn, ...arms.filter((arm) => !builtIn.includes(arm))]; // as the experiment has them, and then those that are set
     const scene = this.opening.text.split(/^(?=\[)/m).filter((part) => !/^\[+(exponent|furnaces|plates|assertions|regions)/.test(part)).join("").replace(/^(published|note_evidence).*$/gm, "");
     const opening = { ...this.opening, text: scene, set: [`image.width=${width}`, `image.height=${height}`, ...all.slice(builtIn.length).map((arm) => `arms.${arm}.n=[${n}]`)] };
-    const { bytes } = await this.model.pool.ask({ kind: "strips", arms: arms.map((arm) => all.indexOf(arm)), n, width, height, opening }, true);
+    const { bytes } = await this.model.pool.request({ kind: "strips", arms: arms.map((arm) => all.indexOf(arm)), n, width, height, opening }, true);
     return bytes!.map((one) => new ImageData(new Uint8ClampedArray(one), one.byteLength / 4 / height, height));
   }
 
@@ -44,21 +44,21 @@ export class Asker {
 
   private measured(m: Measured, { name, box }: Region = this.region(m.region)): Promise<unknown> {
     const { set = [], ...request } = m;
-    return this.model.ask("measure", { ...request, region: name, box }, this.opened(set, [m.arm]));
+    return this.model.request("measure", { ...request, region: name, box }, this.opened(set, [m.arm]));
   }
 
   private all(of: readonly Measured[]): Promise<unknown[]> { return Promise.all(of.map((m) => this.measured(m))); }
 
   /** The verdicts of a sampler at one w_o. */
-  checked<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("checked", { sampler, theta, evaluations }, this.opened([], [])); }
+  checked<T>(sampler: string, theta: number): Promise<T> { return this.model.request<T>("checked", { sampler, theta, evaluations }, this.opened([], [])); }
 
   /** The furnaces at an exponent and a number of samples. */
-  furnaces(lesson: Lesson, s: number, n: number): Promise<Found> { return this.model.ask<Found>("furnaces_of", { ...lesson.answer, n }, this.opened([`sphere.s=${s}`], [])); }
+  furnaces(lesson: Lesson, s: number, n: number): Promise<Found> { return this.model.request<Found>("furnaces_of", { ...lesson.answer, n }, this.opened([`sphere.s=${s}`], [])); }
 
   private concluded(answer: Answer, lesson: Lesson, of: unknown[], beside?: unknown[]): Promise<Found> {
     const options = lesson.ask.kind === "choice" ? lesson.ask.options.map((option) => option.value) : "of" in answer ? answer.of.map(({ arm }) => arm) : [];
     const surface = "surface" in answer ? answer.surface : "";
-    return this.model.ask<Found>("concluded", { by: answer.by, options, surface, of, beside }, this.opened([], []));
+    return this.model.request<Found>("concluded", { by: answer.by, options, surface, of, beside }, this.opened([], []));
   }
 
   /** Measured once per page: the sheet shows the results of the lessons. `guess` is used if the answer is a box;
@@ -101,9 +101,9 @@ export class Asker {
     const { answer } = lesson;
     switch (answer.by) {
       case "firefly":
-        return this.model.ask<Found>("firefly", { ...answer, box: this.region(answer.region).box }, this.opened([], [answer.arm]));
+        return this.model.request<Found>("firefly", { ...answer, box: this.region(answer.region).box }, this.opened([], [answer.arm]));
       case "furnace":
-        return this.model.ask<Found>("furnaces_of", answer, this.opened([], []));
+        return this.model.request<Found>("furnaces_of", answer, this.opened([], []));
       case "support":
       case "chi-square":
       case "t-test":

@@ -1,7 +1,7 @@
 // One instance of the WebAssembly module, as apps/web/api.h describes it. All computation happens in the module.
 
 /** The kinds of error: "input" is the user's mistake, "user" one in the user's sampler; "memory" and "bug" are not. */
-export class DoorError extends Error {
+export class EngineError extends Error {
   /** `lines`: places in the script of a worker, line and column, of an error in the user's sampler. */
   constructor(readonly kind: string, text: string, readonly lines?: [number, number][]) {
     super(text);
@@ -38,7 +38,7 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
       return 0;
     },
     proc_exit: () => {
-      throw new DoorError("bug", "the kernels stopped");
+      throw new EngineError("bug", "the kernels stopped");
     },
   };
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
@@ -47,7 +47,7 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
 /** What the module calls of the user's sampler, apps/web/user_sampler.cpp. */
 export type UserCalls = (memory: () => WebAssembly.Memory) => { user_sample: Call; user_pdf: Call };
 const noUser: UserCalls = () => {
-  const none: Call = () => { throw new DoorError("bug", "there is no sampler of the user here"); };
+  const none: Call = () => { throw new EngineError("bug", "there is no sampler of the user here"); };
   return { user_sample: none, user_pdf: none };
 };
 
@@ -58,7 +58,7 @@ export class Api {
   constructor(module: WebAssembly.Module, user: UserCalls = noUser) {
     const memory = (): WebAssembly.Memory => this.memory;
     const failed = (kind: number, kindSize: number, at: number, size: number): never => {
-      throw new DoorError(this.words(kind, kindSize), this.words(at, size));
+      throw new EngineError(this.words(kind, kindSize), this.words(at, size));
     };
     const system = wasi(memory);
     const imports: WebAssembly.Imports = { api: { failed, ...user(memory) }, wasi_snapshot_preview1: {} };
@@ -82,9 +82,9 @@ export class Api {
     try {
       return this.calls[name]!(...given);
     } catch (error) {
-      if (error instanceof DoorError) throw error;
+      if (error instanceof EngineError) throw error;
       const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
-      throw new DoorError(full ? "memory" : "bug", String(error));
+      throw new EngineError(full ? "memory" : "bug", String(error));
     }
   }
 
@@ -101,7 +101,7 @@ export class Api {
     return this.words(this.number("response_data"), this.number("response_size"));
   }
 
-  ask<T>(name: string, request?: unknown, ...given: number[]): T {
+  json<T>(name: string, request?: unknown, ...given: number[]): T {
     return JSON.parse(this.say(name, request, ...given)) as T;
   }
 

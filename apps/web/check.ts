@@ -47,8 +47,8 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
 export async function paintDraws(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
   const wanted = (): boolean => canvas.isConnected;
   if (!wanted()) return;
-  const { bytes } = await model.desk.ask({ kind: "disk", call: "density_disk", request: { sampler: value, theta, size }, size });
-  const drawn = (await model.desk.ask({ kind: "ask", call: "drawn", request: { sampler: value, theta, n: draws } })).response as { draws: [number, number][]; case: string };
+  const { bytes } = await model.filmWorker.request({ kind: "disk", call: "density_disk", request: { sampler: value, theta, size }, size });
+  const drawn = (await model.filmWorker.request({ kind: "json", call: "drawn", request: { sampler: value, theta, n: draws } })).response as { draws: [number, number][]; case: string };
   if (!wanted()) return;
   const density = new ImageData(new Uint8ClampedArray(bytes![0]!), size, size);
   canvas.setAttribute("aria-label", `${words}: ${drawn.draws.length} draws over the density that it claims, ${drawn.case}`);

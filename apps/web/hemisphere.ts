@@ -1,7 +1,7 @@
 // The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
 // running mean, the factors of the largest sample.
 import { choice } from "./controls";
-import { DoorError } from "./api";
+import { EngineError } from "./api";
 import { el, made } from "./dom";
 import { Model } from "./model";
 import { State } from "./state";
@@ -66,7 +66,7 @@ function largestTable(parts: Record<string, string>): HTMLElement {
 }
 
 /** Fills `root` with pixel (i, j) under an arm, if it is still wanted; show(): called once its text is there. Throws
- *  DoorError. */
+ *  EngineError. */
 async function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number, wanted: () => boolean, show: () => void): Promise<void> {
   const pixel = await model.parts<Opened>(wanted, "pixel", { i, j, arm: name, n, css: `c${arm % 6}`, reference: model.referenceDone });
   if (!pixel) return;
@@ -97,7 +97,7 @@ async function showPixel(root: HTMLElement, model: Model, i: number, j: number, 
 }
 
 function pixelFailed(root: HTMLElement, error: unknown): void {
-  const words = error instanceof DoorError ? error.message : String(error);
+  const words = error instanceof EngineError ? error.message : String(error);
   root.replaceChildren(el("p", { class: "bad" }, `This pixel cannot be opened: ${words}.`));
 }
 

@@ -1,5 +1,5 @@
 // The jobs of a worker, and their execution.
-import { Api, Box, DoorError, pixelsOf, UserCalls } from "./api";
+import { Api, Box, EngineError, pixelsOf, UserCalls } from "./api";
 
 export interface Opening { file: string; text: string; set: string[]; published: string }
 
@@ -12,7 +12,7 @@ export type Job =
   | { kind: "reference"; box: Box }
   | { kind: "photograph"; box: Box; opening: Opening } // of the reference
   | { kind: "strips"; arms: number[]; n: number; width: number; height: number; opening: Opening } // a picture, of each arm a strip
-  | { kind: "ask"; call: string; request: unknown; opening?: Opening; given?: number[] } // opening: for another experiment
+  | { kind: "json"; call: string; request: unknown; opening?: Opening; given?: number[] } // opening: for another experiment
   // The rest is for the worker that assembles the films.
   | { kind: "call"; call: string; given: number[] }
   | { kind: "words"; call: string; request: unknown } // an answer that is no JSON
@@ -51,8 +51,8 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" }>): Answer {
         return api.bytes("paint", 4 * (x1 - x0) * height, 0, 0, 0, 1, 1, x0, 0, x1, height);
       }) };
     }
-    case "ask":
-      return { response: api.ask(job.call, job.request, ...(job.given ?? [])) };
+    case "json":
+      return { response: api.json(job.call, job.request, ...(job.given ?? [])) };
     case "words":
       return { response: api.say(job.call, job.request) };
     case "call":
@@ -72,7 +72,7 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" }>): Answer {
       return { bytes: [api.bytes("paint", 4 * pixelsOf(job.box), picture, index, other, top, times, x0, y0, x1, y1)] };
     }
     case "disk":
-      api.ask(job.call, job.request);
+      api.json(job.call, job.request);
       return { bytes: [api.bytes("disk", 4 * job.size * job.size)] };
   }
 }
@@ -106,7 +106,7 @@ export class Answering {
     try {
       if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) this.open(about);
       if (readsReference(job) && !this.ready) {
-        this.api.ask("prepare_reference");
+        this.api.json("prepare_reference");
         this.ready = true;
       }
       return job.kind === "open" ? {} : perform(this.api, job);
@@ -121,12 +121,12 @@ export class Answering {
   private open(about: Opening): void {
     this.here = undefined;
     this.ready = false;
-    this.api.ask("open", about);
+    this.api.json("open", about);
     this.here = about;
   }
 }
 
 export function failure(error: unknown): Fault {
-  if (error instanceof DoorError) return { kind: error.kind, text: error.message, ...(error.lines ? { lines: error.lines } : {}) };
+  if (error instanceof EngineError) return { kind: error.kind, text: error.message, ...(error.lines ? { lines: error.lines } : {}) };
   return { kind: "bug", text: String(error) };
 }

@@ -1,8 +1,8 @@
 // The state behind the pictures: the experiment with its settings, its films at growing sample counts, its reference,
-// its metrics. Workers compute the tiles; one of them, the desk, assembles and paints them.
-import { Box, DoorError } from "./api";
+// its metrics. Workers compute the tiles; one of them, the film worker, assembles and paints them.
+import { Box, EngineError } from "./api";
 import { Answer, Opening, Paint } from "./jobs";
-import { Desk, Pool } from "./pool";
+import { FilmWorker, Pool } from "./pool";
 
 export interface Arm {
   name: string; sampler: string; n: number[]; techniques: number; summary: string; formula: string; misses: string;
@@ -34,7 +34,7 @@ export interface Viewer {
   measured(): void;
   tailed(): void;
   spread(): void; // over seeds
-  failed(error: DoorError): void;
+  failed(error: EngineError): void;
 }
 
 /** One pixel of all films. */
@@ -57,10 +57,10 @@ export class Model {
   took = 0; // ms to the last metric, and to the last film
   filmsTook = 0;
   private era = 0;
-  private opening = false; // the desk is between two experiments
+  private opening = false; // the film worker is between two experiments
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
-  constructor(readonly desk: Desk, public pool: Pool, private readonly viewer: Viewer) {}
+  constructor(readonly filmWorker: FilmWorker, public pool: Pool, private readonly viewer: Viewer) {}
 
   private boxes(cost: number, [width, height]: readonly [number, number] = [this.described.width, this.described.height]): Box[] {
     return this.pool.tiles(width, height, cost);
@@ -69,34 +69,34 @@ export class Model {
     return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques + filmCost, 0);
   }
 
-  /** A request to the desk, of the experiment that is open; undefined if it is no longer wanted. */
-  private async wanted(still: () => boolean, ask: () => Promise<Answer>): Promise<Answer | undefined> {
+  /** A request to the film worker, of the experiment that is open; undefined if it is no longer wanted. */
+  private async wanted(still: () => boolean, request: () => Promise<Answer>): Promise<Answer | undefined> {
     if (this.opening || !still()) return undefined;
-    const answer = await ask();
+    const answer = await request();
     return !this.opening && still() ? answer : undefined;
   }
 
   async parts<T>(still: () => boolean, call: string, request?: unknown, given: number[] = []): Promise<T | undefined> {
-    return (await this.wanted(still, () => this.desk.ask({ kind: "ask", call, request, given })))?.response as T | undefined;
+    return (await this.wanted(still, () => this.filmWorker.request({ kind: "json", call, request, given })))?.response as T | undefined;
   }
 
   /** RMSE against N as SVG. */
   async chart(still: () => boolean, request: unknown): Promise<string | undefined> {
-    return (await this.wanted(still, () => this.desk.ask({ kind: "words", call: "ladder_chart", request })))?.response as string | undefined;
+    return (await this.wanted(still, () => this.filmWorker.request({ kind: "words", call: "ladder_chart", request })))?.response as string | undefined;
   }
 
-  /** Opens, and begins to compute up to n samples per pixel of these arms; throws DoorError for invalid settings. */
+  /** Opens, and begins to compute up to n samples per pixel of these arms; throws EngineError for invalid settings. */
   async run(opening: Opening, arms: string[], n: number): Promise<void> {
     const era = ++this.era, sampleCounts = [...ladder.filter((sampleCount) => sampleCount > 1 && sampleCount < n), n];
     this.startedAt = performance.now();
     this.finished = this.referenceDone = false;
     this.opening = true;
     this.pool.open({ ...opening, published: "" });
-    const described = (await this.desk.ask({ kind: "ask", call: "open", request: opening })).response as Described;
+    const described = (await this.filmWorker.request({ kind: "json", call: "open", request: opening })).response as Described;
     if (era !== this.era) return;
     const shown = arms.map((name) => ({ arm: described.arms.findIndex((a) => a.name === name), name, n: 0, sampleCounts: [], tails: {}, bands: {} }));
-    await this.desk.ask({ kind: "call", call: "film_buffer", given: [-1] });
-    for (const [index, s] of shown.entries()) await this.desk.ask({ kind: "call", call: "begin", given: [index, s.arm, sampleCounts[0]!] });
+    await this.filmWorker.request({ kind: "call", call: "film_buffer", given: [-1] });
+    for (const [index, s] of shown.entries()) await this.filmWorker.request({ kind: "call", call: "begin", given: [index, s.arm, sampleCounts[0]!] });
     if (era !== this.era) return;
     this.described = described;
     this.shown = shown;
@@ -107,7 +107,7 @@ export class Model {
       if (era !== this.era) return;
       await this.compute(era, opening, sampleCounts);
     } catch (error) {
-      if (era === this.era) this.viewer.failed(error instanceof DoorError ? error : new DoorError("bug", String(error)));
+      if (era === this.era) this.viewer.failed(error instanceof EngineError ? error : new EngineError("bug", String(error)));
     }
   }
 
@@ -137,7 +137,7 @@ export class Model {
     await this.bands(era);
   }
 
-  private async begin(index: number, arm: number, n: number): Promise<void> { await this.desk.ask({ kind: "call", call: "begin", given: [index, arm, n] }); }
+  private async begin(index: number, arm: number, n: number): Promise<void> { await this.filmWorker.request({ kind: "call", call: "begin", given: [index, arm, n] }); }
 
   private async sampleCount(era: number, n: number): Promise<void> {
     if (era !== this.era) return;
@@ -167,9 +167,9 @@ export class Model {
 
   /** Puts one tile of each arm into its film, [film, arm]; false if something else was opened meanwhile. */
   private async tile(era: number, films: [number, number][], n: number, box: Box): Promise<boolean> {
-    const { bytes } = await this.pool.ask({ kind: "tile", arms: films.map(([, arm]) => arm), n, box });
+    const { bytes } = await this.pool.request({ kind: "tile", arms: films.map(([, arm]) => arm), n, box });
     if (era !== this.era || !bytes) return false;
-    await this.desk.ask({ kind: "put", films: films.map(([film]) => film), box, bytes }, bytes);
+    await this.filmWorker.request({ kind: "put", films: films.map(([film]) => film), box, bytes }, bytes);
     return era === this.era;
   }
 
@@ -192,7 +192,7 @@ export class Model {
 
   /** A disk that `call` paints, RGBA, `size` pixels across. */
   async disk(still: () => boolean, call: string, request: Record<string, unknown>, size: number): Promise<ImageData | undefined> {
-    const answer = await this.wanted(still, () => this.desk.ask({ kind: "disk", call, request: { ...request, size }, size }));
+    const answer = await this.wanted(still, () => this.filmWorker.request({ kind: "disk", call, request: { ...request, size }, size }));
     return answer && new ImageData(new Uint8ClampedArray(answer.bytes![0]!), size, size);
   }
 
@@ -208,13 +208,13 @@ export class Model {
   private async reference(era: number): Promise<void> {
     const { parts } = this.tiles;
     const put = async (box: Box, bytes: ArrayBuffer): Promise<void> => {
-      await this.desk.ask({ kind: "put", films: [-1], box, bytes: [bytes] });
+      await this.filmWorker.request({ kind: "put", films: [-1], box, bytes: [bytes] });
       if (era === this.era) this.viewer.painted(-1, box);
     };
     const have = new Set(parts.map(({ box }) => `${box.x0} ${box.y0}`));
     const missing = this.referenceBoxes().filter((box) => !have.has(`${box.x0} ${box.y0}`));
     await Promise.all([...parts.map(({ box, bytes }) => put(box, bytes)), ...missing.map(async (box) => {
-      const { bytes } = await this.pool.ask({ kind: "reference", box });
+      const { bytes } = await this.pool.request({ kind: "reference", box });
       if (era !== this.era || !bytes) return;
       parts.push({ box, bytes: bytes[0]! });
       await put(box, bytes[0]!);
@@ -231,7 +231,7 @@ export class Model {
     for (const s of this.shown)
       for (const region of this.described.regions) {
         if (era !== this.era) return;
-        const tail = await this.ask<Tail>("tail", { arm: s.name, box: region.box });
+        const tail = await this.request<Tail>("tail", { arm: s.name, box: region.box });
         if (era !== this.era) return;
         s.tails[region.name] = tail;
         this.viewer.tailed();
@@ -247,7 +247,7 @@ export class Model {
         for (const { n } of s.sampleCounts) {
           if (era !== this.era) return;
           if (pixels * n * seedsOfBands > most || !this.described.arms[s.arm]!.sampler) continue;
-          const found = await this.ask<{ q05: number | string; q95: number | string }>("measure", { arm: s.name, n, region: region.name, box: region.box, seeds: seedsOfBands });
+          const found = await this.request<{ q05: number | string; q95: number | string }>("measure", { arm: s.name, n, region: region.name, box: region.box, seeds: seedsOfBands });
           if (era !== this.era) return;
           if (typeof found.q05 === "number" && typeof found.q95 === "number" && found.q05 > 0) (s.bands[region.name] ??= []).push([n, found.q05, found.q95]);
         }
@@ -256,21 +256,21 @@ export class Model {
   }
 
   /** A request to any worker, of another experiment if one is given: such a request survives other openings. */
-  async ask<T>(call: string, request: unknown, opening?: Opening): Promise<T> {
-    if (!opening) return (await this.pool.ask({ kind: "ask", call, request })).response as T;
-    return (await this.pool.ask({ kind: "ask", call, request, opening }, true)).response as T;
+  async request<T>(call: string, request: unknown, opening?: Opening): Promise<T> {
+    if (!opening) return (await this.pool.request({ kind: "json", call, request })).response as T;
+    return (await this.pool.request({ kind: "json", call, request, opening }, true)).response as T;
   }
 
   /** The reference of an experiment as a picture, RGBA of one box after another. The last request is computed first. */
   async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
     await this.pool.ready;
     for (const box of this.boxes(referenceCost + filmCost, size).reverse()) // and its colours
-      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
+      this.pool.request({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
   }
 
   /** RGBA of a box, rows from the top; undefined if it is no longer wanted. */
   async pixels(still: () => boolean, paint: Paint, box: Box): Promise<ImageData | undefined> {
-    const answer = await this.wanted(still, () => this.desk.ask({ kind: "paint", paint, box }));
+    const answer = await this.wanted(still, () => this.filmWorker.request({ kind: "paint", paint, box }));
     return answer && new ImageData(new Uint8ClampedArray(answer.bytes![0]!), box.x1 - box.x0, box.y1 - box.y0);
   }
 

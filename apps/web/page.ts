@@ -2,7 +2,7 @@
 import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, DoorError } from "./api";
+import { Box, EngineError } from "./api";
 import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
@@ -17,7 +17,7 @@ import { checkedCode, Work, Workshop } from "./workshop";
 import { choice } from "./controls";
 import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
-import { Desk, Pool } from "./pool";
+import { FilmWorker, Pool } from "./pool";
 import { samplers, startText } from "./text";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
 
@@ -63,7 +63,7 @@ export class Page implements Viewer {
     Object.assign(this, { module, worker });
     const pool = new Pool(module, worker, count);
     pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
-    this.model = new Model(new Desk(module, worker), pool, this);
+    this.model = new Model(new FilmWorker(module, worker), pool, this);
     this.samplers = samplers();
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.choose(pixel), region: (box) => this.change(drawnRegion, `[${box.join(", ")}]`) }, "main-film");
     byId("film").replaceChildren(this.film.root);
@@ -112,7 +112,7 @@ export class Page implements Viewer {
     const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
     byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
-      const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
+      const why = error instanceof EngineError ? error : new EngineError("bug", error instanceof Error ? error.message : String(error));
       if (why.kind === "worker") return this.withoutWorkers();
       const plain = fresh(state.experiment, source), { good } = this;
       const differs = (from: Opened): boolean => JSON.stringify([from.set, from.arms]) !== JSON.stringify([state.set, state.arms]);
@@ -230,7 +230,7 @@ export class Page implements Viewer {
     info["films"] = String(Math.round(this.model.filmsTook));
     await shown;
     if (described !== this.model.described || this.idle) return;
-    info["memory"] = `${this.model.desk.size} ${this.model.pool.size}`; // of the desk's instance, of the workers
+    info["memory"] = `${this.model.filmWorker.size} ${this.model.pool.size}`; // of the film worker's instance, of the workers
     info["took"] = String(Math.round(took));
   }
 
@@ -270,7 +270,7 @@ export class Page implements Viewer {
   }
 
   /** A message with the next step; `all`: nothing can be shown for these settings except their command. */
-  failed(error: DoorError, all = false): void {
+  failed(error: EngineError, all = false): void {
     if (error.kind === "worker") return this.withoutWorkers();
     if (all) {
       byId("command").textContent = command(this.state, this.source);
@@ -307,7 +307,7 @@ export class Page implements Viewer {
     const writes = part === "write" || (part === "faults" && found !== undefined);
     if (writes && !this.workshop) {
       this.workshop = new Workshop({
-        module: this.module, worker: this.worker, desk: this.model.desk, sources: this.data.sources, speaker: this.speaker,
+        module: this.module, worker: this.worker, filmWorker: this.model.filmWorker, sources: this.data.sources, speaker: this.speaker,
         changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
       });
       byId("workshop").replaceChildren(this.workshop.root);

@@ -1,12 +1,12 @@
-// Runs jobs in workers. A new opening cancels all earlier requests: results under way are dropped. One worker, the desk,
-// assembles the films; it does its jobs in the order in which they came.
-import { Box, DoorError } from "./api";
+// Runs jobs in workers. A new opening cancels all earlier requests: results under way are dropped. One worker, the film
+// worker, assembles the films; it processes its jobs in the order of their arrival.
+import { Box, EngineError } from "./api";
 import { Answer, Fault, Job, Opening, Reply } from "./jobs";
 
 type Done = (answer: Answer) => void;
-type Failed = (error: DoorError) => void;
+type Failed = (error: EngineError) => void;
 interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
-type Kept = Map<string, Hand>; // which worker keeps the hits of a box
+type Kept = Map<string, WorkerClient>; // which worker keeps the hits of a box
 const boxOf = ({ job }: Waiting): string => (job.kind === "tile" ? Object.values(job.box).join() : "");
 
 const underWay = 2; // jobs queued per worker, so that it never waits for the page
@@ -14,9 +14,9 @@ const side = 64; // of a tile, in pixels
 const mostSamples = 2_000_000; // of one job: a new setting has to wait for running jobs
 const patience = 20_000; // ms for a worker to start
 
-const errorOf = ({ kind, text, lines }: Fault): DoorError => new DoorError(kind, text, lines);
+const errorOf = ({ kind, text, lines }: Fault): EngineError => new EngineError(kind, text, lines);
 
-class Hand {
+class WorkerClient {
   size = 0; // bytes allocated by its instance
   private readonly held = new Map<number, Waiting>();
   private next = 0;
@@ -45,41 +45,41 @@ class Hand {
 }
 
 /** Starts a worker with an instance of the module. Rejects if the browser refuses, or with the fault of the user's code. */
-function started(module: WebAssembly.Module, url: string, free: () => void): Promise<Hand> {
+function started(module: WebAssembly.Module, url: string, free: () => void): Promise<WorkerClient> {
   return new Promise((resolve, reject) => {
-    const late = setTimeout(() => reject(new DoorError("worker", "a worker did not start")), patience);
-    const failed = (error: DoorError): void => { clearTimeout(late); reject(error); };
+    const late = setTimeout(() => reject(new EngineError("worker", "a worker did not start")), patience);
+    const failed = (error: EngineError): void => { clearTimeout(late); reject(error); };
     try {
       const worker = new Worker(url);
       worker.onerror = (event): void => {
         event.preventDefault();
-        failed(new DoorError(event.lineno ? "user" : "worker", event.message, [[event.lineno, event.colno]]));
+        failed(new EngineError(event.lineno ? "user" : "worker", event.message, [[event.lineno, event.colno]]));
       };
       worker.onmessage = ({ data }: MessageEvent): void => {
         clearTimeout(late);
         const { error } = data as Reply;
         if (error) return failed(errorOf(error));
-        resolve(new Hand(worker, free));
+        resolve(new WorkerClient(worker, free));
       };
       worker.postMessage(module);
     } catch (error) {
-      failed(new DoorError("worker", String(error)));
+      failed(new EngineError("worker", String(error)));
     }
   });
 }
 
 /** The worker that assembles films. */
-export class Desk {
-  private hand: Promise<Hand>;
+export class FilmWorker {
+  private client: Promise<WorkerClient>;
   constructor(module: WebAssembly.Module, source: string) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    this.hand = started(module, url, () => {}).finally(() => URL.revokeObjectURL(url));
-    this.hand.catch(() => {}); // the pool has none either
+    this.client = started(module, url, () => {}).finally(() => URL.revokeObjectURL(url));
+    this.client.catch(() => {}); // the pool has none either
   }
   size = 0;
-  async ask(job: Job, transfer: Transferable[] = []): Promise<Answer> {
-    const hand = await this.hand;
-    return new Promise((done, failed) => hand.give({ job, lasting: true, done: (answer) => { this.size = hand.size; done(answer); }, failed }, transfer));
+  async request(job: Job, transfer: Transferable[] = []): Promise<Answer> {
+    const client = await this.client;
+    return new Promise((done, failed) => client.give({ job, lasting: true, done: (answer) => { this.size = client.size; done(answer); }, failed }, transfer));
   }
 }
 
@@ -91,7 +91,7 @@ export function withUser(source: string, code: string): { source: string; first:
 }
 
 export class Pool {
-  private hands: Hand[] = [];
+  private clients: WorkerClient[] = [];
   private queue: Waiting[] = [];
   private kept: Kept = new Map();
   private opened: Opening | undefined;
@@ -105,22 +105,22 @@ export class Pool {
     this.ready = Promise.allSettled(Array.from({ length: count }, () => this.startOne(url))).then((all) => {
       URL.revokeObjectURL(url);
       const [first] = all;
-      if (this.hands.length === 0 && !this.ended) throw first?.status === "rejected" ? first.reason : new DoorError("worker", "no worker");
+      if (this.clients.length === 0 && !this.ended) throw first?.status === "rejected" ? first.reason : new EngineError("worker", "no worker");
     });
     this.ready.catch(() => {});
   }
 
   private async startOne(url: string): Promise<void> {
-    const hand = await started(this.module, url, () => this.pump());
-    if (this.ended) return hand.end();
-    if (this.opened) this.openIn(hand, this.opened);
-    this.hands.push(hand);
+    const client = await started(this.module, url, () => this.pump());
+    if (this.ended) return client.end();
+    if (this.opened) this.openIn(client, this.opened);
+    this.clients.push(client);
     this.pump();
   }
 
-  get workers(): number { return this.hands.length; }
+  get workers(): number { return this.clients.length; }
   /** The longest time that one of the workers has been at a job, ms. */
-  get busy(): number { return Math.max(0, ...this.hands.map((hand) => hand.busy)); }
+  get busy(): number { return Math.max(0, ...this.clients.map((client) => client.busy)); }
 
   /** Drops all requests except lasting ones. */
   cancel(): void {
@@ -132,26 +132,26 @@ export class Pool {
   end(): void {
     this.ended = true;
     this.queue = [];
-    for (const hand of this.hands) hand.end();
-    this.hands = [];
+    for (const client of this.clients) client.end();
+    this.clients = [];
   }
 
   /** Bytes allocated by the instances of all workers. */
-  get size(): number { return this.hands.reduce((sum, hand) => sum + hand.size, 0); }
+  get size(): number { return this.clients.reduce((sum, client) => sum + client.size, 0); }
 
   /** Every instance opens this experiment; earlier requests are dropped. */
   open(opening: Opening): void {
     this.cancel();
     this.opened = opening;
     this.kept.clear();
-    for (const hand of this.hands) this.openIn(hand, opening);
+    for (const client of this.clients) this.openIn(client, opening);
   }
-  private openIn(hand: Hand, opening: Opening): void { // what they reject, the desk rejects too
-    hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
+  private openIn(client: WorkerClient, opening: Opening): void { // what they reject, the film worker rejects too
+    client.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 
   /** `lasting`: the request survives other openings, and comes before all others. */
-  async ask(job: Job, lasting = false): Promise<Answer> {
+  async request(job: Job, lasting = false): Promise<Answer> {
     const era = this.era;
     await this.ready;
     return new Promise((resolve, reject) => {
@@ -176,15 +176,15 @@ export class Pool {
   }
 
   private pump(): void {
-    for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.nextFor(hand));
+    for (let client = this.next(); client && this.queue.length > 0; client = this.next()) client.give(this.nextFor(client));
   }
   /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another
    *  worker. */
-  private nextFor(hand: Hand): Waiting {
-    const good = (waiting: Waiting): boolean => [hand, undefined].includes(this.kept.get(boxOf(waiting)));
+  private nextFor(client: WorkerClient): Waiting {
+    const good = (waiting: Waiting): boolean => [client, undefined].includes(this.kept.get(boxOf(waiting)));
     const [waiting] = this.queue.splice(Math.max(0, this.queue.findIndex(good)), 1);
-    if (waiting!.job.kind === "tile") this.kept.set(boxOf(waiting!), hand);
+    if (waiting!.job.kind === "tile") this.kept.set(boxOf(waiting!), client);
     return waiting!;
   }
-  private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
+  private next(): WorkerClient | undefined { return this.clients.find((client) => client.room); }
 }

@@ -14,4 +14,4 @@ export const figures = (x: number): string => core.say("figures", undefined, x);
 export const scaleBar = (picture: number, width: number): ImageData =>
   new ImageData(new Uint8ClampedArray(core.bytes("scale_bar", 4 * width, picture, width)), width, 1);
 /** The samplers that an arm may have. */
-export const samplers = (): { name: string; label: string; summary: string }[] => core.ask("samplers");
+export const samplers = (): { name: string; label: string; summary: string }[] => core.json("samplers");

@@ -1,6 +1,6 @@
 // The user's sampler in a worker: its functions, called for many rows of the module's memory. The page puts the code
 // behind the script of the worker, as the argument of crescentUser (apps/web/pool.ts).
-import { Call, DoorError, UserCalls } from "./api";
+import { Call, EngineError, UserCalls } from "./api";
 
 type Vector = [number, number, number];
 interface Light { kind: string; radius: number; radiance: Vector; position: Vector; normal: Vector; edge_u: Vector; edge_v: Vector; shines: boolean }
@@ -34,9 +34,9 @@ function placesOf(error: unknown): [number, number][] {
   return [...stack.matchAll(/:(\d+):(\d+)\)?\s*$/gm)].map((m) => [Number(m[1]), Number(m[2])]);
 }
 
-function fault(error: unknown): DoorError {
-  if (error instanceof DoorError) return error;
-  return new DoorError("user", error instanceof Error ? `${error.name}: ${error.message}` : `it threw ${String(error)}`, placesOf(error));
+function fault(error: unknown): EngineError {
+  if (error instanceof EngineError) return error;
+  return new EngineError("user", error instanceof Error ? `${error.name}: ${error.message}` : `it threw ${String(error)}`, placesOf(error));
 }
 
 function shown(value: unknown): string {
@@ -47,8 +47,8 @@ function shown(value: unknown): string {
   }
 }
 
-const wrongDraw = (d: unknown): DoorError => new DoorError("user", `sample returned ${shown(d)}; expected { wi: [x, y, z], pdf: number }, or null where nothing is drawn`);
-const wrongPdf = (p: unknown): DoorError => new DoorError("user", `pdf returned ${shown(p)}; expected a number`);
+const wrongDraw = (d: unknown): EngineError => new EngineError("user", `sample returned ${shown(d)}; expected { wi: [x, y, z], pdf: number }, or null where nothing is drawn`);
+const wrongPdf = (p: unknown): EngineError => new EngineError("user", `pdf returned ${shown(p)}; expected a number`);
 
 function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Functions["pdf"]>, context: boolean): UserCalls {
   return (memory) => {
@@ -99,9 +99,9 @@ function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Func
   };
 }
 
-/** Receives the user's code; the returned function gives its calls, undefined without code. Throws DoorError. */
+/** Receives the user's code; the returned function gives its calls, undefined without code. Throws EngineError. */
 export function userSampler(): () => { calls: UserCalls; numbers: number; context: boolean } | undefined {
-  let functions: Functions | undefined, failed: DoorError | undefined;
+  let functions: Functions | undefined, failed: EngineError | undefined;
   (self as unknown as { crescentUser: (make: () => Functions) => void }).crescentUser = (make) => {
     try {
       functions = make();
@@ -113,9 +113,9 @@ export function userSampler(): () => { calls: UserCalls; numbers: number; contex
     if (failed) throw failed;
     if (!functions) return undefined;
     const { sample, pdf, numbers = 2 } = functions;
-    if (!sample) throw new DoorError("user", "there is no function sample(wo, u)");
-    if (!pdf) throw new DoorError("user", "there is no function pdf(wo, wi)");
-    if (typeof numbers !== "number" || !(numbers >= 1 && numbers <= 8 && Number.isInteger(numbers))) throw new DoorError("user", `numbers is ${shown(numbers)}; expected how many random numbers a sample takes, 1 to 8`);
+    if (!sample) throw new EngineError("user", "there is no function sample(wo, u)");
+    if (!pdf) throw new EngineError("user", "there is no function pdf(wo, wi)");
+    if (typeof numbers !== "number" || !(numbers >= 1 && numbers <= 8 && Number.isInteger(numbers))) throw new EngineError("user", `numbers is ${shown(numbers)}; expected how many random numbers a sample takes, 1 to 8`);
     const context = sample.length > 2 || pdf.length > 2;
     return { calls: callsOf(sample, pdf, context), numbers, context };
   };

@@ -1,7 +1,7 @@
 // Where a sampler is written: the editor; its draws over its pdf; its film next to that of a built-in sampler, and their
 // convergence; the verdicts of `check`. The code runs in workers of its own, which are ended when it changes or takes
 // too long.
-import { Box, DoorError } from "./api";
+import { Box, EngineError } from "./api";
 import { choice } from "./controls";
 import { byId, copied, el, minus, plusMinus, Speaker } from "./dom";
 import { Editor } from "./editor";
@@ -10,7 +10,7 @@ import { FilmView } from "./film";
 import { Opening } from "./jobs";
 import { showLadders } from "./ladders";
 import { Described, Model, Shown, Viewer } from "./model";
-import { Desk, Pool, withUser } from "./pool";
+import { FilmWorker, Pool, withUser } from "./pool";
 import { Source } from "./state";
 import { grounds } from "./templates";
 import { figures, samplers } from "./text";
@@ -46,7 +46,7 @@ function power({ state, hidden }: Verdict): string {
 }
 
 export interface Workplace {
-  module: WebAssembly.Module; worker: string; desk: Desk; sources: Record<string, Source>; speaker: Speaker;
+  module: WebAssembly.Module; worker: string; filmWorker: FilmWorker; sources: Record<string, Source>; speaker: Speaker;
   changed(work: Work): void; // by the user
   checked(result: Checked): void;
 }
@@ -82,7 +82,7 @@ export class Workshop implements Viewer {
 
   constructor(private readonly at: Workplace) {
     this.scene = Object.keys(at.sources)[0]!;
-    this.model = new Model(at.desk, new Pool(at.module, at.worker, 0), this);
+    this.model = new Model(at.filmWorker, new Pool(at.module, at.worker, 0), this);
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.film.select(pixel) }, "your-film", ["film 0", "film 1"]);
     const place = el("div", { class: "editor" });
     this.editor = new Editor(place, "the code of your sampler", () => this.edited());
@@ -179,7 +179,7 @@ export class Workshop implements Viewer {
   private failedIn(era: number, error: unknown): void {
     if (era !== this.era) return;
     this.model.stop();
-    const why = error instanceof DoorError ? error : new DoorError("bug", String(error));
+    const why = error instanceof EngineError ? error : new EngineError("bug", String(error));
     if (why.kind !== "user") return this.say(why.sentence);
     const lines = this.editor.code.split("\n").length, text = why.message.replace(/^Uncaught /, "").replace(/\.?$/, ".");
     const [line, column] = (why.lines ?? []).map(([l, c]) => [l - this.first, c] as const).find(([l]) => l >= 1 && l <= lines) ?? [0, 0];
@@ -200,8 +200,8 @@ export class Workshop implements Viewer {
     if (!probe) return;
     try {
       const [disk, drawn] = await Promise.all([
-        probe.ask({ kind: "disk", call: "user_disk", request: { ...request, what: layer, size }, size }),
-        probe.ask({ kind: "ask", call: "user_drawn", request: { ...request, n: draws } })]);
+        probe.request({ kind: "disk", call: "user_disk", request: { ...request, what: layer, size }, size }),
+        probe.request({ kind: "json", call: "user_drawn", request: { ...request, n: draws } })]);
       if (era !== this.era || mine !== this.looks) return;
       const { draws: all, below, case: on } = drawn.response as { draws: [number, number, number][]; below: number; case: string };
       const pen = this.hemisphere.getContext("2d")!;
@@ -245,7 +245,7 @@ export class Workshop implements Viewer {
   }
   tailed(): void {}
   spread(): void { void showLadders(this.charts, this.model); }
-  failed(error: DoorError): void { this.failedIn(this.era, error); }
+  failed(error: EngineError): void { this.failedIn(this.era, error); }
 
   private controls(): void {
     const again = (): void => { this.at.changed(this.work); this.restart(); };
@@ -273,7 +273,7 @@ export class Workshop implements Viewer {
     const start = performance.now();
     this.verdicts.replaceChildren(el("p", {}, "Checking …"));
     try {
-      const { response } = await probe.ask({ kind: "ask", call: "user_checked", request: { ...this.request(), wo: four, evaluations } }, true);
+      const { response } = await probe.request({ kind: "json", call: "user_checked", request: { ...this.request(), wo: four, evaluations } }, true);
       if (era !== this.era) return;
       const result = response as Checked, took = performance.now() - start;
       document.documentElement.dataset["checked"] = String(Math.round(took));
@@ -337,7 +337,7 @@ export async function checkedCode(module: WebAssembly.Module, worker: string, co
   const pool = new Pool(module, withUser(worker, code).source, 1), { lobe, lambert, sharpness, light } = grounds[ground]!;
   try {
     const request = { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations };
-    return (await pool.ask({ kind: "ask", call: "user_checked", request })).response as Checked;
+    return (await pool.request({ kind: "json", call: "user_checked", request })).response as Checked;
   } finally {
     pool.end();
   }

@@ -20,7 +20,7 @@ function checked(module: WebAssembly.Module, code: string, ground: string): { st
   const user = take() as { calls: UserCalls; numbers: number; context: boolean };
   const api = new Api(module, user.calls), { lobe, lambert, sharpness, light } = grounds[ground]!;
   api.number("user_takes", user.numbers, user.context ? 1 : 0);
-  return api.ask("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations });
+  return api.json("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations });
 }
 
 /** A line for each sampler; throws if one is not as it should be. */
