@@ -6,7 +6,7 @@ import { Described } from "../../../apps/web/model";
 export function hashes(module: WebAssembly.Module, file: string, text: string): string[] {
   const worker = new Api(module), page = new Api(module), opening = { file, text, set: [], published: "" };
   worker.json("open", opening);
-  const d = page.ask<Described>("open", opening), lines: string[] = [];
+  const d = page.json<Described>("open", opening), lines: string[] = [];
   const side = 48; // none of the program's own
   d.arms.forEach((arm, index) => {
     for (const n of arm.n) {
