@@ -135,7 +135,7 @@ def tests(page, folder):
 
     def the_main_film(driver):
         """900 pixels wide at 1440 x 900; keys and the wheel zoom to single pixels; a pixel is read; the wipe and both
-        panels show what was chosen; on a phone panels are stacked."""
+        panels show what was chosen; on a phone panels are stacked, and two fingers zoom."""
         browser.size(driver, 1440, 900)
         browser.open_page(driver, page, small)
         film = driver.find_element(By.ID, "main-film")
@@ -166,6 +166,15 @@ def tests(page, folder):
         browser.wait(driver, "document.getElementById('main-film').clientHeight > 200")
         wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
         assert wide <= 0, f"{wide} px too wide"
+        film.send_keys("0")
+        driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", film)
+        x, y = driver.execute_script("const r = arguments[0].getBoundingClientRect();"
+                                     "return [r.left + r.width / 2, r.top + r.height / 4]", film)
+        for kind, apart in (("touchStart", 20), *(("touchMove", 20 + 8 * k) for k in range(1, 6)), ("touchEnd", 0)):
+            fingers = [{"x": x - apart, "y": y, "id": 1}, {"x": x + apart, "y": y, "id": 2}] if apart else []
+            driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
+        zoomed = browser.wait(driver, f"{zoom} > 1 && {zoom}")
+        assert 2 < zoomed < 4, f"fingers three times as far apart zoom by {zoomed}"
 
     def workers_are_refused(driver):
         """One sentence, and nothing else."""
