@@ -60,6 +60,33 @@ int techniques_of(const ArmPlan& arm) {
     return info ? info->techniques : 1;
 }
 
+namespace {
+
+std::string source_of(const CombinationPlan& plan) {
+    const std::string last = plan.of.empty() ? "" : plan.of.back();
+    const std::vector<std::string> others(plan.of.begin(), plan.of.end() - (plan.of.empty() ? 0 : 1));
+    const std::string of = others.empty() ? last : fmt::format("{} and {}", fmt::join(others, ", "), last);
+    switch (*plan.kind) {
+    case CombinationKind::mixture: return "the mixture of " + of;
+    case CombinationKind::ris:
+        return fmt::format("one of {} candidates of {}, resampled in proportion to {}", plan.candidates.value_or(1), of,
+            plan.target.value_or(target_product));
+    case CombinationKind::mis: break;
+    }
+    const bool power = plan.heuristic == MisHeuristic::power;
+    const char* by = !plan.weights.empty() ? "a weighted sum" : power ? "the power heuristic" : "the balance heuristic";
+    return fmt::format("{} of {}{}", by, of, plan.draw == MisDraw::one ? ", one of them a sample" : "");
+}
+
+}  // namespace
+
+std::string source_of(const ArmPlan& arm) {
+    if (arm.is_combination()) return source_of(arm.combination);
+    if (arm.plugin) return "the plugin " + *arm.plugin;
+    if (arm.exec) return "the program " + *arm.exec;
+    return arm.python ? "the Python sampler " + *arm.python : "";
+}
+
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
     const bool shines = experiment.fill[0] + experiment.fill[1] + experiment.fill[2] > 0;  // samplers miss only this
@@ -68,6 +95,7 @@ std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
 
 bool tells_s(const std::string& arm, double s, const Experiment& experiment) {
     if (s != experiment.s()) return true;
+    if (s == 0) return false;  // no surface has an exponent
     const ArmPlan* plan = experiment.find_arm(arm);
     const SamplerInfo* info = plan ? find_arm_info(plan->sampler) : nullptr;
     return !info || info->needs_s;

@@ -37,6 +37,10 @@ std::string why_no_evidence(const Experiment& experiment);
 /// Returns the directions that an arm draws per sample: 2 if it combines two techniques and N counts pairs.
 int techniques_of(const ArmPlan& arm);
 
+/// Returns what draws for an arm that is no built-in sampler: "the plugin libx.so", "the balance heuristic of sky and
+/// cosine"; "" for a built-in sampler.
+std::string source_of(const ArmPlan& arm);
+
 /// Returns the light of this scene that an arm cannot reach ("the fill"), so that it is biased here and its error stops
 /// falling with N; "" if it reaches all.
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment);

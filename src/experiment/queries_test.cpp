@@ -75,4 +75,19 @@ TEST(LightTables, AreWidenedAboutTheirCentreByWhatSetTakes) {
 }
 
 }  // namespace
+TEST(SourceOfAnArm, IsNamed) {
+    ArmPlan arm;
+    EXPECT_EQ(source_of(arm), "");
+    arm.python = "mine.py:sampler";
+    EXPECT_EQ(source_of(arm), "the Python sampler mine.py:sampler");
+    ArmPlan combined;
+    combined.combination = {.kind = CombinationKind::mis, .of = {"sky", "phong", "cosine"}};
+    EXPECT_EQ(source_of(combined), "the balance heuristic of sky, phong and cosine");
+    combined.combination.draw = MisDraw::one;
+    combined.combination.heuristic = MisHeuristic::power;
+    EXPECT_EQ(source_of(combined), "the power heuristic of sky, phong and cosine, one of them a sample");
+    combined.combination = {.kind = CombinationKind::ris, .of = {"cosine"}, .candidates = 8};
+    EXPECT_EQ(source_of(combined), "one of 8 candidates of cosine, resampled in proportion to product");
+}
+
 }  // namespace crescent::inline experiment

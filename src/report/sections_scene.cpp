@@ -121,12 +121,6 @@ std::string sample_counts(const ArmPlan& arm) {
     return html::join(all);
 }
 
-/// Returns what draws in place of a built-in sampler.
-std::string source_of(const ArmPlan& arm) {
-    if (arm.plugin) return "that of the plugin " + html::code(*arm.plugin);
-    return "that of the program " + html::code(arm.exec.value_or(""));
-}
-
 /// Returns whether the density depends only on the polar angle about one direction.
 bool plain(const ArmPlan& arm) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
@@ -152,7 +146,7 @@ PageSection densities(Page& page) {
     for (const ArmPlan& arm : arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
-            table.row({html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""),
+            table.row({html::heading(escape(arm.name)), words("that of " + escape(source_of(arm))), words(""), words(""),
                 words(sample_counts(arm))});
             continue;
         }

@@ -22,8 +22,9 @@ namespace crescent::plates {
 namespace {
 
 std::string formula_of(const std::string& arm, const Experiment& e, const crescent::formula::Value& value = {}) {
+    const ArmPlan* plan = e.find_arm(arm);
     const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
-    if (!info) return "p(ω) of a sampler from outside";
+    if (!info) return escaped(plan ? source_of(*plan) : arm);
     const std::string line = crescent::formula::pango(info->formula, value);
     return info->techniques > 1 ? line : "p(ω) = " + line;
 }
