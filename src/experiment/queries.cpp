@@ -67,11 +67,11 @@ std::string source_of(const CombinationPlan& plan) {
     const std::vector<std::string> others(plan.of.begin(), plan.of.end() - (plan.of.empty() ? 0 : 1));
     const std::string of = others.empty() ? last : fmt::format("{} and {}", fmt::join(others, ", "), last);
     switch (*plan.kind) {
-    case CombinationKind::mixture: return "the mixture of " + of;
-    case CombinationKind::ris:
-        return fmt::format("one of {} candidates of {}, resampled in proportion to {}", plan.candidates.value_or(1), of,
-            plan.target.value_or(target_product));
-    case CombinationKind::mis: break;
+        case CombinationKind::mixture: return "the mixture of " + of;
+        case CombinationKind::ris:
+            return fmt::format("one of {} candidates of {}, resampled in proportion to {}", plan.candidates.value_or(1),
+                of, plan.target.value_or(target_product));
+        case CombinationKind::mis: break;
     }
     const bool power = plan.heuristic == MisHeuristic::power;
     const char* by = !plan.weights.empty() ? "a weighted sum" : power ? "the power heuristic" : "the balance heuristic";

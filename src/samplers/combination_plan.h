@@ -25,15 +25,15 @@ enum class MisHeuristic { balance, power };
 enum class MisDraw { every, one };
 
 struct CombinationPlan {
-    std::optional<CombinationKind> kind;  // none: the arm is no combination
-    std::vector<std::string> of;          // arms, or samplers of samplers/all.h
-    std::optional<MisHeuristic> heuristic;
-    std::optional<MisDraw> draw;
-    std::vector<std::string> weights;         // a formula for each of `of`, see weight_formula.h
-    std::vector<std::string> probabilities;   // of draw = "one", likewise
-    std::vector<std::uint64_t> samples;       // directions of each in one sample of draw = "every"
-    std::optional<std::uint64_t> candidates;  // of ris
-    std::optional<std::string> target;        // of ris: target_product, target_brdf, an arm or a sampler
+    std::optional<CombinationKind> kind{};  // none: the arm is no combination
+    std::vector<std::string> of{};          // arms, or samplers of samplers/all.h
+    std::optional<MisHeuristic> heuristic{};
+    std::optional<MisDraw> draw{};
+    std::vector<std::string> weights{};         // a formula for each of `of`, see weight_formula.h
+    std::vector<std::string> probabilities{};   // of draw = "one", likewise
+    std::vector<std::uint64_t> samples{};       // directions of each in one sample of draw = "every"
+    std::optional<std::uint64_t> candidates{};  // of ris
+    std::optional<std::string> target{};        // of ris: target_product, target_brdf, an arm or a sampler
 };
 
 /// f L cos of the nearest light, without occlusion; f cos.
