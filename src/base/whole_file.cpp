@@ -1,3 +1,4 @@
+// The file without a name is one of O_TMPFILE, which linkat() gives a name.
 #include "base/whole_file.h"
 
 #include <cerrno>

@@ -146,8 +146,8 @@ PageSection densities(Page& page) {
     for (const ArmPlan& arm : arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
-            table.row({html::heading(escape(arm.name)), words("that of " + escape(source_of(arm))), words(""), words(""),
-                words(sample_counts(arm))});
+            table.row({html::heading(escape(arm.name)), words("that of " + escape(source_of(arm))), words(""),
+                words(""), words(sample_counts(arm))});
             continue;
         }
         table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),

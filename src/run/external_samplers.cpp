@@ -111,8 +111,9 @@ std::shared_ptr<const ExternalSampler> open(
     const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin, limits);
-        const auto copies = std::make_shared<Copies>(
-            [arm, limits] { return arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits); });
+        const auto copies = std::make_shared<Copies>([arm, limits] {
+            return arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits);
+        });
         refuse(copies->traits());
         return copies;
     } catch (const InputError& error) {

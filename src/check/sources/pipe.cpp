@@ -80,9 +80,8 @@ public:
             for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
                 add_row(asked(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
         }
-        query_samples(in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) {
-            out.wi[i] = d.wi, out.pdf[i] = d.pdf;
-        });
+        query_samples(
+            in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) { out.wi[i] = d.wi, out.pdf[i] = d.pdf; });
     }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
@@ -144,7 +143,8 @@ private:
         return 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights);
     }
     /// Appends a row of a request for a sample; u(k): its random numbers.
-    template <class U> void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
+    template <class U>
+    void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
         const auto numbers = static_cast<std::size_t>(hello_.traits.numbers);
         const std::size_t before = in.size();
         in.resize(before + 3 + numbers + context.size());
@@ -154,17 +154,16 @@ private:
         std::copy(context.begin(), context.end(), to + 3 + numbers);
     }
     /// Rows of w_o, u and the context; calls take(i, draw) for each row in order.
-    template <class Take> void query_samples(
-        const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
+    template <class Take>
+    void query_samples(const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
         const std::size_t given = columns_of_sample(lights), got = 4 + weights();
         std::vector<double> answers(count * got);
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
-            talk_.lines(
-                count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
-                });
+            talk_.lines(count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+            });
         for (std::size_t i = 0; i < count; ++i)
             take(i, drawn(std::span(answers).subspan(i * got, got), !hello_.blocks && delta[i]));
     }
