@@ -1,5 +1,6 @@
-// Each w_o by itself: what cannot be used is not compared; then one tree of both, two looks, and what is found is put
-// again to fresh draws of both. A and B draw from different streams.
+// At each w_o: unusable draws are left out, one tree is grown for both samplers, the first stage looks at the draws
+// twice, and each difference that it finds is tested again with fresh draws of both. A and B draw from different
+// streams.
 #include "check/against.h"
 
 #include <algorithm>
@@ -24,21 +25,21 @@ namespace crescent::check {
 namespace {
 
 constexpr std::array compared_by = {"same_distribution", "same_f", "variance"};
-constexpr std::uint32_t places_of_b = 1u << 15;  // B draws from streams that no A draws from
+constexpr std::uint32_t places_of_b = 1u << 15;  // B draws from streams that A never uses
 
-/// What a comparison finds of the distributions.
+/// Differences between the two distributions.
 struct Differences {
-    std::vector<std::pair<AgainstAnswer, AgainstAnswer>> found;  // at both stages
-    std::map<AgainstAnswer::Family, double> p;                   // the least, times their number
+    std::vector<std::pair<AgainstAnswer, AgainstAnswer>> found;  // significant at both stages
+    std::map<AgainstAnswer::Family, double> p;                   // least p-value times the number of members
 };
 
 auto questions_to(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b) {
     return [&](const std::function<void(const AgainstAnswer&)>& visit) { test_against(ground, a, b, visit); };
 }
 
-/// What the comparison of one w_o is made with.
+/// The settings of the comparison at one w_o.
 struct AgainstPlan {
-    CheckBudget budget, own;  // of both together; of each by itself
+    CheckBudget budget, own;  // of both samplers together; of each alone
     Levels levels;
     std::uint32_t seed = 1;
     bool expect_same = false;
@@ -46,7 +47,7 @@ struct AgainstPlan {
 
 AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same, std::size_t cases) {
     AgainstPlan out;
-    // A program answers for its own check too, which looks once: what is wrong at a first look is not ranked.
+    // The budget includes a check of each sampler alone, with one look. A sampler that fails that check is not ranked.
     TestSettings shared = settings;
     if (limited) shared.questions /= 2;
     out.budget = budget_of(shared, limited, cases);
@@ -205,7 +206,7 @@ private:
     }
 };
 
-/// CheckCases of the same w_o one after the other.
+/// Indices of the cases, grouped by w_o.
 std::vector<std::size_t> by_direction(std::span<const CheckCase> check_cases) {
     std::vector<std::size_t> order(check_cases.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -216,7 +217,7 @@ std::vector<std::size_t> by_direction(std::span<const CheckCase> check_cases) {
     return order;
 }
 
-/// The three verdicts of a w_o at which a sampler broke off.
+/// The three verdicts at a w_o at which a sampler failed to answer.
 std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const SamplerError& fault) {
     const bool slow = dynamic_cast<const SamplerTimeout*>(&fault);
     std::vector<Verdict> out;
@@ -233,7 +234,7 @@ std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const Sa
     return out;
 }
 
-/// What breaks off says which side it was. A sampler stays one for all of its cases.
+/// The cases with adapters that name the side in each error. A sampler keeps one adapter for all of its cases.
 std::vector<CheckCase> named_cases(std::span<const CheckCase> check_cases, const std::string& side) {
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     std::map<std::shared_ptr<const SamplerAdapter>, std::shared_ptr<const SamplerAdapter>> named;
@@ -245,7 +246,7 @@ std::vector<CheckCase> named_cases(std::span<const CheckCase> check_cases, const
     return out;
 }
 
-/// That of all: the worst of them.
+/// The worst state of the verdicts.
 State worst_state(const std::vector<Verdict>& verdicts) {
     for (State s : {State::wrong, State::error, State::inconclusive})
         if (std::ranges::any_of(verdicts, [s](const Verdict& v) { return v.state == s; })) return s;
@@ -263,7 +264,7 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     const bool serial = either([](const CheckCase& t) { return t.adapter->serial(); });
     const bool limited = either([](const CheckCase& t) { return t.adapter->limited(); });
     const AgainstPlan plan = plan_of(settings, limited, expect_same, a.size());
-    PerDirectionCache cache_a, cache_b;  // kept by one thread, where either is serial
+    PerDirectionCache cache_a, cache_b;  // used by one thread if either sampler is serial
     const auto one = [&](std::size_t i) {
         monitor.check();
         try {

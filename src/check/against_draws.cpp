@@ -1,6 +1,6 @@
-// Given how many draws of both fall into a node, those of A in its first half follow a hypergeometric law if both are
-// of one distribution, which is that of a sum of independent indicators (Vatutin and Mikhailov 1982): Bennett's
-// inequality holds with its variance at every count.
+// Given the number of draws of both in a node, the draws of A in its first half have a hypergeometric distribution if
+// both samplers have the same distribution. It is the distribution of a sum of independent indicators (Vatutin and
+// Mikhailov 1982), so Bennett's inequality holds with its variance at every count.
 #include "check/against_draws.h"
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace crescent::check {
 
 namespace {
 
-constexpr std::size_t kinds_before_ways = 2;  // nothing, directions
+constexpr std::size_t kinds_before_ways = 2;  // no sample, a direction
 constexpr double same_way = 1e-4;             // distance of unit vectors
 constexpr std::size_t drawn_kept = 256;
 
-/// What one draw is: -1 nothing, 0 a direction, 1 + k the k-th way.
+/// Decides which draws are usable, and which of them are directions of the density.
 class Sorter {
 public:
     Sorter(const AgainstSide& side, int technique)
@@ -112,7 +112,7 @@ CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const Che
 
 namespace {
 
-/// Draws of one technique of one side.
+/// Draws of one technique of one sampler.
 class AgainstTechnique {
 public:
     AgainstTechnique(const AgainstSide& side, const CommonGround& ground, int technique, AgainstDraws& to)
@@ -175,7 +175,7 @@ private:
         ++to_.node_by_set[static_cast<std::size_t>(leaf.coarse)][static_cast<std::size_t>(set)];
     }
 
-    /// f L cos / p of the draws in hand, or the weight that comes with them; summed over the techniques.
+    /// f L cos / p of the buffered draws, or the weight returned with them, summed over the techniques.
     void weigh(std::uint32_t from) {
         std::vector<std::size_t> at;
         std::vector<Vec3d> w;
@@ -218,7 +218,7 @@ std::string_view name_of(AgainstAnswer::Family family) {
 
 namespace {
 
-/// Counts of one node by side: in its first half, and in all.
+/// Counts of one node by sampler: in its first half, and in the whole node.
 struct NodeCounts {
     double a = 0, b = 0;
 };
@@ -237,11 +237,11 @@ std::vector<NodeCounts> counts_of(const Tree& tree, const AgainstDraws& a, const
     return out;
 }
 
-/// Two counts, each of so many: the difference of their shares, in draws of A given the sum of both.
+/// Two counts, each with its total: the difference of their shares, in draws of A given the sum of both.
 struct TwoShares {
     double difference = 0, variance = 0;  // of k_a
-    double per_share = 0;                 // what one of difference is in shares
-    double share = 0;                     // in both together
+    double per_share = 0;                 // change of the share for each unit of difference
+    double share = 0;                     // of both together
     TwoShares(double ka, double na, double kb, double nb) {
         const double n = na + nb, k = ka + kb;
         share = k / n;
@@ -257,7 +257,7 @@ AgainstAnswer answer_of(AgainstAnswer::Family family, int member, const TwoShare
     return out;
 }
 
-/// Means of replicates of both sides, by Welch's t-test.
+/// Compares means of replicates of both samplers by Welch's t-test.
 AgainstAnswer by_sets(AgainstAnswer::Family family, int member, const ReplicateMean<Replicates>& a,
     const ReplicateMean<Replicates>& b, double floor) {
     const double v = a.variance + b.variance;
@@ -323,7 +323,7 @@ void test_against(const CommonGround& g, const AgainstDraws& a, const AgainstDra
         const auto in_each = [&](const AgainstDraws& d, double n) {
             return std::min(s.share, 1 - s.share) * n * d.scrambled / d.independent / replicate_sets;
         };
-        // As for one sampler: a replicate's mean must be near normal.
+        // As for one sampler, the mean of a replicate must be nearly normal.
         if (!both || x.depth >= replicated_depth || std::min(in_each(a, all.a), in_each(b, all.b)) < least_count)
             continue;
         const auto row = static_cast<std::size_t>(x.row),
@@ -353,7 +353,7 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
         }
     });
     const std::vector<NodeCounts> counts = counts_of(g.tree, a, b);
-    std::vector<double> part(counts.size(), 1.0);  // what shows if it lies in this node
+    std::vector<double> part(counts.size(), 1.0);  // detectable missing part if it lies in this node
     std::vector<std::pair<double, double>> leaves;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         const TreeNode& x = g.tree.nodes()[i];
@@ -370,7 +370,7 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
             needed_by_bennett(floor_of_cut(x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) * s.per_share;
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;
-            // Of the node's draws; it lies across cells, half of it in one.
+            // Relative to the draws of the node; the missing part may overlap several cells, with half of it in one.
             const double missing = needed / (1 - share + 1e-300);
             const double of_all = std::max(all.a / a.independent, all.b / b.independent);
             if (missing <= share) part[half] = std::min(part[half], 2 * missing * of_all);

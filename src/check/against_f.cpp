@@ -1,6 +1,5 @@
-// f is compared within what a few roundings of the directions move it by. Variances are ranked by a test of their
-// difference that fails at both stages; where f is known at A's draws alone, B's variance follows from them by p_A /
-// p_B.
+// f is compared within the change that a few roundings of the directions cause. Variances are ranked if the test of
+// their difference fails at both stages. If f is known only at A's draws, B's variance follows from them by p_A / p_B.
 #include "check/against_draws.h"
 
 #include <algorithm>
@@ -17,7 +16,7 @@ namespace crescent::check {
 
 namespace {
 
-/// Where f of both is known. Of a file A it is known at its draws.
+/// Where f of both samplers is known. If A is a file, f is known only at its draws.
 struct SharedF {
     std::vector<Vec3d> wi;
     std::vector<double> a, b;
@@ -61,7 +60,7 @@ SharedF f_of_both(const AgainstCase& c) {
     return out;
 }
 
-/// What roundings of single precision move f by there.
+/// The change of f that rounding in single precision causes there.
 double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
     std::vector<Pair> at;
     for (int k = 0; k < 6; ++k) {
@@ -107,7 +106,8 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     v.message += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
 }
 
-/// The first delta part whose q times weight differs. A part that is drawn less than once in a pilot may be missing.
+/// The first delta part whose q times weight differs. A part that has less than one expected draw in the pilot may be
+/// missing.
 std::string differing_delta(const AgainstCase& c) {
     const auto power = [](const std::vector<DeltaPart>& parts, Vec3d w) {
         Vec3d sum{};
@@ -153,7 +153,7 @@ void compare_f(const AgainstCase& c, Verdict& v) {
 
 namespace {
 
-constexpr double alike_variances = 0.01;  // relative: less does not decide between samplers
+constexpr double alike_variances = 0.01;  // relative: a smaller difference does not matter for the choice of a sampler
 constexpr double interval_95 = 1.959964;
 
 /// Moments of weights with their standard errors.
@@ -165,18 +165,18 @@ struct WeightMoments {
         n = s.n, mean = s.mean, variance = sqr(s.sd);
         double m4 = 0;
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
-        // The second term is what the mean costs: alone where two values come equally often.
+        // The second term is the error of the mean. It is the only term if the weights take two values equally often.
         variance_se = std::sqrt(std::max(m4 - sqr(variance), 0.0) / n + 2 * sqr(variance / std::max(n - 1, 1.0)));
         const WeightTail tail = tail_of_weights(x);
         heavy = tail.heavy() || tail.open();
     }
-    /// No more than the rounding of p is left.
+    /// Whether the remaining variance is within the rounding of p.
     bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
 };
 
 void skip(Verdict& v, std::string message) { v.state = State::skipped, v.message = std::move(message); }
 
-/// The ratio with its interval, and which is smaller where both stages say so.
+/// Adds the ratio with its interval to the verdict, and the smaller variance if both stages agree.
 void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
     const double low = ratio * math::exp(-interval_95 * log_se), high = ratio * math::exp(interval_95 * log_se);
     v.evidence["ratio"] = ratio;
@@ -234,7 +234,7 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
     }
 }
 
-/// Draws of A in twenty groups, with what they say of B by p_A / p_B: E_B[X_B^2] = E_A[X_A^2 p_A / p_B].
+/// Draws of A in twenty groups, reweighted to B by p_A / p_B: E_B[X_B^2] = E_A[X_A^2 p_A / p_B].
 struct ReweighedDraws {
     static constexpr std::size_t groups = 20;
     struct Group {
@@ -250,7 +250,7 @@ struct ReweighedDraws {
     std::array<Group, groups> of{};
     Group all{};
     std::vector<double> x, others;
-    double lost = 0;  // draws with light at which p of B is 0
+    double lost = 0;  // draws with light where p of B is 0
 
     ReweighedDraws(const AgainstCase& c, int stage) {
         Source a(*c.a.check_case.adapter, 0, c.a.check_case.wo, c.a.check_case.light),
@@ -271,7 +271,7 @@ struct ReweighedDraws {
                 ++g->n, g->x += x[i], g->square += sqr(x[i]), g->other += others[i];
         }
     }
-    /// Of the log ratio, by the jackknife (Quenouille 1956).
+    /// Standard error of the log ratio by the jackknife (Quenouille 1956).
     double log_se() const {
         double square = 0;
         for (const Group& g : of) {
@@ -313,7 +313,7 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     v.message += " B's follows from the draws of A by p_A / p_B.";
 }
 
-/// What each sampler's own check says against a ratio of its variance.
+/// Whether the check of the sampler alone prevents a variance ratio.
 bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
     static constexpr std::array<std::string_view, 6> counts = {
         "support", "normalised", "density", "identity", "mean", "valid"};

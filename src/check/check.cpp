@@ -1,4 +1,4 @@
-// The engine's outcomes as one result: verdicts in order, what is expected of each, what there was no time for.
+// Combines the outcomes of the engine into one result: verdicts in order, expected states, and skipped w_o.
 #include "check/check.h"
 
 #include <algorithm>
@@ -23,22 +23,22 @@ using check::CheckBudget;
 using check::CheckOutcome;
 using check::Cut;
 
-/// Verdicts of each case, in the order of the list.
+/// Verdicts by case, in the order of the verdict list.
 using VerdictsByCase = std::vector<std::vector<Verdict>>;
 
-/// A heavy tail or an equal rank is no fault of a sampler.
+/// A heavy tail or an equal rank does not make a sampler wrong.
 bool may_stay_open(const Verdict& v) {
     return v.name == "tail" || v.name == "mean" || v.name == "efficiency" || v.evidence.contains("unmet_share");
 }
 
-/// Whether it is what is expected of a right sampler, or of a built-in arm here.
+/// Sets whether the state is the expected one, for a right sampler or for a built-in arm.
 void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
     const bool infinite = check_case.theory.tail_k && *check_case.theory.tail_k >= check::heavy_index;
     if (check_case.theory.wrong && *check_case.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
         v.why_expected = check_case.theory.why;
     } else if (infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
-        // Where p is 0, the light that makes the tail is not among the weights.
+        // Where p is 0, the weights do not include the light that causes the tail.
         v.expected = v.state == State::inconclusive || !reaches_all;
         v.why_expected = check_case.theory.why;
     } else if (!check_case.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
@@ -50,7 +50,7 @@ void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
     }
 }
 
-/// What the verdicts of a case that ended early say: the first of them, and the others.
+/// Messages of the verdicts of a case that ended early: of the first verdict, and of the others.
 struct AbortText {
     State state = State::error;
     std::string first, rest;
@@ -69,8 +69,8 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
     return {settings.accept_few ? State::skipped : State::inconclusive, message, message};
 }
 
-/// Every verdict of a case that ended early, but for `valid` where the first draws were seen. Notes what there was no
-/// time for.
+/// Sets all verdicts of a case that ended early, except `valid` if the first draws were examined. Records what was
+/// skipped.
 void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
     std::vector<Verdict>& verdicts, CheckResult& j) {
     const AbortText text = abort_text(cut, check_case, settings);
@@ -88,7 +88,7 @@ void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& 
     if (text.state != State::error) j.left_out.push_back(std::move(left));
 }
 
-/// The tests of the sampler as a whole ended early: said where they would be, at its first w_o.
+/// Reports at the first w_o that the tests of the whole sampler ended early.
 void cut_whole(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
     if (valid.state != State::right) return;
     const AbortText text = abort_text(cut, check_case, settings);
@@ -96,11 +96,11 @@ void cut_whole(const Cut& cut, const CheckCase& check_case, const TestSettings& 
     if (cut.why == Cut::Why::fault) valid.evidence["first_fault"] = cut.what;
 }
 
-/// Questions to a program for each w_o that belong to none of its estimates, at most: f at the draws of two baselines,
-/// seven turns of 512 samples each that are timed, the first draws, a rose. And for the call: corners, reciprocity.
+/// Upper bounds of the evaluations that no estimate includes. At each w_o: f at the draws of two baselines, seven timed
+/// turns of 512 samples, the first draws, and a rose. For the whole call: corners and reciprocity.
 constexpr std::size_t evaluations_beside = 16000, evaluations_for_all = 8000;
 
-/// CheckCases whose programs may be asked what is left of what they may be asked in all, less what follows.
+/// The cases with adapters limited to the remaining evaluations of a program, less those reserved for later steps.
 std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> check_cases, const TestSettings& settings) {
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     const auto w_o =
@@ -113,17 +113,17 @@ std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> check_cases,
     return out;
 }
 
-/// What is wrong, as far as the evaluations that are left tell.
+/// The cause of a wrong verdict, as far as the remaining evaluations allow.
 std::optional<check::Cause> cause_of(
     std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings) {
     if (!outcome.wrong()) return {};
     const std::vector<CheckCase> capped = with_what_is_left(check_cases, settings);
     try {
         return check::cause_of(capped, outcome);
-    } catch (const SamplerError&) { return {}; }  // they did not suffice, or it ended meanwhile
+    } catch (const SamplerError&) { return {}; }  // the limit was reached or the program ended
 }
 
-/// Verdicts of one sampler, handed to its cases.
+/// Assigns the verdicts of one sampler to its cases.
 void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings,
     VerdictsByCase& to, CheckResult& j) {
     const std::optional<check::Cause> cause = cause_of(check_cases, outcome, settings);
@@ -140,7 +140,7 @@ void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outc
         cut_whole(*outcome.whole_cut, check_cases[outcome.check_cases[0]], settings, to[outcome.check_cases[0]][0]);
 }
 
-/// Few w_o may be accepted, none may not.
+/// A result without a single examined w_o is an error, also with accept_few.
 void refuse_none(std::span<const CheckOutcome> outcomes, CheckResult& j) {
     const auto whole = [](const CheckOutcome& o) {
         return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
@@ -162,7 +162,7 @@ void count(const CheckOutcome& outcome, CheckResult& j) {
     j.evaluations += outcome.evaluations;
 }
 
-/// CheckCases beside each other; the call does nothing else while it takes times. What ended early stays so.
+/// Ranks the cases against each other. No other thread runs during the timing. Cases that ended early keep their state.
 void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const check::CheckSettings& settings, const ProgressMonitor& monitor, VerdictsByCase& verdicts) {
     std::vector<check::Efficiency> all = check::variances_of(check_cases, outcomes, settings, monitor);
@@ -179,8 +179,8 @@ void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> 
         }
 }
 
-/// Maps and weights by case. A program is asked for them in any case: what it is asked does not depend on what is
-/// written.
+/// Maps and weights by case. They are computed even if no output shows them, so that the queries to a program do not
+/// depend on the output.
 void draw_pictures(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const TestSettings& settings, CheckResult& j) {
     std::vector<std::vector<BinHistogram>> maps(check_cases.size());
@@ -196,7 +196,7 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
             weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.at[k]), o.tails[k]);
             try {
                 check::add_rose(check_cases[i], *weights[i]);
-            } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // it ended meanwhile
+            } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // the program ended
         }
     if (!settings.pictures) return;
     for (std::size_t i = 0; i < check_cases.size(); ++i) {
@@ -205,7 +205,7 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
     }
 }
 
-/// Fewer than these are not worth a verdict: a call with more than 18 w_o takes more in all.
+/// Fewer evaluations do not give a useful verdict, so a call with more than 18 w_o uses more in all.
 constexpr std::size_t least_evaluations = 200000;
 
 }  // namespace
@@ -213,7 +213,7 @@ constexpr std::size_t least_evaluations = 200000;
 CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
     if (settings.budget) return *settings.budget;
     if (limited) {
-        // A twelfth of all is for what belongs to no w_o, for the arms beside it and for causes.
+        // One twelfth is reserved for tests of the whole sampler, for baselines and for causes.
         const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
         const std::size_t beside = evaluations_beside + evaluations_for_all / std::max<std::size_t>(w_o, 1);
         return CheckBudget::limited(static_cast<double>(

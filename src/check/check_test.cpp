@@ -1,4 +1,4 @@
-// run_checks(): order of its verdicts, what is left of a sampler that breaks off or is too slow, budgets and levels.
+// run_checks(): order of the verdicts, partial results of a sampler that fails or is too slow, budgets and levels.
 #include "check/check.h"
 
 #include <cmath>
@@ -12,11 +12,11 @@
 namespace crescent {
 namespace {
 
-/// Lambert by the cosine, p times `factor`; a program that answers `rate` times a second and has `allowed` seconds.
+/// Lambert by the cosine, p times `factor`; a program that gives `rate` answers per second and has `allowed` seconds.
 class Program : public SamplerAdapter {
 public:
     double factor = 1, rate = 1e5, allowed = 0;
-    std::uint64_t breaks_at = ~std::uint64_t{0};  // after so many answers
+    std::uint64_t breaks_at = ~std::uint64_t{0};  // number of answers before it fails
 
     std::string name() const override { return "program"; }
     bool serial() const override { return true; }
@@ -83,7 +83,7 @@ TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
     EXPECT_LE(j.evaluations, j.questions);
 }
 
-/// The middle and the most grazing w_o come first; what there was no time for is inconclusive, but for `valid`.
+/// The middle and the most grazing w_o come first. w_o for which no time is left are inconclusive, except for `valid`.
 TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
     const auto program = std::make_shared<Program>();
     program->allowed = 10.5;  // 1,050,000 answers, two w_o
@@ -110,14 +110,14 @@ TEST(Judge, AcceptsFewButNotNone) {
     EXPECT_EQ(checked(none, true).state, State::inconclusive);
 }
 
-/// The w_o that were examined before stay; the first error says what happened.
+/// Results of earlier w_o are kept, and the first error is reported.
 TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
     const auto program = std::make_shared<Program>();
     program->breaks_at = 500000;
     const CheckResult j = checked(program);
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
-    EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // of its first draws
+    EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // from its first draws
     EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler broke off: it fell silent.");
     EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "it fell silent");
     EXPECT_EQ(verdict_at(j, 0, "density").message, "It could not be evaluated: the sampler broke off before.");

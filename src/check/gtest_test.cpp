@@ -1,4 +1,4 @@
-// The matchers for GoogleTest: one check each, failing or not, and one alpha over a suite.
+// The GoogleTest matchers: one check for each, on success and on failure, and one alpha over a suite.
 #include "check/gtest.h"
 
 #include <gtest/gtest-spi.h>
@@ -50,7 +50,7 @@ TEST(Matchers, CheckOnceAlsoWhereTheyFail) {
         once);
 }
 
-/// The second element has the address of the first: what was kept of one is never taken for another.
+/// The second element has the address of the first: the result of one element must not be used for another.
 TEST(Matchers, OfSeveralElementsDecideEachByItsOwnCheck) {
     const auto made = [](double factor) { return Counted{factor}; };
     const auto matcher = testing::Each(testing::ResultOf(made, IsARightSamplerBy(one_wo())));
@@ -88,7 +88,7 @@ TEST(SharedAlpha, SharesOfAllTestsSumToAlphaAtMost) {
     EXPECT_DOUBLE_EQ(sum, shared.spent());
 }
 
-/// Forty processes of one test each give out what one process of forty tests does.
+/// Forty processes of one test each use the same shares as one process of forty tests.
 TEST(SharedAlpha, SharesAreThoseOfTheWholeSuiteInEveryProcess) {
     double sum = 0;
     SharedAlpha one_process(0.01);

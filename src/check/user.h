@@ -1,23 +1,24 @@
-// Your own sampler, judged. A struct with
+// Checks of a user's sampler. The sampler is a struct with
 //
-//   sample(wo, u)   -> something with .wi and .pdf (and .weight, if it says f cos / p itself; and .delta: true, or the
-//   probability with
-//                      which a delta part was chosen, for a draw of one, whose .pdf is that probability and whose
-//                      .weight is there)
-//   pdf(wo, wi)     -> a number, 1/sr; left out: the sampler is checked by what is left
+//   sample(wo, u)   -> a struct with .wi and .pdf; optional: .weight, the value f cos / p; .delta, for a draw of a
+//   delta
+//                      part: true or its probability, which is .pdf too; .weight is then required
+//   pdf(wo, wi)     -> a number, 1/sr; optional: without it only the remaining tests are made
 //   f(wo, wi)       -> a number, 1/sr, or three, without the cosine; optional
-//   traits()        -> crescent::Traits: w_o on both sides, the index, random numbers of its own; optional
+//   traits()        -> crescent::Traits: w_o on both sides, the index, own random numbers; optional
 //
-// in plain floats or doubles: directions and u may be arrays, spans, const T* or structs that braces fill. u holds one
-// to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be written through references. An
-// environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. No SIMD, no base class:
+// in plain floats or doubles: directions and u may be arrays, spans, const T* or structs that braces initialise. u
+// holds one to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be output references.
+// An environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. SIMD or a base class is
+// not needed:
 //
 //   crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
 //
-// A pointer to one is checked as what it points to; sampler_of(sample, pdf, f) makes one of lambdas.
+// A pointer to a sampler is checked like the sampler; sampler_of(sample, pdf, f) makes a sampler from lambdas.
 //
-// Members that are const are called from many threads at once, others by one. What a sampler throws is an error, not a
-// fault of it; a std::optional that is empty, and false where wi and pdf are written through, is nothing drawn.
+// Members that are const are called by many threads at the same time, others by one. An exception of a sampler gives
+// the state "error", not "wrong". An empty std::optional, and false with output references, mean that there is no
+// sample.
 #pragma once
 
 #include <fmt/format.h>
@@ -29,13 +30,13 @@
 
 namespace crescent::user {
 
-/// Parameters that are directions alone.
+/// Whether all parameters are directions.
 template <class T> consteval bool are_directions() {
     return []<std::size_t... i>(std::index_sequence<i...>) { return (Direction<At<T, i>> && ...); }(
                std::make_index_sequence<count_of<T>>{});
 }
-/// Whether pdf takes directions and gives a number; whether f takes them and gives its channels; whether traits() is
-/// one; whether sample takes wo and random numbers; whether it gives a direction and a density.
+/// Whether pdf takes directions and returns a number; whether f takes them and returns its channels; whether traits()
+/// is valid; whether sample takes wo and random numbers; whether it returns a direction and a density.
 template <class S> consteval bool takes_directions() {
     if constexpr (!HasPdf<S>) return true;
     else {
@@ -88,7 +89,7 @@ template <class S> consteval bool gives_weights() {
     else if constexpr (requires(const Result<S> d) { d.f; }) return requires(const Result<S> d) { colour(d.f); };
     else return true;
 }
-/// Whether pdf and f, where the class names them, can be called at all.
+/// Whether pdf and f, if the class declares them, can be called.
 template <class S> consteval bool pdf_is_plain() { return HasPdf<S> || !names_pdf<S>(); }
 template <class S> consteval bool f_is_plain() { return HasF<S> || !names_f<S>(); }
 template <class S> consteval bool judgeable() {
@@ -101,7 +102,7 @@ template <class S> consteval bool judgeable() {
 template <class S>
 concept Judgeable = std::is_class_v<SamplerOf<S>> && judgeable<SamplerOf<S>>();
 
-/// What a struct lacks to be judged, said in a sentence when it does not compile.
+/// Reports what a struct lacks for a check as a compile-time message.
 template <class S> consteval bool must_be_judgeable() {
     static_assert(HasSample<S>,
         "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; else hand "
@@ -137,8 +138,8 @@ template <class S> consteval bool must_be_judgeable() {
     return judgeable<S>();
 }
 
-/// 3 where f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
-/// whether a draw comes with its weight; all this as the bench takes it.
+/// 3 if f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
+/// whether a draw includes its weight; and the resulting traits.
 template <class S> consteval int channels() {
     bool three = false;
     if constexpr (HasF<S>) three = Coloured<Bare<typename OfF<S>::Result>>;
@@ -179,12 +180,12 @@ template <class S> Traits traits_of(const S& s) {
 
 namespace crescent {
 
-/// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
+/// A user's struct as a SamplerAdapter. Members that are not const are called by one thread at a time.
 template <class Given> class UserSampler : public InProcessAdapter {
     using S = user::SamplerOf<Given>;
 
 public:
-    /// `name` is what messages call it; `sampler` may be a pointer to one.
+    /// `name` is used in messages; `sampler` may be a pointer.
     UserSampler(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler()); }
@@ -227,7 +228,7 @@ public:
 
 private:
     std::string name_;
-    mutable Given given_;  // called by one thread where a member is not const
+    mutable Given given_;  // called by one thread if a member is not const
     decltype(auto) sampler() const { return user::Sampler<Given>::of(given_); }
 
     static std::string text_of(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
@@ -249,8 +250,8 @@ private:
     }
 };
 
-/// Judges a sampler, or what a pointer points to, over a grid of w_o under an even light. TestSettings::thorough()
-/// looks harder, and takes minutes. Where `monitor` says stop, Interrupted is thrown.
+/// Checks a sampler, or the target of a pointer, over a grid of w_o under a uniform light. TestSettings::thorough()
+/// detects smaller faults and takes minutes. Throws Interrupted if `monitor` requests a stop.
 template <class S> CheckResult check_sampler(std::string name, S sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
     if constexpr (user::must_be_judgeable<user::SamplerOf<S>>()) {
@@ -262,7 +263,7 @@ template <class S> CheckResult check_sampler(std::string name, S sampler,
     }
 }
 
-/// A sampler of functions: lambdas, std::functions or pointers to functions in place of members.
+/// A sampler from functions: lambdas, std::functions or pointers to functions in place of members.
 template <class Sample, class Pdf> struct SampleAndPdf {
     Sample sample;
     Pdf pdf;
@@ -277,14 +278,15 @@ template <class Sample, class Pdf, class F> struct SamplePdfAndF {
     Traits known{};
     Traits traits() const { return known; }
 };
-/// For classes whose own members are overloaded, templates or of other names; what they take and give is as of members:
+/// For classes whose members are overloaded, templates or have other names; parameters and results are those of
+/// members:
 ///
 ///   check_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
 ///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
 template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits known = {}) {
     return {std::move(sample), std::move(pdf), known};
 }
-/// With f(wo, wi) as the third.
+/// The same with f(wo, wi).
 template <class Sample, class Pdf, class F>
     requires(!std::is_same_v<F, Traits>)
 SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits known = {}) {

@@ -1,5 +1,5 @@
-// A line is cut at its first '=' and at the ':' after it. Words are checked against the verdicts there are, arms
-// against those that are checked.
+// A line is split at its first '=' and at the next ':'. Words are compared with the known verdicts, and arms with those
+// that are checked.
 #include "check/waivers.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The sets. In `power` a case is a cell of kind and size; index / 20 counts the repetitions of a cell. Twelve families,
-// or the held-out ones, each with a parameter that can mismatch.
+// The sets. In `power` a case is a cell of kind and size; index / 20 counts the repetitions of a cell. It uses twelve
+// families, or the held-out ones, each with a parameter that can mismatch.
 #include "tests/calibration/cases.h"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ std::vector<std::pair<double, double>> grid_of(const CaseKey& key, Traits::WoDom
     return random_grid(d, asked, key.wo);
 }
 
-/// The w_o of the cases, without the samplers beside them.
+/// The w_o of the cases, without baselines.
 std::vector<Vec3d> directions_of(const std::vector<CheckCase>& check_cases) {
     std::vector<Vec3d> out;
     for (const CheckCase& t : check_cases)
@@ -85,7 +85,7 @@ Case make_power(const CaseKey& key) {
     return faulty_case(family, member, real, {kinds[cell / 5], sizes[cell % 5]}, key);
 }
 
-/// A fault with the families that can have it; none named: all for tuning.
+/// A fault with the families that can have it; if empty, all families for tuning.
 struct Choice {
     Fault fault;
     std::vector<std::string_view> of{};
@@ -110,7 +110,7 @@ const std::vector<Choice>& nameable() {
     return all;
 }
 
-/// Faults of every other kind.
+/// Faults of all other kinds.
 const std::vector<Choice>& other_kinds() {
     using K = FaultKind;
     const auto inner = [](Broken b) { return Fault{K::broken, 0, b}; };
@@ -174,7 +174,7 @@ StatedCase stated_case(const CaseKey& key) {
     StatedCase out{nullptr, {}, Real::f64, kinds[key.index % 5]};
     std::vector<const Family*> all;
     for (const Family& f : families()) {
-        // An even density has nothing to leak into, and none of its powers is another.
+        // A uniform density has no leak, and each of its powers is the same density.
         const bool even = f.name.starts_with("uniform") || f.name == "cone" || f.name == "ring";
         const bool can = out.kind == FaultKind::rotation ? f.name != "uniform sphere"
             : out.kind == FaultKind::leak                ? !f.name.starts_with("uniform")

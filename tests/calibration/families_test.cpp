@@ -1,5 +1,5 @@
-// Right families are right, by means that no engine uses: the density integrates to one by Gauss-Legendre panels or by
-// a mean over the family's own draws, and draws fall into bins as the density says.
+// Tests the right families without an engine: the density integrates to one by Gauss-Legendre panels or by a mean over
+// the family's own draws, and draws are distributed over bins as the density predicts.
 #include <boost/math/distributions/chi_squared.hpp>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace crescent::calibration {
 namespace {
 
-/// Every family at one member, in both precisions, at one w_o.
+/// Every family with one member, in both precisions, at one w_o.
 class EveryFamily : public testing::TestWithParam<std::tuple<std::size_t, int>> {
 protected:
     const Family& family = families()[std::get<0>(GetParam())];

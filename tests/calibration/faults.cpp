@@ -1,5 +1,5 @@
-// A fault wraps the functions of a right sampler. Shares that need a random number of their own get one more, behind
-// the sampler's. Caps have the mass that 2^18 draws give them: a relative error of 1 / sqrt(2^18 size).
+// A fault wraps the functions of a right sampler. Shares that need a random number use an additional one after those of
+// the sampler. Caps have their mass from 2^18 draws: a relative error of 1 / sqrt(2^18 size).
 #include "tests/calibration/faults.h"
 
 #include <cstring>
@@ -47,7 +47,7 @@ template <class F> Vec3<F> uniform(Domain domain, F u1, F u2) {
     return off_axis(Vec3<F>{0, 0, 1}, (domain == Domain::sphere ? 2 : 1) * u1, u2);
 }
 
-/// Of the pdf at a pair: what is claimed in place of p.
+/// The claimed pdf of a pair, given p.
 template <class F> F claimed(const Fault& fault, Vec3<F> wo, Vec3<F> wi, F p) {
     const auto m = [&] { return unit(wo + wi); };
     switch (fault.kind) {
@@ -62,7 +62,7 @@ template <class F> F claimed(const Fault& fault, Vec3<F> wo, Vec3<F> wi, F p) {
     }
 }
 
-/// Of a draw's pdf, a share that `chosen` says of.
+/// Applies a fault to the draw; only for the selected share of the draws.
 template <class F> void spoil(const Fault& fault, Drawn<F>& d) {
     if (fault.kind == FaultKind::nan) d.pdf = std::numeric_limits<F>::quiet_NaN();
     if (fault.kind == FaultKind::negative) d.pdf = -d.pdf;
@@ -75,7 +75,7 @@ bool needs_number(FaultKind kind) {
 }
 
 template <class F> struct FaultInjection {
-    Functions<F> draws, claims;  // those with the changed parameter, and those that pdf has
+    Functions<F> draws, claims;  // functions with the changed parameter, and functions of the pdf
     Fault fault;
     std::vector<PlaceOfFault> places;
     Domain domain;
@@ -87,14 +87,14 @@ template <class F> struct FaultInjection {
         if (fault.kind == FaultKind::nan_at_horizon && wi.z == 0) return std::numeric_limits<F>::quiet_NaN();
         return claimed(fault, wo, wi, claims.pdf(wo, wi));
     }
-    /// Faults at single places of w_o or of u.
+    /// Whether the fault occurs at this single w_o or u.
     bool breaks_at(Vec3<F> wo, const F* u) const {
         const F sin = std::hypot(wo.x, wo.y);
         return (fault.kind == FaultKind::nan_in_plane && wo.z == 0) ||
             (fault.kind == FaultKind::nan_near_pole && sin > 0 && sin < F(1e-3) && wo.z > 0) ||
             (fault.kind == FaultKind::nan_at_zero && u[0] == 0);
     }
-    /// The direction; pdf 0 where nothing is drawn.
+    /// The direction; pdf 0 for no sample.
     Drawn<F> direction(Vec3<F> wo, std::array<F, PrimarySample::most> u) const {
         if (fault.kind == FaultKind::one_number) u[1] = u[0];
         if (fault.kind == FaultKind::no_azimuth) u[1] = F(0.3125);
@@ -263,7 +263,7 @@ bool is_true_of(std::string_view kind, std::string_view family, std::string_view
 }
 
 bool names_cause(std::string_view cause, const std::vector<std::string>& texts) {
-    // A text names a cause if one of the cause's words is in it.
+    // A text names a cause if it contains one of the words of the cause.
     static const std::map<std::string_view, std::vector<std::string_view>> words = {{"constant", {"constant"}},
         {"cos_i", {"cos theta_i"}}, {"sin_i", {"sin theta"}}, {"half_vector_jacobian", {"w_o.m"}},
         {"half_vector_cosine", {"n.m"}}, {"mirrored", {"mirror", "reflection in"}},

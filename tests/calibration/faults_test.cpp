@@ -1,4 +1,4 @@
-// Each fault has the size that it claims, and streams of numbers are independent.
+// Each fault has its stated size, and streams of numbers are independent.
 #include "tests/calibration/faults.h"
 
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 constexpr int draws = 1 << 18;
 const Vec3d wo = unit(Vec3d{0.5, -0.3, 0.6});
 
-/// A right sampler and the same with a fault.
+/// A right sampler, and the same sampler with a fault.
 struct Twins {
     Sampler right, wrong;
     std::vector<PlaceOfFault> places;
@@ -50,7 +50,7 @@ TEST_P(EveryPowerFamily, AConstantScalesThePdfByItsSize) {
 TEST_P(EveryPowerFamily, ALeakMovesItsShareOfTheDraws) {
     const Twins t(GetParam(), {FaultKind::leak, 0.1});
     EXPECT_EQ(t.wrong.numbers, t.right.numbers + 1);
-    // The same numbers go to both: what differs was leaked.
+    // Both get the same numbers, so draws that differ are leaked.
     Rng dice = dice_of({"faults_test", 1, 0, "numbers"});
     const auto& a = std::get<Functions<double>>(t.right.functions);
     const auto& b = std::get<Functions<double>>(t.wrong.functions);
@@ -70,7 +70,7 @@ TEST_P(EveryPowerFamily, ARotationTurnsDrawsByItsAngle) {
     double most = 0;
     for (std::size_t k = 0; k < a.wi.size(); ++k)
         if (drawn(a.wi[k]) && drawn(b.wi[k])) most = std::max(most, std::sqrt(2 * versine(a.wi[k], b.wi[k])));
-    EXPECT_GT(most, 0.003);  // the axis may lie near the draws of a wide density
+    EXPECT_GT(most, 0.003);  // the axis may be near the draws of a wide density
     EXPECT_LT(most, 0.01 * (1 + 1e-6));
 }
 
@@ -169,7 +169,7 @@ TEST(Streams, TwoKeysShareNoNumbers) {
                     for (int k = 0; k < 4096; ++k, ++count)
                         seen.insert(static_cast<std::uint64_t>(d.uniform(0, 0x1p53)));
                 }
-    EXPECT_GE(seen.size() + 1, count);  // 2e10 pairs of 53 bits: 2e-6 equal ones by chance
+    EXPECT_GE(seen.size() + 1, count);  // 2e10 pairs of 53 bits: expected number of equal pairs 2e-6
 }
 
 TEST(Streams, PartsOfAKeyAreSeparated) {

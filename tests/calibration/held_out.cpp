@@ -1,4 +1,4 @@
-// Held-out families: they measure an engine and are never used for tuning it.
+// Held-out families: they are used to measure an engine, never to tune it.
 #include <fmt/format.h>
 
 #include "tests/calibration/axial.h"
@@ -90,12 +90,12 @@ struct SphericalCaps {
 };
 
 /// The projected solid angle of a rectangle overhead, h^2 dA / r^4: columns of x by a table of their integrals, exact
-/// within a column; y within it by 40 bisections.
+/// within a column; y within a column by 40 bisections.
 struct ProjectedRectangle {
     static constexpr auto name = "projected solid angle of a rectangle", parameter = "size";
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::hemisphere;
-    double x0, x1, y0, y1;  // over its height
+    double x0, x1, y0, y1;  // in units of its height
     static ProjectedRectangle drawn(Rng& d) {
         const double x = d.uniform(-2, 1), y = d.uniform(-2, 1), wide = d.log(0.2, 2);
         return {x, x + wide, y, y + d.log(0.2, 2)};
@@ -113,7 +113,7 @@ struct ProjectedRectangle {
         const double width = (x1 - x0) / n;
         const ProjectedRectangle r = *this;
         const auto column = [r](double x) { return upto(x, r.y1) - upto(x, r.y0); };
-        for (int k = 0; k < n; ++k) {  // Simpson's rule; any positive value is a right table
+        for (int k = 0; k < n; ++k) {  // Simpson's rule; any positive value gives a valid table
             const double a = x0 + k * width;
             sums.push_back(sums.back() + (column(a) + 4 * column(a + width / 2) + column(a + width)) / 6);
         }
@@ -177,8 +177,8 @@ struct Legendre {
     }
 };
 
-/// Clarberg, Jarosz, Akenine-Möller and Jensen 2005, "Wavelet Importance Sampling": a square of 2^levels cells warped
-/// level by level, wrapped round the sphere by equal area.
+/// Clarberg, Jarosz, Akenine-Möller and Jensen 2005, "Wavelet Importance Sampling": a square of 2^levels cells, warped
+/// level by level and mapped to the sphere with equal area.
 struct QuadTree {
     static constexpr auto name = "hierarchical warp", parameter = "power of the values";
     static constexpr Wo wo = Wo::none;

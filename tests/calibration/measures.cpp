@@ -1,5 +1,5 @@
 // Cells are leaves of a dyadic tree over (1 - cos, phi) about the mean of a first set of draws, cut at the median of
-// these or where none of them is; a second set is counted in them. p is integrated by stratified points, 2^20 in all.
+// these or in an empty region; a second set is counted in them. p is integrated by stratified points, 2^20 in total.
 #include "tests/calibration/measures.h"
 
 #include "tests/calibration/geometry.h"
@@ -24,7 +24,8 @@ Vec3d direction_of(Place p) {
     return {s * std::cos(phi), s * std::sin(phi), 1 - p.t};
 }
 
-/// Where to cut a cell: off the emptiest side, if that is a quarter of it or more; else at the median draw.
+/// The cut of a cell: next to the largest empty margin, if it is at least a quarter of the cell; otherwise at the
+/// median draw.
 struct Cut {
     bool along_t;
     double at;
@@ -47,7 +48,7 @@ Cut cut_of(const Cell& c, bool along_t) {
     return {along_t, v[v.size() / 2]};
 }
 
-/// Cuts the fullest cell until there are `count`.
+/// Cuts the cell with the most draws until there are `count` cells.
 std::vector<Cell> cells_about(const std::vector<Place>& draws, std::size_t count) {
     std::vector<Cell> all(1);
     all[0].inside = draws;
@@ -67,8 +68,8 @@ std::vector<Cell> cells_about(const std::vector<Place>& draws, std::size_t count
     return all;
 }
 
-/// Integral of p over a cell by n x n strata with two points in each, and its variance: of the pairs, and of one point
-/// of the largest p that the points or the first draws met, for an edge of p that no pair met.
+/// Integral of p over a cell by n x n strata with two points in each, and its variance: that of the pairs, plus one
+/// point with the largest p of the points and the first draws, for an edge of p that no pair shows.
 std::pair<double, double> integral_of(const Sampler& s, Vec3d wo, const Cell& c, int n, Rng& dice) {
     double sum = 0, variance = 0, largest = 0;
     for (const Place& draw : c.inside) largest = std::max(largest, draw.p);
@@ -142,7 +143,7 @@ Fit fit_of(const Sampler& s, Vec3d wo, int count, std::uint64_t seed) {
         fit.integral += mass;
         variance += error;
         const double due = mass * count, spread = due + error * sqr(double(count));
-        if (due < 10) continue;  // what falls where nothing is due shows in the integral
+        if (due < 10) continue;  // draws in cells with almost no expected draws show in the integral
         fit.chi2 += sqr(seen[k] - due) / spread;
         ++fit.degrees;
     }

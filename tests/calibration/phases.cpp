@@ -1,4 +1,4 @@
-// Phase functions and fibres: both sides of every w_o. Axis: the direction in which light goes straight on, -w_o.
+// Phase functions and fibres, for w_o on both sides. Axis: the direction of light that is not scattered, -w_o.
 #include <fmt/format.h>
 
 #include "tests/calibration/axial.h"
@@ -106,7 +106,7 @@ struct Tabulated {
     }
 };
 
-/// A logistic distribution cut to [-half, half]: its value and its inverse. d'Eon 2013, "Importance Sampling for
+/// A logistic distribution truncated to [-half, half]: its value and its inverse. d'Eon 2013, "Importance Sampling for
 /// Physically-Based Hair Fiber Models".
 template <class F> struct CutLogistic {
     F s, half;
@@ -131,7 +131,8 @@ struct Fibre {
     std::string text() const { return fmt::format("widths {:.3f}, {:.3f}", along, across); }
     Fibre stretched(double by) const { return {along * by, across * by}; }
     template <class F> Functions<F> in(Broken) const {
-        // theta + the angle of the mirror cone may leave [-pi/2, pi/2]; such a draw is reflected at the fibre's end.
+        // theta + the angle of the mirror cone may leave [-pi/2, pi/2]; such a draw is reflected at the end of the
+        // interval.
         const CutLogistic<F> m{F(along), pi_of<F> / 2}, n{F(across), pi_of<F>};
         const auto azimuth = [](Vec3<F> w) { return std::atan2(w.z, w.y); };
         const auto elevation = [](Vec3<F> w) { return std::atan2(w.x, std::hypot(w.y, w.z)); };

@@ -1,6 +1,6 @@
-// Results do not depend on threads: each case has streams of its own, named by its place in the call. A program has a
-// limited time: a few draws at every w_o come first, then the middle of the hemisphere and the most grazing w_o, then
-// the others as far as the time goes.
+// Results do not depend on the number of threads: each case has its own streams, selected by its index in the call. A
+// program has a limited time: a few draws at every w_o come first, then the w_o nearest to 45 degrees and the most
+// grazing one, then the others while time is left.
 #include "check/decide/check_sampler.h"
 
 #include <algorithm>
@@ -38,13 +38,13 @@ std::vector<CheckOutcome> grouped(std::span<const CheckCase> check_cases) {
     return out;
 }
 
-/// Built-in arms are made for one w_o each, under one light: special w_o are for samplers that take any.
+/// Built-in arms are made for one w_o and one light. Special w_o are tested only for samplers that take any.
 bool takes_any_wo(std::span<const CheckCase> check_cases, const CheckOutcome& o) {
     return std::ranges::all_of(
         o.check_cases, [&](std::size_t i) { return check_cases[i].adapter == check_cases[o.check_cases[0]].adapter; });
 }
 
-/// An estimate of f is not reciprocal. Of a sampler that is checked in turn, no w_o has been looked at yet.
+/// An estimate of f is not reciprocal. If a sampler is checked serially, no w_o has been checked before this call.
 bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const StreamKey& key) {
     if (std::ranges::all_of(o.at, [](const auto& at) { return at.empty(); })) {
         Source source(*check_case.adapter, 0, check_case.wo, check_case.light);
@@ -78,10 +78,10 @@ void look_at_whole(std::span<const CheckCase> check_cases, const CheckSettings& 
 /// One w_o of one sampler.
 struct Job {
     CheckOutcome* outcome;
-    std::size_t index;  // into its cases
+    std::size_t index;  // index into its cases
 };
 
-/// What `work` throws of a sampler from outside.
+/// Runs `work` and returns the error of an external sampler.
 template <class Work> std::optional<Cut> cut_of(const Work& work) {
     try {
         work();
@@ -93,9 +93,9 @@ template <class Work> std::optional<Cut> cut_of(const Work& work) {
     return {};
 }
 
-/// Numbers that cannot be used among a few draws.
+/// Unusable numbers among a few draws.
 std::optional<SmallFault> look_first(const CheckCase& check_case, const StreamKey& key) {
-    constexpr std::uint32_t few = 256;  // a program of 10 answers/s gives them at 12 w_o within five minutes
+    constexpr std::uint32_t few = 256;  // a program with 10 answers per second needs less than five minutes for 12 w_o
     SmallFault out{Family::values};
     const std::vector<PrimarySample> u = first_numbers(key, few, check_case.adapter->traits());
     std::vector<Draw> draws(u.size());
@@ -150,7 +150,8 @@ private:
         monitor_.check();
         const CheckCase& check_case = case_of(job);
         CheckBudget budget = check_case.adapter->limited() && settings_.limited ? *settings_.limited : settings_.budget;
-        if (check_case.theory.wrong) budget.stop_when_conclusive = false;  // a fault that is known is looked for
+        if (check_case.theory.wrong)
+            budget.stop_when_conclusive = false;  // a known fault is searched with the full budget
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {
@@ -164,8 +165,8 @@ private:
         monitor_.advance(1);
     }
 
-    /// What neither the explanation nor the report needs, of which there are megabytes at each w_o: of a right w_o all
-    /// but the numbers, unless pictures are drawn or the draws are all that is known of the density.
+    /// Frees memory that neither the explanation nor the report needs, several megabytes at each w_o. A right w_o keeps
+    /// only its numbers, unless pictures are drawn or the draws are the only evidence of the density.
     void forget(CheckAt& c, bool has_density) const {
         const auto free = [](auto&... all) { (std::remove_reference_t<decltype(all)>().swap(all), ...); };
         free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighed);
@@ -180,7 +181,7 @@ private:
         for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { look_at_whole(check_cases_, settings_, o); });
     }
 
-    /// The middle first, then the most grazing one: between them they meet most faults.
+    /// Moves the w_o nearest to 45 degrees to the front, then the most grazing one: together they show most faults.
     void order() {
         std::ranges::sort(
             jobs_, {}, [&](const Job& j) { return std::tuple(std::fabs(case_of(j).theta_deg - 45), index_of(j)); });
@@ -188,7 +189,7 @@ private:
         if (grazing != jobs_.end() && grazing > jobs_.begin()) std::rotate(jobs_.begin() + 1, grazing, grazing + 1);
     }
 
-    /// What the first draws show is kept where nothing else is known, or where the draws after them do not show it.
+    /// Keeps the fault of the first draws if the later draws do not show it or are missing.
     void keep(const Job& job, const std::optional<SmallFault>& fault) {
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
@@ -210,8 +211,8 @@ private:
         return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
     }
 
-    /// By one thread: first few draws at every w_o and what belongs to none, then each w_o that there is time for, as
-    /// far as the dearest one so far tells; the first is tried in any case.
+    /// Runs on one thread: first a few draws at every w_o and the tests of the whole sampler, then each w_o while time
+    /// is left. The cost of the most expensive w_o so far predicts the next one. The first w_o is always tried.
     void in_turn() {
         order();
         std::vector<std::optional<SmallFault>> looks(jobs_.size());

@@ -1,4 +1,5 @@
-// That a boundary lies flat is seen from where it mirrors to, or, if nothing is mirrored, by turning w_o about n.
+// A boundary is flat if it reflects to the mirror direction or, if it reflects nothing, if its refracted direction
+// rotates with w_o about n.
 #include "check/decide/small_tests.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 bool near(Vec3d a, Vec3d b) { return length(a - b) < delta_direction; }
 Vec3d mirrored(Vec3d wo) { return {-wo.x, -wo.y, wo.z}; }
 
-/// Where an index refracts w_o to; none where it reflects totally.
+/// The direction into which w_o is refracted; none for total reflection.
 std::optional<Vec3d> refracted(Vec3d wo, double below_over_above) {
     const double e = wo.z > 0 ? below_over_above : 1 / below_over_above, x = -wo.x / e, y = -wo.y / e,
                  rest = 1 - x * x - y * y;
@@ -40,9 +41,9 @@ std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, cons
     return out;
 }
 
-/// A flat boundary sends a turned w_o to where it sends w_o, turned.
+/// Whether the direction rotates with w_o about n, as at a flat boundary.
 bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
-    constexpr double angle = 2.4;  // radians: no symmetry of a pattern
+    constexpr double angle = 2.4;  // radians; no symmetry of a pattern
     if (!source.adapter.can_draw()) return false;
     const math::SinCos by = math::sincos(angle);
     const auto turned = [&](Vec3d w) { return Vec3d{by.cos * w.x - by.sin * w.y, by.sin * w.x + by.cos * w.y, w.z}; };
@@ -74,8 +75,8 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
         }
     }
     const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
-    if (across.size() > indices) return {};  // a boundary with another shape
-    if (askew) {                             // a boundary that refracts as a flat one mirrors as it, too
+    if (across.size() > indices) return {};  // a boundary of another shape
+    if (askew) {                             // a boundary that refracts as a flat one must also reflect as one
         const bool flat = std::ranges::any_of(
             across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
         if (!flat) return {};
@@ -93,7 +94,7 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
 
 namespace {
 
-/// q times the weight by channel, of the first channel alone where there is one.
+/// q times the weight by channel; a single channel is used three times.
 Vec3d carried(const Source& source, const Draw& d) {
     const double w = d.weight.value_or(0);
     return d.delta * (source.channels() == 3 ? d.weights : Vec3d{w, w, w});
@@ -104,8 +105,8 @@ bool alike_power(double a, double b) {
 }
 bool alike_power(Vec3d a, Vec3d b) { return alike_power(a.x, b.x) && alike_power(a.y, b.y) && alike_power(a.z, b.z); }
 
-/// What the way back carries over what comes: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach 1997, 5.2), and radiance is
-/// scaled by 1 / eta^2 either way. None where it is not known.
+/// The ratio of the power of the reverse path to that of the forward path: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach
+/// 1997, 5.2), and radiance is scaled by 1 / eta^2 in both directions. None if it is not known.
 std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
     const Vec3d wo = source.wo;
     if (wi.z * wo.z > 0) return near(wi, mirrored(wo)) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
@@ -115,7 +116,7 @@ std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
     return Vec3d{of(source.traits.eta->x), of(source.traits.eta->y), of(source.traits.eta->z)};
 }
 
-/// The power of a part and that of its way back, where both come in one piece.
+/// Compares the power of a part with that of its reverse path, if each is a single part.
 std::optional<SmallFault> power_back(
     const Source& source, const std::vector<DeltaPart>& all, const DeltaPart& p, const std::vector<Draw>& back) {
     const std::optional<Vec3d> due = due_back(source, p.wi);
@@ -138,7 +139,7 @@ std::optional<SmallFault> way_back(const Source& source, const std::vector<Delta
     if (!traits.reciprocal || traits.wo == Traits::WoDomain::none || !source.adapter.can_draw()) return {};
     for (const DeltaPart& p : parts) {
         if (p.wi.z < grazing_cosine && (traits.wo != Traits::WoDomain::both || p.wi.z > -grazing_cosine)) continue;
-        // Of the same kind: mirrored as w_o is to w_i, or passed on.
+        // Of the same kind: reflected if w_i is a reflection of w_o, else transmitted.
         const Vec3d wi = normalize(p.wi);
         std::vector<Draw> back = drawn_at(source, wi, 512, key);
         std::erase_if(

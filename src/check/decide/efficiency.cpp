@@ -1,4 +1,4 @@
-// Intervals are two standard errors in the logarithm. Times differ from run to run and are kept apart from the rest.
+// Intervals are two standard errors of the logarithm. Times vary between runs and are stored separately.
 #include "check/decide/efficiency.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ double Efficiency::high() const { return value() * math::exp(2 * math::hypot(rel
 
 namespace {
 
-/// Draws of a baseline. Of a program each costs an evaluation of f, and a variance to 3 % ranks well enough.
+/// Draws of a baseline. For a program each costs an evaluation of f, and a variance known to 3 % is enough for a rank.
 constexpr std::uint32_t baseline_draws = 1u << 15, baseline_draws_of_program = 1u << 12;
 
 std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKey& key) {
@@ -98,7 +98,7 @@ std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std
 
 namespace {
 
-/// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
+/// The time of one sample in one turn, ns; none if the sampler does not answer any more.
 std::optional<double> time_once(
     const CheckCase& check_case, std::span<const PrimarySample> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
@@ -141,16 +141,17 @@ void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, s
 
 namespace {
 
-/// What samplers that are ranked beside each other have in common.
+/// The surface, light and w_o that ranked samplers share.
 std::string company_of(const CheckCase& t) {
     std::string key = fmt::format("{:g} {:g} {} {}", t.theta_deg, t.azimuth_deg, t.brdf, t.lighting);
     for (const auto& [name, value] : t.parameters) key += fmt::format(" {}={:g}", name, value);
     return key;
 }
 
-/// Samplers by variance times time.
+/// Samplers ranked by variance times time.
 struct Ranks {
-    std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
+    std::vector<std::string> better, worse,
+        level;  // samplers with a smaller value, a larger value, and those that are not distinguished
 };
 
 Ranks ranks_of(
@@ -213,7 +214,7 @@ std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std
         v.message = "There are no weights to take a variance of.";
         if (e.weighed || !e.fault.empty())
             test_one_efficiency(e, check_cases, companies[company_of(check_cases[e.check_case])], v);
-        // A program that broke off while its f was evaluated for a baseline: said where it would be ranked.
+        // A program failed while its f was evaluated for a baseline: reported where it would be ranked.
         if (check_cases[e.check_case].baseline && !e.fault.empty())
             out[checked].state = State::error, out[checked].message = v.message;
     }

@@ -1,4 +1,4 @@
-// A tail is heavy where its index is at least 1/2 with its interval, open where the interval contains 1/2.
+// A tail is heavy if the interval of its index is at or above 1/2, and open if the interval contains 1/2.
 #include "check/decide/tail.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ std::optional<statistics::Tail> fit_of(std::span<const double> x) {
     return upper && !may_be_heavy(*upper) ? upper : tail;
 }
 
-/// Points of one technique with weights beyond the largest drawn are appended; what all points hold of the integral.
+/// Appends the points of one technique whose weights exceed the largest drawn; returns the integral over all points.
 double find_unseen(const CheckAt& c, std::vector<WeighedPoint>& unseen) {
     const std::vector<double>& x = c.observations.weights;
     if (x.empty() || c.plan->estimates) return 0;
@@ -67,12 +67,12 @@ void note_unseen(std::vector<WeighedPoint> unseen, WeightTail& to) {
 
 double standard_error(const statistics::Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
 
-/// Draws whose mean has a standard error of 1 %.
+/// Number of draws whose mean has a standard error of 1 %.
 double draws_for_1_percent(const statistics::Spread& s) {
     return s.mean > 0 ? std::max(s.sd * s.sd / (s.mean * s.mean) / 1e-4, 1.0) : 1;
 }
 
-/// The fit to the largest weights, or that there is nothing to fit.
+/// Describes the fit to the largest weights, or why there is none.
 void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) {
     if (!t.fit) {
         v.evidence["times_largest"] = t.times_largest;
@@ -100,7 +100,7 @@ void describe_unseen(const WeightTail& t, Verdict& v) {
         "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
         "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
         100 * share, 196 * t.unseen_error / t.due, t.spread.n, t.spread.largest, t.half_chance);
-    constexpr double within_reach = 64;  // times as many draws; a thorough check makes twelve times as many
+    constexpr double within_reach = 64;  // times the number of draws; a thorough check has twelve times as many
     const double times = t.half_chance > 0 ? 1 / (t.half_chance * t.spread.n) : 1e300;
     if (times <= within_reach) v.next = {NextStep::Kind::more_draws, std::max(times, 2.0)};
     else v.next.kind = NextStep::Kind::heavier_pdf;
@@ -187,7 +187,7 @@ void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
         v.message += "Heavy tail or not: the interval of k contains 1/2, from where on the variance is infinite.";
-        // The tail of n draws has 3 sqrt(n): the error of k falls with the fourth root of n.
+        // The tail of n draws has 3 sqrt(n) weights, so the error of k falls with the fourth root of n.
         const double tails = 4 * t.fit->se * t.fit->se / std::max(sqr(t.fit->k - heavy_index), 1e-4);
         v.next = {NextStep::Kind::more_draws, std::max(sqr(tails), 2.0)};
     } else {

@@ -1,4 +1,4 @@
-// Streams, Sobol nets, the chart, the tree and the integrals, against closed forms.
+// Streams, Sobol nets, the chart, the tree and the integrals, compared with closed forms.
 #include <gtest/gtest.h>
 #include <set>
 
@@ -46,7 +46,7 @@ TEST(CheckStreams, GiveNumbersThatNoFloatRoundsToOne) {
     EXPECT_EQ(single_number(unit_number(0)), 0x1p-24);
 }
 
-/// Points per cell of all elementary intervals of one shape of a net of 2^m points.
+/// Largest number of points in a cell over all elementary intervals of one shape, for a net of 2^m points.
 int most_in_a_cell(int d0, int d1, int bits0, int bits1, int m, std::uint32_t seed0, std::uint32_t seed1) {
     std::vector<int> count(std::size_t{1} << (bits0 + bits1));
     int most = 0;

@@ -1,4 +1,4 @@
-// Points go through the sampler in batches of whole cells.
+// The points are evaluated in batches of whole cells.
 #include "check/estimate/integrals.h"
 
 #include <algorithm>
@@ -28,14 +28,15 @@ void LightIntegrals::add(const LightIntegrals& o) {
 
 double flux_factor(const Source& source, Vec3d wi, int channel) {
     if (source.wo.z * wi.z >= 0 || source.traits.importance) return 1;
-    if (!source.traits.eta) return source.unscaled ? 1 : 0;  // 0: not known: what is reflected alone is compared with 1
+    if (!source.traits.eta)
+        return source.unscaled ? 1 : 0;  // 0: unknown, so only the reflected part is compared with 1
     const double eta = channel_of(*source.traits.eta, channel);
     return source.wo.z > 0 ? eta * eta : 1 / (eta * eta);
 }
 
 namespace {
 
-/// The grid of one leaf: rows x columns cells of two points each.
+/// The grid of one leaf: rows x columns cells with two points each.
 struct Grid {
     std::uint32_t leaf = 0;
     int rows = 1, columns = 1;
@@ -43,8 +44,8 @@ struct Grid {
     int cells() const { return rows * columns; }
 };
 
-/// How the points of a pass are shared out: two or four to each leaf, then a part evenly, the rest by the spread of p,
-/// edges worth more. No more than `points` in all where there are two for each leaf.
+/// Distributes the points of a pass: two or four to each leaf, a part evenly, and the rest by the spread of p, with
+/// more points at edges. At most `points` in all if that is at least two for each leaf.
 std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     const std::vector<Leaf>& leaves = plan.tree.leaves();
     const auto worth = [&](const Leaf& leaf) {
@@ -52,10 +53,10 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     };
     double sum = 1e-300;
     for (const Leaf& leaf : leaves) sum += worth(leaf);
-    const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs a leaf
+    const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs in each leaf
     const double rest = std::max(points / 2.0 - least * static_cast<double>(leaves.size()), 0.0);
     std::vector<Grid> out(leaves.size());
-    double due = 0;  // what is left of parts of a pair
+    double due = 0;  // accumulated fractions of a pair
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const ChartRect& rect = plan.tree.rect(leaves[l]);
         const double share =
@@ -76,7 +77,7 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
 
 class Pass {
 public:
-    /// lost_in: leaves where light was found lost before.
+    /// lost_in: leaves in which lost light was found before.
     Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key, std::vector<std::size_t> lost_in)
         : source_(source), plan_(plan), of_f_(of_f && source.has_f()), stream_(key) {
         out_.light.lost_in = std::move(lost_in);
@@ -113,7 +114,7 @@ private:
     std::vector<Vec3d> w_, f_;
     std::vector<double> p_, mis_;
 
-    /// f |cos| L there, of three channels their sum; 0 where p or another technique reaches.
+    /// f |cos| L at a point, summed over three channels.
     double lit_at(std::size_t at) const {
         const Vec3d f = f_[at];
         const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
@@ -125,8 +126,8 @@ private:
         return lit > 0 && source_.reached_otherwise(w_[at]) ? 0 : lit;
     }
 
-    /// A thin region where p is 0 is met by a few points, too few to test. In the leaves where p was 0 somewhere,
-    /// points of their own measure what is lost.
+    /// A thin region where p is 0 contains only a few points, too few for a test. Separate points measure the lost
+    /// light in the leaves that have a point with p = 0.
     void measure_lost() {
         std::vector<std::size_t>& in = out_.light.lost_in;
         std::sort(in.begin(), in.end());
@@ -202,7 +203,7 @@ private:
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
     }
 
-    /// Of a pair: values of h p, and of h^2 p times k.
+    /// For a pair of points: values of h p, and of h^2 p times k.
     void add_to_bands(std::size_t at, std::array<double, 2> value, const double (&second)[2], double k) {
         for (std::size_t axis = 0; axis < chart_axes; ++axis) {
             const std::size_t i = band_of(chart_[at], axis), j = band_of(chart_[at + 1], axis);
@@ -221,8 +222,8 @@ private:
         for (std::size_t q = 0; q < integrands; ++q) out_.known_to[q] += unknown * std::fabs(h[q]);
     }
 
-    /// Where the points of a leaf look alike beside another density, their pairs cannot show a strip of it; one point
-    /// in K_l may be of it and not have been met (the rule of succession).
+    /// If the points of a leaf have similar values and the leaf is next to another density, their pairs cannot show a
+    /// strip of that density; one of K_l points may lie in such a strip (the rule of succession).
     void allow_strip(const Leaf& leaf, LeafIntegral& to) {
         const double k = to.per_point, v = k * k * leaf.q * leaf.q / 2;
         const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), off = middle - plan_.middle;

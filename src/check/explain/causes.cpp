@@ -1,5 +1,5 @@
-// Candidates are tried in the order of their likelihood; the first that passes the check in place of p is the cause,
-// unless another passes that draws tell no better.
+// Tries candidates in order of likelihood. The first that passes the check in place of p is the cause, unless another
+// one passes that the draws cannot distinguish from it.
 #include "check/explain/causes.h"
 
 #include <algorithm>
@@ -17,21 +17,22 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t most_places = 2, most_checks = 4;
-constexpr double least_lead = 8;  // nats over all draws by which a cause beats another: e^-8
+constexpr double least_lead = 8;  // lead in nats over all draws at which a cause is preferred: e^-8
 constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
-/// Shares of the divergence that are enough where nothing explains all of it: of frames, in which a table that is read
-/// in another order is not wholly known; of what has a fitted number, which replicates know better than the fit.
+/// Shares of the divergence that are sufficient if no cause explains all of it: for a frame, because a table that is
+/// read in another order may not be known exactly; for a fitted number, because replicates are more precise than the
+/// fit.
 constexpr double most_of_it = 0.4, nearly_all = 0.9;
-/// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and a
-/// likelihood from that of p for what explains a part.
+/// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and by which
+/// the likelihood must exceed that of p for a partial cause.
 constexpr double clear_errors = 8;
 
-/// A candidate, with what is said of it once it has passed.
+/// A candidate, and a function that describes it as a cause.
 struct Candidate {
     Hypothesis hypothesis;
     std::function<Cause(const Hypothesis&)> make_cause{};
-    double in_part = 2;  // named too if it explains this share of the divergence; above 1: only if it passes
-    int plainness = 0;   // of two that say the same the plainer is named
+    double in_part = 2;  // also named if it explains this share of the divergence; above 1: only if it passes
+    int plainness = 0;   // of two equivalent candidates the one with the larger value is named
 };
 
 std::optional<Candidate> constant_candidate(std::span<const Place> places) {
@@ -114,7 +115,7 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
 }
 
 Candidate candidate_of_power(FactorHypothesis f) {
-    Candidate out{f.hypothesis};  // much that is no power is nearly one
+    Candidate out{f.hypothesis};  // many densities that are no power of p are nearly one
     out.make_cause = [f](const Hypothesis&) {
         return Cause{"p", f.exponent, f.error,
             fmt::format("Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
@@ -171,7 +172,7 @@ void sort_by_gain(Candidates& all) {
     std::ranges::sort(all, std::greater<>(), [](const Candidate& c) { return c.hypothesis.gain; });
 }
 
-/// Causes without a number of their own but a constant.
+/// Causes without a fitted number except a constant.
 Candidates plain_candidates(std::span<const Place> places) {
     Candidates out;
     add_if(out, constant_candidate(places));
@@ -182,7 +183,7 @@ Candidates plain_candidates(std::span<const Place> places) {
     return out;
 }
 
-/// Causes with an angle, an exponent or a share that is fitted.
+/// Causes with a fitted angle, exponent or share.
 Candidates fitted_candidates(std::span<const Place> places) {
     Candidates out;
     if (places[0].traits.wo == Traits::WoDomain::none)
@@ -201,7 +202,7 @@ Candidates fitted_candidates(std::span<const Place> places) {
     return out;
 }
 
-/// The one that passes, if none that is as likely passes too.
+/// The candidate that passes, if no other of similar likelihood passes too.
 std::optional<Cause> passing(Candidates& all, std::span<const Place> places, bool& several) {
     Candidate* found = nullptr;
     std::size_t checks = 0;
@@ -228,7 +229,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
     return found->make_cause(found->hypothesis);
 }
 
-/// What explains most of a difference that nothing explains wholly, by twice as much as anything else.
+/// A cause for most of a difference that no candidate explains completely, at least twice as much as any other.
 std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     Candidate* best = nullptr;
     for (Candidate& c : all) {
@@ -246,7 +247,7 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     return best->make_cause(best->hypothesis);
 }
 
-/// What the sampling map draws over p, by its derivatives at a few points of each place.
+/// The density of the sampling map over p, from its derivatives at a few points of each place.
 std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     std::vector<KnownRatio> out;
     for (const Place& place : places) {
@@ -258,7 +259,7 @@ std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     return out;
 }
 
-/// A constant or factor that nine of ten points of the map show: without noise, so that nothing is as likely.
+/// A constant or factor at nine of ten points of the map. They have no noise, so no other cause is as likely.
 std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<const Place> places) {
     const std::vector<Factor> factors = factors_for(places[0].traits, places[0].check_case->light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
@@ -278,7 +279,8 @@ std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<
     return candidate->make_cause(candidate->hypothesis);
 }
 
-/// What is drawn is at least what the map draws at one u: p over that is nowhere below a constant that p has too much.
+/// The density of the draws is at least that of the map at one u, so p over the latter is nowhere below a constant
+/// factor of p.
 bool can_be_constant(std::span<const KnownRatio> ratios, const Cause& constant) {
     const double off = std::fabs(math::log(constant.exponent));
     double below = 0;
@@ -303,13 +305,14 @@ std::optional<Cause> explained_by(std::span<const Place> places) {
     return in_part(plain, places);
 }
 
-/// Draws that cannot be used, and draws where p is 0, are all that masses differ by: their own findings say so.
+/// Whether unusable draws and draws where p is 0 explain the difference of the masses: these have their own findings.
 bool odd_draws_explain(std::span<const Place> places) {
     bool any = false;
     for (const Place& place : places) {
         const DrawChecks& c = place.at->observations.checks;
         const auto share = [](std::uint64_t a, double of) { return static_cast<double>(a) / std::max(of, 1.0); };
-        // Unusable draws are counted among all; where p is 0 only some of those that pdf(w) contradicts are looked at.
+        // Unusable draws are counted among all draws. Where p is 0, only a part of the draws that contradict pdf(w) is
+        // compared.
         const double unusable =
                          share(c.invalid.times, static_cast<double>(c.looked_at) + place.at->observations.scrambled),
                      at_zero = share(c.zero.times, static_cast<double>(c.odd_compared)) *

@@ -1,4 +1,4 @@
-// Small samplers with one fault each, and the cause that is named for it; and faults for which none may be named.
+// Small samplers with one fault each and the named cause, and faults for which no cause may be named.
 #include "check/explain/causes.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double pi = two_pi / 2;
 
-using Sample = std::function<Vec3d(Vec3d wo, const PrimarySample& u)>;  // {} where nothing is drawn
+using Sample = std::function<Vec3d(Vec3d wo, const PrimarySample& u)>;  // {} for no sample
 using Density = std::function<double(Vec3d wo, Vec3d wi)>;
 
 struct Made : SamplerAdapter {
@@ -184,7 +184,7 @@ TEST(CheckCauses, NamesWhatIsWrongWithWeights) {
 }
 
 TEST(CheckCauses, NamesNoneWhereNothingOnTheListIsWrong) {
-    // A density with a bump, and one that is 5 % off over an eighth of the sphere.
+    // A density with a bump, and one with an error of 5 % over an eighth of the sphere.
     const auto bump = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (1 + 0.3 * math::sincos(9 * w.x).sin); };
     const auto patch = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (w.x > 0 && w.y > 0 ? 1.05 : 1.0); };
     for (const Density& p : {Density(bump), Density(patch)}) {

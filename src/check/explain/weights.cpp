@@ -1,4 +1,4 @@
-// Fresh draws at up to three w_o where a question on them failed.
+// Uses fresh draws at up to three w_o where a test of them failed.
 #include "check/explain/factors.h"
 
 #include <algorithm>
@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t most_directions = 3;
 constexpr std::uint32_t draws_to_compare = 512;
-constexpr double agrees_to = 2e-3;  // of a constant, relative
+constexpr double agrees_to = 2e-3;  // relative, for a constant
 
 using ByChannel = std::array<double, 3>;
 
-/// Of one draw: what came with it, and what is due.
+/// For one draw: the returned and the expected value.
 struct Compared {
     Vec3d wo{}, wi{};
     double pdf = 0, p = 0;
@@ -132,7 +132,7 @@ std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
     return out;
 }
 
-/// eta^2 seen from w_o's side, and the cosines, as reciprocity shows them: once for each direction.
+/// Factors eta^2, in the orientation of w_o, and cosines that reciprocity reveals, once for each direction.
 std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
     const Traits traits = check_case.adapter->traits();
     const std::vector<KnownRatio> ratios = reciprocity_ratios(check_case);

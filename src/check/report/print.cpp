@@ -1,5 +1,5 @@
-// The terminal's table shows the worst state over all w_o; JSON and JUnit have every verdict. What takes time goes into
-// the timing alone, so that a result has the same bytes each time.
+// The table of the terminal shows the worst state over all w_o; JSON and JUnit contain every verdict. Times are only in
+// the timing file, so that a result always has the same bytes.
 #include "check/report/print.h"
 
 #include <array>
@@ -48,7 +48,7 @@ std::string rows_of(const CheckResult& result) {
 }
 
 std::string expected_ones(const CheckResult& result) {
-    std::map<std::string, int> lines;  // told once each, with how often
+    std::map<std::string, int> lines;  // number of cases by line
     for (const Verdict& v : result.verdicts)
         if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
             ++lines[fmt::format(
@@ -167,7 +167,7 @@ std::string verdict_junit(const CheckResult& result) {
     return junit_text(suite);
 }
 
-// ---- The words of each front end for one step stand side by side.
+// ---- The terms of each front end for a next step.
 
 namespace {
 

@@ -1,4 +1,4 @@
-// Each sentence is computed from the numbers of the finding alone. w_o is named by the verdict that it stands in.
+// Each sentence is computed only from the numbers of the finding. The verdict that contains it names w_o.
 #include "check/report/sentences.h"
 
 #include <algorithm>
@@ -49,8 +49,8 @@ std::pair<double, double> sums_below(const CheckAt& c, int node) {
     return {a.first + b.first, a.second + b.second};
 }
 
-/// A half of a node against what p expects there, given the draws in the whole node. The half with the smaller share is
-/// named: there the deviation is larger.
+/// Compares one half of a node with the expectation of p, given the draws in the whole node. It names the half with the
+/// smaller share, where the relative deviation is larger.
 std::string node_sentence(const CheckAt& c, int node, const Answer& a) {
     const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
     const auto whole = sums_below(c, node), first = sums_below(c, x.child), second = sums_below(c, x.child + 1);
@@ -97,7 +97,7 @@ std::string light_sentence(const Answer& a, Family family, bool of_three) {
         with_error(1 + a.difference / a.expected, half / a.expected), channel_of(a, of_three));
 }
 
-/// Whole sums.
+/// The sentence of a whole sum.
 std::string sum_sentence(const Finding& f, const Answer& a) {
     const double half = interval * a.sd;
     switch (f.first.family) {
@@ -189,7 +189,7 @@ std::string sentence_of(const SmallFault& f, int numbers) {
 
 namespace {
 
-/// The least p-value of a verdict's families, and how many of them were tested.
+/// The least p-value of the families of a verdict, and the number of families that were tested.
 std::pair<double, int> least_p(const CheckAt& c, std::string_view verdict) {
     std::pair<double, int> out{1, 0};
     for (const Answer& a : c.answers)
@@ -230,8 +230,8 @@ std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
     return "";
 }
 
-// ---- Without pdf(w) the draws are compared with f alone, by their weights; where these are missing too, nothing says
-// whether the draws are right.
+// ---- Without pdf(w) only the weights of the draws are compared with f; if there are no weights either, the draws
+// cannot be tested.
 
 namespace {
 
@@ -262,7 +262,7 @@ void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     }
 }
 
-/// A file says how its rows were used, and how many would do.
+/// Describes how the rows of a file were used, and how many rows are needed.
 void note_rows(const CheckAt& c, Verdict& v) {
     if (v.name == "density") {
         v.evidence["rows_compared"] = c.observations.independent;

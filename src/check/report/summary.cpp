@@ -1,5 +1,5 @@
-// Verdicts of one arm, name and state are one finding, told by the one that is furthest off; the other sentences follow
-// with the w_o at which they were said.
+// Verdicts of one arm with equal name and state form one finding, described by the one with the largest deviation.
+// Other sentences follow with their w_o.
 #include "check/report/summary.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::map<Key, std::set<std::string>> left_out_of(const CheckResult& j) {
 
 struct Count {
     std::size_t cases = 0;
-    bool by_wo = true;  // they differ by w_o alone
+    bool by_wo = true;  // whether they differ only by w_o
 };
 
 std::map<std::string, Count> count_cases(const CheckResult& j) {
@@ -51,7 +51,7 @@ void add(Finding& f, const Verdict& v) {
     if (!f.worst || v.size > f.worst->size) f.worst = &v;
 }
 
-/// What a verdict says beyond what the worst of its finding says already.
+/// The sentences of a verdict that the worst verdict of its finding does not have.
 std::string without_repeats(const Verdict& v, const std::set<std::string>& already) {
     std::string out;
     for (const std::string& sentence : sentences_of(describe(v)))
@@ -72,7 +72,7 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
     }
 }
 
-/// The cause that is named for the worst verdict, or for another wrong one of the same arm, best of the same name.
+/// The cause of the worst verdict or of another wrong verdict of the same arm, preferably with the same name.
 std::string cause_of(const Finding& f, const CheckResult& j) {
     std::string out = f.worst->cause;
     for (const bool of_name : {true, false})
@@ -196,7 +196,7 @@ std::string in_one_line(std::string text) {
     return text;
 }
 
-/// What and how large, where, and the cause: a line each.
+/// One line each for the message, the place and the cause.
 std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
     if (f.state == State::error) return {in_one_line(describe(f, FrontEnd::cpp))};
     std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->message))};
@@ -205,7 +205,8 @@ std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
     return out;
 }
 
-/// The step of the first finding: a wrong one is looked at alone, an open one has what would settle it.
+/// The next step of the first finding: a check of one w_o if it is wrong, the step of the verdict if it is
+/// inconclusive.
 std::string next_step_of(const Finding& f) {
     const Verdict& v = *f.worst;
     std::string message = in_one_line(settling(v, FrontEnd::cpp));
@@ -240,7 +241,7 @@ std::string what_is_wrong(const CheckResult& result, std::size_t most_lines) {
 }
 
 std::string unseen_text(const CheckResult& result) {
-    if (result.state == State::error) return "";  // what there is of right verdicts is not the whole
+    if (result.state == State::error) return "";  // the right verdicts are incomplete
     std::map<std::string, double> most;
     for (const Verdict& v : result.verdicts)
         for (const auto& [kind, size] : v.hidden)
@@ -266,15 +267,15 @@ std::string nothing_drawn_text(const CheckResult& result) {
         100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
 }
 
-// ---- Read off the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
-// physics. Rings of 15 degrees are means of the evidence's own, by solid angle.
+// ---- Texts from the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
+// physics. Rings of 15 degrees are means of the finer rings of the evidence, weighted by solid angle.
 
 namespace {
 
 constexpr double edges[] = {0, 15, 30, 45, 60, 75, 90, 180};  // degrees
 constexpr std::size_t rings = std::size(edges) - 1, most_lines = 16;
 
-/// "2.61 +- 0.02", to the first digit of the error; "0" where nothing was drawn.
+/// "2.61 +- 0.02", to the first digit of the error; "0" if there are no draws.
 std::string with_error(double v, double se) {
     if (!(v > 0)) return "0";
     if (!(se > 0)) return fmt::format("{:.4g}", v);
@@ -293,7 +294,7 @@ std::string ring_text(const nlohmann::ordered_json& rows, double from, double to
         sum += row[2].get<double>() * angle, square += sqr(row[3].get<double>() * angle);
         whole += angle;
     }
-    if (to > 90) whole = 1;  // rows end where the draws do
+    if (to > 90) whole = 1;  // rows end at the last ring with draws
     return whole > 0 ? with_error(sum / whole, std::sqrt(square) / whole) : "-";
 }
 

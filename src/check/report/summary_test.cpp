@@ -1,4 +1,4 @@
-// What a failing test prints of a result: few lines, in a fixed order, in calls of C++.
+// The text of a failing test for a result: few lines, in a fixed order, in calls of C++.
 #include "check/report/summary.h"
 
 #include <gtest/gtest.h>

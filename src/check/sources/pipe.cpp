@@ -1,6 +1,6 @@
-// Rows of questions become lines or blocks and the answers rows of doubles, which are read the same way. Directions
-// under the horizon of a sampler of the hemisphere are not asked about. What `f` stands for is asked once, along the
-// normal.
+// Rows of a request are sent as lines or blocks, and the answers are rows of doubles in both formats. Directions below
+// the horizon are not sent to a sampler of the hemisphere. One request along the normal determines whether the program
+// has an f.
 #include "check/sources/pipe.h"
 
 #include <array>
@@ -22,7 +22,7 @@ namespace crescent::inline sources {
 
 namespace {
 
-/// A multiple of 2^-24, which single precision holds.
+/// A multiple of 2^-24, which single precision represents exactly.
 double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1 - 0x1p-24); }
 
 class PipeSampler : public ProgramSampler {
@@ -80,9 +80,8 @@ public:
             for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
                 add_row(asked(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
         }
-        query_samples(in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) {
-            out.wi[i] = d.wi, out.pdf[i] = d.pdf;
-        });
+        query_samples(
+            in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) { out.wi[i] = d.wi, out.pdf[i] = d.pdf; });
     }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
@@ -121,7 +120,7 @@ private:
     mutable PipeConnection talk_;
     static constexpr std::size_t example_lights = 1;  // of example_context()
     Handshake hello_;
-    std::vector<double> example_;  // the columns of a context in a check
+    std::vector<double> example_;  // the columns of the context in a check
     bool has_f_ = false;
     mutable std::mutex lock_;
 
@@ -144,7 +143,8 @@ private:
         return 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights);
     }
     /// Appends a row of a request for a sample; u(k): its random numbers.
-    template <class U> void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
+    template <class U>
+    void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
         const auto numbers = static_cast<std::size_t>(hello_.traits.numbers);
         const std::size_t before = in.size();
         in.resize(before + 3 + numbers + context.size());
@@ -153,18 +153,17 @@ private:
         for (std::size_t k = 0; k < numbers; ++k) to[3 + k] = number_for(u(k));
         std::copy(context.begin(), context.end(), to + 3 + numbers);
     }
-    /// Rows of w_o, u and the context; calls take(i, draw) for each row in order.
-    template <class Take> void query_samples(
-        const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
+    /// Requests samples for rows of w_o, u and the context; calls take(i, draw) for each row in order.
+    template <class Take>
+    void query_samples(const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
         const std::size_t given = columns_of_sample(lights), got = 4 + weights();
         std::vector<double> answers(count * got);
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
-            talk_.lines(
-                count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
-                });
+            talk_.lines(count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+            });
         for (std::size_t i = 0; i < count; ++i)
             take(i, drawn(std::span(answers).subspan(i * got, got), !hello_.blocks && delta[i]));
     }
@@ -195,7 +194,7 @@ private:
         }
         return blank(s);
     }
-    /// Nothing drawn where pdf is 0, or where a draw lies under the horizon and only the hemisphere counts.
+    /// No sample if pdf is 0, or if the draw is below the horizon of a sampler of the hemisphere.
     Draw drawn(std::span<const double> a, bool delta) const {
         Draw d{{a[0], a[1], a[2]}, a[3]};
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
@@ -207,8 +206,8 @@ private:
         return d;
     }
 
-    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked. `context`: the
-    /// columns of all rows, or of each.
+    /// pdf or f; both are 0, without a request, below the horizon of a sampler of the hemisphere. `context`: the
+    /// columns common to all rows, or those of each row.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
         std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
         const std::size_t columns_of_context = context_columns(hello_.uses, lights), given = 6 + columns_of_context;
@@ -263,7 +262,7 @@ private:
         talk_.greeted();
         probe_f();
     }
-    /// Whether there is a BRDF: `-`, or NaN in a block, is none.
+    /// Determines whether there is a BRDF: `-`, or NaN in a block, means none.
     void probe_f() {
         const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
         std::vector<double> normal = {0, 0, 1, 0, 0, 1};
@@ -293,8 +292,8 @@ std::shared_ptr<const ProgramSampler> start_pipe(
     return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label);
 }
 
-// ---- A table of keys, each with what it takes, from which the messages are made too. The name is all that stands
-// before the first word with '='.
+// ---- A table of keys with their values, from which the messages are made too. The name is the text before the first
+// word with '='.
 
 namespace {
 
@@ -312,7 +311,7 @@ bool whole_number(std::string_view value, int low, int high, int& out) {
     return error == std::errc{} && end == value.data() + value.size() && out >= low && out <= high;
 }
 
-/// One index, or one a channel, separated by commas.
+/// One index, or one for each channel, separated by commas.
 bool indices(std::string_view value, std::optional<Vec3d>& out) {
     std::vector<double> v;
     std::string text(value);

@@ -1,5 +1,5 @@
-// One loop over poll() writes requests and reads answers, whichever side is ready: neither can wait for the other for
-// ever. Time is looked at every 50 ms at least. A program that broke off once is not asked again.
+// One loop over poll() writes requests and reads answers, whichever side is ready, so neither side blocks the other.
+// The time limits are checked at least every 50 ms. A program that failed once gets no further requests.
 #include "check/sources/pipe_io.h"
 
 #include <bit>
@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "blocks are little-end
 
 void PipeConnection::fault(
     const std::string& request, std::size_t i, const std::string& what, std::string_view expected) {
-    program_.wait_ready(false, false, 0);  // what it printed comes before the error
+    program_.wait_ready(false, false, 0);  // its output precedes the error
     broken_ = fmt::format("request {} ({}): expected {}, {}", requests_ + i + 1, shown(request), expected, what);
     throw SamplerError(broken_);
 }
@@ -37,7 +37,7 @@ std::string PipeConnection::why_closed() const {
     return how.empty() ? "the program closed its output" : how;
 }
 
-/// Why nothing comes: a program that went on in the background and ended itself, or one that keeps its answers.
+/// The reason for a missing answer: a program that continues in the background, or one that does not flush its answers.
 std::string PipeConnection::why_silent() const {
     const std::string how = how_it_ended(0);
     if (!how.empty()) return ": " + how + ", and what it left running holds its output open and says nothing";
@@ -49,7 +49,7 @@ std::string PipeConnection::end_of_output() const {
         "but {}{}", why_closed(), pending().empty() ? "" : " in the middle of an answer: " + shown(pending()));
 }
 
-/// False at the end of the program's output.
+/// Returns false at the end of the program's output.
 bool PipeConnection::fill() {
     incoming_.erase(0, read_from_);
     read_from_ = 0;
@@ -62,7 +62,7 @@ bool PipeConnection::fill() {
     return n > 0 || (n < 0 && (error == EAGAIN || error == EINTR));
 }
 
-/// Returns how many bytes were written.
+/// Returns the number of bytes written.
 std::size_t PipeConnection::send(Exchange& x, std::string_view bytes, bool answers_wait) {
     const ssize_t n = program_.write(bytes);
     if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + why_closed());
@@ -149,9 +149,10 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
     }
 }
 
-// Rows go from and to the caller's memory without a copy in between: they are most of what is exchanged.
+// Rows are read from and written to the caller's memory without a copy: they are most of the exchanged data.
 void PipeConnection::blocks(const Rows& rows) {
-    constexpr std::size_t most_rows = 1 << 15;  // 65536 are allowed; smaller ones let both sides work at once
+    constexpr std::size_t most_rows =
+        1 << 15;  // 65536 are allowed; smaller blocks let both sides work at the same time
     const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
     Exchange x{rows.count, expected, rows.describe, {}, {}};
     check_open();
@@ -194,7 +195,7 @@ void PipeConnection::blocks(const Rows& rows) {
     requests_ += rows.count;
 }
 
-/// Reads what there is of the answer to `n` rows; false at the end of the program's output.
+/// Reads the available part of the answer to `n` rows; returns false at the end of the program's output.
 bool PipeConnection::take_block(
     Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read) {
     const auto read = [&](char* to, std::size_t most, std::size_t& got) {

@@ -1,4 +1,5 @@
-// Hosts are started when a thread calls and none is free, and kept. Requests carry the surface once a run of rows.
+// A host process is started if a thread calls and none is free, and then kept. A request has the surface once for each
+// run of rows.
 #include "check/sources/plugin.h"
 
 #include <dlfcn.h>
@@ -36,8 +37,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The program to execute: the one that this code is a part of, else a small one beside the library that it is a part
-/// of (the Python module), else one in PATH. CRESCENT_PLUGIN_HOST names another.
+/// The program to execute: the one that contains this code, or a small one next to the library that contains it (the
+/// Python module), or one in PATH. CRESCENT_PLUGIN_HOST overrides it.
 std::string host_program() {
     if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
     Dl_info own{};
@@ -52,7 +53,7 @@ std::string host_program() {
     return std::filesystem::exists(beside, unknown) ? beside.string() : plugin_host_name;
 }
 
-/// What a library says of itself in the greeting of its host.
+/// The declaration of a library in the handshake of its host.
 struct About {
     std::string name;
     int numbers = 2;
@@ -69,7 +70,7 @@ struct Call {
     }
 };
 
-/// Memory of one size that a host has too.
+/// Memory of fixed size that a host shares.
 class SharedMemory {
 public:
     SharedMemory() {
@@ -84,7 +85,7 @@ public:
             memory_ = ::mmap(nullptr, PluginRows::bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
         if (memory_ == MAP_FAILED) throw OutputError(fmt::format("no shared memory: {}", std::strerror(errno)));
 #ifdef __linux__
-        ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // a plugin cannot take it away
+        ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // a plugin cannot remove it
 #endif
     }
     ~SharedMemory() {
@@ -101,7 +102,7 @@ private:
     void* memory_ = MAP_FAILED;
 };
 
-/// A process with the library loaded. Used by one thread at a time; nothing can be asked of it after a fault.
+/// A process with the library loaded. Used by one thread at a time, and not after a fault.
 class Host {
 public:
     Host(const std::string& library, const PipeLimits& limits)
@@ -125,7 +126,8 @@ public:
 
     const About& about() const { return about_; }
 
-    /// One request: its runs, and the random numbers or directions of its rows. The answer is there until the next.
+    /// Sends one request: its runs, and the random numbers or directions of its rows. The answer is valid until the
+    /// next request.
     PluginRows ask(
         char operation, const ExternalBatch& batch, std::span<const double> given, std::size_t rows, const Call& call) {
         const PluginRows block(memory_.at(), rows, given.size() / rows);
@@ -295,7 +297,7 @@ private:
     static ExternalRun on_surface(Vec3d wo, const ExternalSurface& surface, std::size_t rows) {
         return {wo, surface, rows, {surface.diffuse, surface.diffuse, surface.diffuse}};
     }
-    /// Below the light of a check, if the plugin uses lights.
+    /// Adds the light of a check if the plugin uses lights.
     ExternalBatch with_example_light(std::span<const ExternalRun> runs, std::span<const double> u) const {
         if (!uses_lights()) return {runs, u};
         static thread_local std::vector<ExternalLightAt> at;
@@ -327,7 +329,7 @@ private:
         count(at.size());
     }
 
-    /// Calls with a host that no other thread uses. One that failed is not used again, and neither is the plugin.
+    /// Calls with a host that no other thread uses. After a failure neither the host nor the plugin is used again.
     template <class Work> void on_host(const Work& work) const {
         std::unique_lock<std::mutex> one_at_a_time(serial_, std::defer_lock);
         if (about_.serial) one_at_a_time.lock();
@@ -358,7 +360,7 @@ private:
     About about_;
     ExampleLight example_ = example_light();
     mutable std::mutex serial_, lock_;
-    mutable std::vector<std::unique_ptr<Host>> free_;  // both under lock_
+    mutable std::vector<std::unique_ptr<Host>> free_;  // both guarded by lock_
     mutable std::string fault_;
 };
 

@@ -1,5 +1,5 @@
-// Answers are kept by the bits of (w_o, w_i); draws by the bits of w_o and u. Only what is new is asked, in the order
-// in which it came. A sampler that throws leaves nothing behind of that call.
+// Caches answers by the bits of (w_o, w_i), and draws by the bits of w_o and u. Only new pairs are evaluated, in their
+// order. If a sampler throws, nothing of that call is cached.
 #include "check/sources/wrappers.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct KeyHash {
 
 template <class Value> using Cache = std::unordered_map<Key, Value, KeyHash>;
 
-/// Answers from what is kept; `ask` is called once, with the pairs that are new, in their order.
+/// Returns cached answers; `forward` is called once with the new pairs, in their order.
 template <class Value, class Forward>
 void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out, const Forward& forward) {
     std::vector<Pair> fresh;
@@ -52,7 +52,7 @@ void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out,
 
 bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
 
-/// What one case asks, whichever others ask the same sampler meanwhile.
+/// Counts the calls of one case, independent of other cases of the same sampler.
 class Counted : public ForwardingAdapter {
 public:
     using ForwardingAdapter::ForwardingAdapter;
@@ -150,7 +150,7 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
     Side out{check_case, stream};
     if (!check_case.adapter->limited()) return out;
     if (!check_case.adapter->serial())
-        return out.check_case.adapter = cached(check_case.adapter), out;  // of many threads
+        return out.check_case.adapter = cached(check_case.adapter), out;  // called by many threads
     const std::array<double, 3> wo = {check_case.wo.x, check_case.wo.y, check_case.wo.z};
     if (cached_of_ != check_case.adapter || wo != wo_)
         cached_of_ = check_case.adapter, wo_ = wo, stream_ = stream, cache_ = cached(check_case.adapter, true);
@@ -164,11 +164,11 @@ const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
     return cache ? cache->anew() : sampler;
 }
 
-// ---- A fault is thrown again with the side in front and with its kind kept: too slow, given up before, or new.
+// ---- Adds the side to the message of an error and throws it again with the same type.
 
 namespace {
 
-constexpr std::string_view opening = "sampler ";  // no fault of a sampler itself begins so
+constexpr std::string_view opening = "sampler ";  // no error of a sampler begins with it
 
 class LabelledAdapter : public ForwardingAdapter {
 public:

@@ -1,5 +1,5 @@
-// mean: bridged weights against the integral of f cos. support: light where p is 0. physics: no more comes back than
-// arrives. All by channel.
+// mean: bridged weights compared with the integral of f cos. support: light where p is 0. physics: the albedo is at
+// most 1. All by channel.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,7 @@ void test_mean(const Evidence& e, int channel, const Visit& visit) {
     Answer a{
         Family::mean, channel, drawn.value - due.value, std::sqrt(v), floor, 1, due.value, due.variance / (v + 1e-300)};
     const bool bridged = is_bridged(e.source);
-    const double largest = bridged ? e.plan.usual[c] : 0;  // a bridged weight is at most that
+    const double largest = bridged ? e.plan.usual[c] : 0;  // upper bound of a bridged weight
     if (bridged && !(largest > 0)) return;
     a.p = bridged
         ? bennett_p(bennett_z2(std::fabs(a.difference) - floor, v, largest / o.weighed, freedom(v, due.doubt)))
@@ -34,8 +34,8 @@ void test_mean(const Evidence& e, int channel, const Visit& visit) {
     visit(a);
 }
 
-/// Without a density the weights alone say where the draws go: their sum in each node of the upper tree against the
-/// integral of f cos there.
+/// Without a density only the weights show the distribution of the draws: compares their sum in each node of the upper
+/// tree with the integral of f cos there.
 void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const auto c = static_cast<std::size_t>(channel);
@@ -89,7 +89,7 @@ bool tail_may_be_heavy(std::span<const double> weights) {
 
 bool mean_can_be_tested(const Evidence& e) {
     const Observations& o = e.observations;
-    // A mean that is not bridged needs a variance.
+    // A mean that is not bridged must have a finite variance.
     return o.weighed > 0 && o.weightless == 0 && (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
 }
 
@@ -105,8 +105,8 @@ void test_light(const Evidence& e, const Visit& visit) {
     const LightIntegrals& l = e.integrals.light;
     const double least = lost_light * l.lit.value;
     Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value, 1};
-    // If no more than `least` were lost, the sum over points that hold at most b each would have a variance of at most
-    // b times `least`.
+    // If at most `least` were lost, the sum over points with contributions of at most b would have a variance of at
+    // most b times `least`.
     a.p = l.lost_again.value > least
         ? bennett_p(bennett_z2(l.lost_again.value - least, l.largest_lost * least, l.largest_lost, 1e12))
         : 1;

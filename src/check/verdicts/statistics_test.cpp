@@ -1,4 +1,4 @@
-// p-values against exact laws.
+// p-values compared with exact distributions.
 #include "check/verdicts/statistics.h"
 
 #include <array>
@@ -49,7 +49,7 @@ TEST(CheckStatistics, ReplicatesThatShowNoSpreadKeepThatOfAPartOfAJump) {
     all.fill(7.0);
     const ReplicateMean alike(all, 1.0);
     EXPECT_EQ(alike.mean, 7);
-    // One replicate in five has a draw more and none of these 32 shows it: probability 8e-4. It must pass.
+    // If one replicate in five has one more draw, none of these 32 shows it with probability 8e-4. The test must pass.
     EXPECT_GT(student_p_of(0.2, alike.variance, 31), alpha2 / 10);
     EXPECT_GT(student_p_of(0.1, alike.variance, 31), 1e-2);
 }
