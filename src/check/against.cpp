@@ -145,7 +145,7 @@ private:
         v.state = State::inconclusive;
         v.message = fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
             of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B");
-        v.next_step = "A sampler that is valid: `crescent check` of it alone says more.";
+        v.next_step = "A valid sampler; `crescent check` of it alone shows more.";
     }
 
     std::string sentence_of(const AgainstAnswer& r) const {
@@ -193,7 +193,7 @@ private:
             return;
         }
         const AgainstSizes sizes = sizes_against(*ground_, draws_a_, draws_b_, plan_.levels.first);
-        v.message = "No difference between their distributions is seen.";
+        v.message = "No difference between their distributions was found.";
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;
         v.message +=
@@ -227,7 +227,7 @@ std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const Sa
         v.state = slow ? State::inconclusive : State::error;
         v.message = slow                                 ? std::string(fault.what())
             : dynamic_cast<const SamplerExited*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
-                                                         : fmt::format("The sampler broke off: {}.", fault.what());
+                                                         : fmt::format("The sampler failed: {}.", fault.what());
         if (slow) v.next.kind = NextStep::Kind::more_time;
         out.push_back(std::move(v));
     }
@@ -295,7 +295,7 @@ std::string against_text(const CheckResult& j) {
         if (v.check_case != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.check_case);
         last = v.check_case;
         out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.message,
-            settling(v).empty() ? "" : " What would settle it: " + settling(v));
+            settling(v).empty() ? "" : " Next step: " + settling(v));
     }
     return out +
         fmt::format(

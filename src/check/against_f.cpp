@@ -134,7 +134,7 @@ void compare_f(const AgainstCase& c, Verdict& v) {
     };
     if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
         v.state = State::skipped;
-        v.message = only_at_draws(a) ? "f of A is known at its draws alone, and B has no f to compare with it."
+        v.message = only_at_draws(a) ? "f of A is known only at its draws, and B has no f for a comparison."
             : a.can_draw()           ? "There is no f to compare."
                                      : "The file of A has no column f: there is nothing to compare.";
     } else if (is_estimate(c.a) || is_estimate(c.b)) {
@@ -288,15 +288,15 @@ struct ReweighedDraws {
 void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     const SamplerAdapter& b = *c.b.check_case.adapter;
     if (!b.traits().has_pdf)
-        return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
+        return skip(v, "f is known only at the draws of A, and B has no pdf(w) to weight them with.");
     if (b.techniques() > 1)
-        return skip(v, "f is known at the draws of A alone: the variance of a pair of techniques does not follow.");
+        return skip(v, "f is known only at the draws of A: the variance of a pair of techniques does not follow.");
     const ReweighedDraws first(c, 1);
     if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.others).heavy) {
         v.state = State::inconclusive;
         v.message = first.lost > 0
-            ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A that carry light: B never finds that.",
-                  first.lost, first.x.size())
+            ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A with light: B never samples it.", first.lost,
+                  first.x.size())
             : "A or B has a heavy tail: the variance is not known.";
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
@@ -322,7 +322,7 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
         if (std::ranges::find(counts, name) == counts.end()) return false;
         skip(v,
             fmt::format("{} is wrong itself, by {}: the variance of a wrong sampler is not ranked. `crescent check` of "
-                        "it alone says more.",
+                        "it alone shows more.",
                 who, name));
         return true;
     };

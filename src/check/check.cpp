@@ -57,15 +57,14 @@ struct AbortText {
 };
 
 AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSettings& settings) {
-    const std::string rest = "It could not be evaluated: the sampler broke off before.";
+    const std::string rest = "Not evaluated: the sampler failed before.";
     switch (cut.why) {
-        case Cut::Why::fault: return {State::error, fmt::format("The sampler broke off: {}.", cut.what), rest};
+        case Cut::Why::fault: return {State::error, fmt::format("The sampler failed: {}.", cut.what), rest};
         case Cut::Why::gone: return {State::error, rest, rest};
         case Cut::Why::too_slow: break;
     }
-    const std::string message =
-        fmt::format("Not examined: {:g} s are too short for this program to be examined at every w_o.",
-            check_case.adapter->spending().allowed);
+    const std::string message = fmt::format(
+        "Not examined: {:g} s are not enough for this program at every w_o.", check_case.adapter->spending().allowed);
     return {settings.accept_few ? State::skipped : State::inconclusive, message, message};
 }
 

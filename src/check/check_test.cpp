@@ -44,7 +44,7 @@ private:
     void answer(std::size_t n) const {
         if (gone_) throw SamplerExited("given up");
         answers_ += n;
-        if (answers_ > breaks_at) gone_ = true, throw SamplerError("it fell silent");
+        if (answers_ > breaks_at) gone_ = true, throw SamplerError("no answer");
         if (allowed > 0 && spending().seconds > allowed) throw SamplerTimeout("too slow");
     }
 };
@@ -118,9 +118,9 @@ TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
     EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // from its first draws
-    EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler broke off: it fell silent.");
-    EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "it fell silent");
-    EXPECT_EQ(verdict_at(j, 0, "density").message, "It could not be evaluated: the sampler broke off before.");
+    EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler failed: no answer.");
+    EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "no answer");
+    EXPECT_EQ(verdict_at(j, 0, "density").message, "Not evaluated: the sampler failed before.");
     EXPECT_TRUE(j.left_out.empty());
 }
 

@@ -105,21 +105,20 @@ concept Judgeable = std::is_class_v<SamplerOf<S>> && judgeable<SamplerOf<S>>();
 /// Reports what a struct lacks for a check as a compile-time message.
 template <class S> consteval bool must_be_judgeable() {
     static_assert(HasSample<S>,
-        "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; else hand "
-        "over crescent::sampler_of(sample, pdf, f), three lambdas that call yours");
+        "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; otherwise "
+        "pass crescent::sampler_of(sample, pdf, f), three lambdas that call yours");
     if constexpr (HasSample<S>) {
         static_assert(pdf_is_plain<S>(),
-            "pdf is private, overloaded or a template: hand over crescent::sampler_of(sample, pdf, f), three lambdas "
-            "that "
+            "pdf is private, overloaded or a template: pass crescent::sampler_of(sample, pdf, f), three lambdas that "
             "call yours");
         static_assert(f_is_plain<S>(),
-            "f is private, overloaded or a template: hand over crescent::sampler_of(sample, pdf, f), three lambdas "
-            "that "
+            "f is private, overloaded or a template: pass crescent::sampler_of(sample, pdf, f), three lambdas that "
             "call yours");
         static_assert(takes_numbers<S>(),
             "sample takes wo and then one to eight random numbers, sample(wo, u), sample(wo, uc, u) or sample(u): "
-            "directions and u are arrays, spans, const T* or structs of floats or doubles that braces fill; wi and pdf "
-            "may be written through references behind them");
+            "directions and u are arrays, spans, const T* or structs of floats or doubles that braces initialise; wi "
+            "and pdf "
+            "may be output references after them");
         if constexpr (takes_numbers<S>()) {
             static_assert(takes_directions<S>(),
                 "pdf takes (wo, wi), directions in floats or doubles, or (wi) where sample takes no wo");
@@ -130,7 +129,7 @@ template <class S> consteval bool must_be_judgeable() {
             static_assert(traits_fit<S>(), "traits() is const and returns crescent::Traits");
             static_assert(gives_draws<S>(),
                 "sample returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional of "
-                "that), or writes wi and pdf through references");
+                "that), or writes wi and pdf to references");
             static_assert(gives_weights<S>(),
                 "the .weight or .f of a draw is one number or three: {r, g, b}, {x, y, z} or an array of three");
         }

@@ -199,19 +199,19 @@ Case stated_faulty(const StatedCase& of, const CaseKey& key, double size) {
 
 const std::vector<CaseSet>& case_sets() {
     static const std::vector<CaseSet> all = {
-        {"right", "right samplers at random parameters, one w_o each", 0, 1, make_right},
+        {"right", "right samplers with random parameters, one w_o each", 0, 1, make_right},
         {"right-held-out", "the same of the held-out families", 0, 1, make_right},
         {"hard", "right samplers that are hard to integrate or to draw in single precision", count_hard(), 2,
             make_hard},
         {"power", "faults by size in twelve families: constant, leak, rotation, mismatch", 0, 0, make_power},
         {"power-held-out", "the same in the held-out families", 0, 0, make_power},
-        {"stated", "faults of the size that a right verdict says could be hidden", 0, 1, make_stated},
+        {"stated", "faults of the size that a right verdict states as possibly hidden", 0, 1, make_stated},
         {"stated-held-out", "the same in the held-out families", 0, 1, make_stated},
-        {"known", "planted faults of tests/known_samplers/faulty, those held out included", count_known(), 0,
+        {"known", "planted faults of tests/known_samplers/faulty, including those held out", count_known(), 0,
             make_known},
         {"causes", "faults whose cause can be named", 0, 0, make_causes},
         {"kinds", "faults of all other kinds: caps, NaN, negative, boundaries, lobes", 0, 0, make_kinds},
-        {"faults", "faults that users reported with their corrected samplers, and right ones called wrong",
+        {"faults", "faults that users reported with their corrected samplers, and right ones reported wrong",
             count_reported(), 0, make_reported}};
     return all;
 }

@@ -145,12 +145,12 @@ int run(int argc, char** argv) {
     app.add_option("--seed", o.seed, "of the cases")->capture_default_str();
     app.add_option("--cases", o.cases, "A:B, or all")->capture_default_str();
     app.add_option("--mode", o.mode, "quick or full")->check(CLI::IsMember({"quick", "full"}))->capture_default_str();
-    app.add_option("--wo", o.wo, "w_o a case at random; 0: those of the mode; default: the set's");
-    app.add_option("--draws", o.draws, "draws a w_o in place of the mode's");
-    app.add_option("--evaluations", o.evaluations, "evaluations a w_o in place of the mode's");
-    app.add_option("--out", o.out, "a file of JSON lines, continued where it ends");
+    app.add_option("--wo", o.wo, "random w_o for each case; 0: those of the mode; default: the set's");
+    app.add_option("--draws", o.draws, "draws for each w_o; default: the mode's");
+    app.add_option("--evaluations", o.evaluations, "evaluations for each w_o; default: the mode's");
+    app.add_option("--out", o.out, "a file of JSON lines; an interrupted run continues");
     app.add_flag("--pipe", o.pipe, "each sampler behind a pipe");
-    app.add_flag("--serve", o.serve, "be the sampler of SET SEED INDEX behind a pipe");
+    app.add_flag("--serve", o.serve, "serve the sampler of SET SEED INDEX over a pipe");
     app.add_flag("--list", o.list, "sets, families, engines");
     try {
         app.parse(argc, argv);

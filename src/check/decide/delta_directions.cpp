@@ -80,14 +80,15 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
         const bool flat = std::ranges::any_of(
             across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
         if (!flat) return {};
-        return fault_at(*askew, "a delta part is not reflected to where the boundary that refracts mirrors w_o to");
+        return fault_at(*askew,
+            "a delta part is not reflected to the mirror direction, although the boundary refracts as a flat one");
     }
     for (const DeltaPart* p : across) {
         if (near(p->wi, -wo) || is_refracted(wo, p->wi, eta, false)) continue;
         if (!mirrors && !turns_with_wo(source, p->wi, key)) continue;
         return fault_at(*p,
-            is_refracted(wo, p->wi, eta, true) ? "a delta part goes to where 1 / eta in place of eta refracts to"
-                                               : "a delta part goes elsewhere than the stated index refracts to");
+            is_refracted(wo, p->wi, eta, true) ? "a delta part is refracted by 1 / eta in place of eta"
+                                               : "a delta part is not refracted by the stated index");
     }
     return {};
 }
@@ -126,7 +127,7 @@ std::optional<SmallFault> power_back(
                 expected = {come.x * due->x, come.y * due->y, come.z * due->z};
     if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(carried(source, d), first); })) return {};
     if (alike_power(first, expected)) return {};
-    SmallFault out = fault_at(p, "the way back of a delta part carries another share of the light: not reciprocal");
+    SmallFault out = fault_at(p, "the reverse path of a delta part has another power: not reciprocal");
     out.first.p = first.x, out.first.due = expected.x;
     out.size = expected.x > 0 ? first.x / expected.x - 1 : 0;
     return out;
@@ -149,7 +150,7 @@ std::optional<SmallFault> way_back(const Source& source, const std::vector<Delta
         if (!back.empty()) {
             if (std::optional<SmallFault> fault = power_back(source, parts, p, back)) return fault;
         } else if (often) {
-            return fault_at(p, "a delta part sends w_o to a direction that is never sent back to w_o");
+            return fault_at(p, "no delta part returns from the direction of a delta part to w_o");
         }
     }
     return {};

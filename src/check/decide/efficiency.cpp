@@ -181,7 +181,7 @@ void test_one_efficiency(const Efficiency& e, std::span<const CheckCase> check_c
     if (!e.fault.empty()) {
         v.state = State::error;
         v.evidence["first_fault"] = e.fault;
-        v.message = "The sampler broke off: " + e.fault + ".";
+        v.message = "The sampler failed: " + e.fault + ".";
         return;
     }
     v.evidence["variance"] = e.variance;
@@ -211,7 +211,7 @@ std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std
         Verdict& v = out[e.check_case];
         v.arm = check_cases[e.check_case].arm, v.check_case = check_cases[e.check_case].text(), v.name = "efficiency";
         v.state = State::skipped;
-        v.message = "There are no weights to take a variance of.";
+        v.message = "There are no weights, so there is no variance.";
         if (e.weighed || !e.fault.empty())
             test_one_efficiency(e, check_cases, companies[company_of(check_cases[e.check_case])], v);
         // A program failed while its f was evaluated for a baseline: reported where it would be ranked.

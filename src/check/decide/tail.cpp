@@ -181,12 +181,12 @@ void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
     } else if (t.heavy()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
-        v.message += "Heavy tail: the variance is infinite or looks so, and no interval of the mean means anything.";
+        v.message += "Heavy tail: the variance is infinite or appears to be, so no interval of the mean is valid.";
         v.next.kind = NextStep::Kind::heavier_pdf;
     } else if (t.open()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
-        v.message += "Heavy tail or not: the interval of k contains 1/2, from where on the variance is infinite.";
+        v.message += "Heavy tail or not: the interval of k contains 1/2, and from 1/2 on the variance is infinite.";
         // The tail of n draws has 3 sqrt(n) weights, so the error of k falls with the fourth root of n.
         const double tails = 4 * t.fit->se * t.fit->se / std::max(sqr(t.fit->k - heavy_index), 1e-4);
         v.next = {NextStep::Kind::more_draws, std::max(sqr(tails), 2.0)};

@@ -99,7 +99,7 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     } else if (most > 1.02 * least) times = " and a constant at each w_o";
     return fmt::format("Draws follow p {} {}{}{} (fitted exponent {}): {} {} in p.", exponent > 0 ? "times" : "over",
         f.name, power, times, with_error(f.fitted, 1.96 * f.error), f.name,
-        exponent > 0 ? "is missing" : "is once too often");
+        exponent > 0 ? "is missing" : "occurs once too often");
 }
 
 Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {

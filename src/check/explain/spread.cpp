@@ -180,7 +180,7 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
                  part = of * most.unreached / (most.unreached + most.reached);
     return Cause{"unreached", part, 0,
         fmt::format("p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
-                    "another sampler by MIS that darkens.",
+                    "another sampler by MIS the image is too dark.",
             part, of, worst->where())};
 }
 

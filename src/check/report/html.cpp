@@ -156,7 +156,7 @@ std::string cases_html(const CheckResult& j) {
 std::string verdict_html(const CheckResult& j, const ResultSource& source) {
     PageFrame frame;
     frame.title_text = fmt::format("{}: {}", names_of(j), word(j.state));
-    frame.kicker_text = "samplers judged by themselves";
+    frame.kicker_text = "samplers checked by themselves";
     frame.version_text = source.version;
     frame.head_html = head;
     frame.lead_html = fmt::format("<p class=\"verdict {0}\">{0}</p>\n", word(j.state)) + overview(j) +

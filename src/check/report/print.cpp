@@ -159,7 +159,7 @@ std::string verdict_junit(const CheckResult& result) {
                                                    : Case::passed;
         suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
             fmt::format("{}: {}", word(v.state), sentences_of(v.message).front()),
-            v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next),
+            v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next),
             v.seconds});
     }
     for (const std::string& line : result.unmet)
@@ -187,7 +187,7 @@ std::string settling(const Verdict& v, FrontEnd front_end) {
         case NextStep::Kind::more_draws:
             return named(thorough, front_end) + " draws more" +
                 (v.next.times > 0 ? fmt::format(" (about {:.2g} times as many draws are needed).", v.next.times) : ".");
-        case NextStep::Kind::more_time: return named(time, front_end) + ": there was no time to look at all of it.";
+        case NextStep::Kind::more_time: return named(time, front_end) + ": the time was too short for all tests.";
         case NextStep::Kind::heavier_pdf:
             return "a pdf that falls off no faster than f; " + named(accept, front_end) + " accepts a heavy tail.";
     }
@@ -197,13 +197,13 @@ std::string settling(const Verdict& v, FrontEnd front_end) {
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end) {
     const auto [theta, azimuth] = wo;
     switch (front_end) {
-        case FrontEnd::command_line: return fmt::format("--wo {:g},{:g} judges this w_o alone.", theta, azimuth);
+        case FrontEnd::command_line: return fmt::format("--wo {:g},{:g} checks only this w_o.", theta, azimuth);
         case FrontEnd::cpp:
             return fmt::format(
-                "crescent::IsARightSamplerBy(settings) with settings.wo = {{{{{:g}, {:g}}}}} judges "
-                "this w_o alone.",
+                "crescent::IsARightSamplerBy(settings) with settings.wo = {{{{{:g}, {:g}}}}} checks "
+                "only this w_o.",
                 theta, azimuth);
-        case FrontEnd::python: return fmt::format("wo_deg=[({:g}, {:g})] judges this w_o alone.", theta, azimuth);
+        case FrontEnd::python: return fmt::format("wo_deg=[({:g}, {:g})] checks only this w_o.", theta, azimuth);
     }
     return "";
 }

@@ -91,7 +91,7 @@ std::string light_sentence(const Answer& a, Family family, bool of_three) {
         return fmt::format(
             "p is 0 over directions that carry {} of f L cos.", percent(a.difference / a.expected, half / a.expected));
     if (family == Family::albedo)
-        return fmt::format("f sends back {} times what arrives from an even light{}. Expected at most 1.",
+        return fmt::format("f returns {} times the power of a uniform light{}. Expected at most 1.",
             with_error(1 + a.difference, half), channel_of(a, of_three));
     return fmt::format("The weighted draws give {} times the integral of f cos{}. Expected 1.",
         with_error(1 + a.difference / a.expected, half / a.expected), channel_of(a, of_three));
@@ -158,9 +158,10 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
             return fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
                 with_error(a.expected + a.difference, interval * a.sd), a.expected);
         case Family::delta_scatter:
-            return "Draws said to be of delta parts have more than 16 directions: what has a density is no delta part.";
+            return "Draws of delta parts have more than 16 directions: a distribution with a density is not a delta "
+                   "part.";
         case Family::delta_weight:
-            return fmt::format("{:g} draws of a delta part have another weight than the first of it.", a.difference);
+            return fmt::format("{:g} draws of a delta part have another weight than its first draw.", a.difference);
         case Family::support:
         case Family::albedo:
         case Family::mean: return light_sentence(a, f.first.family, c.channels == 3);
@@ -202,7 +203,7 @@ std::string albedo_sentence(const CheckAt& c) {
     for (const Answer& a : c.answers)
         if (a.family == Family::albedo && a.difference + a.expected > most)
             most = a.difference + a.expected, half = interval * a.sd;
-    return most > 0 ? fmt::format("{} of an even light is reflected or transmitted.", with_error(most, half)) : "";
+    return most > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(most, half)) : "";
 }
 
 std::string mean_sentence(const CheckAt& c) {
@@ -245,7 +246,7 @@ void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     v.state = State::inconclusive;
     v.message += fmt::format(" There is {}: whether the draws are right could not be examined.",
         comes_weighted(c) ? "no f either" : "no weight with the draws either");
-    v.next_step = comes_weighted(c) ? "f(w), which the mean of the weights is compared with."
+    v.next_step = comes_weighted(c) ? "f(w), for a comparison with the mean of the weights."
                                     : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
 }
 

@@ -86,7 +86,7 @@ std::string cause_of(const Finding& f, const CheckResult& j) {
 
 std::string describe(const Verdict& v, FrontEnd front_end) {
     const std::string next = settling(v, front_end);
-    return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next) +
+    return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next) +
         (v.timed_message.empty() ? "" : " " + v.timed_message);
 }
 
@@ -154,7 +154,7 @@ std::string describe(const Finding& f, FrontEnd front_end) {
     const std::string message = describe(*f.worst, front_end);
     if (f.state == State::error && f.worst->check_case == before_any_case) return "error. " + message;
     if (f.state == State::error)
-        return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
+        return fmt::format("error: {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.of,
             f.worst->check_case, message);
     const std::string where = where_found(f);
     std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, message);
@@ -323,7 +323,7 @@ std::string implied_text(const CheckResult& j) {
     for (std::size_t i = 0; i < std::min(all.size(), most_lines); ++i)
         out += line_of(*all[i], one_arm ? all[i]->check_case : all[i]->arm + " " + all[i]->check_case);
     if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
-    return "The density that the draws imply, there being no pdf(w): 1/sr, the mean over each ring and one standard "
+    return "The density that the draws imply, since there is no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +
         out + "Finer in the JSON: implied_rings, implied_bins.";
 }
@@ -337,7 +337,7 @@ std::string not_tested_text(const CheckResult& j) {
         const std::string what = at->get<std::string>();
         if (std::find(all.begin(), all.end(), what) == all.end()) all.push_back(what);
     }
-    return all.empty() ? "" : fmt::format("Not looked at: {}.", fmt::join(all, "; "));
+    return all.empty() ? "" : fmt::format("Not tested: {}.", fmt::join(all, "; "));
 }
 
 }  // namespace crescent::inline results

@@ -76,8 +76,7 @@ void apply(const Settings& settings, CaseSetup& setup, Settings& unread) {
     set("rho_s", f.rho_s > 0, f.rho_s);
     if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).checked_from)
         throw InputError({"--set", 0, 0},
-            fmt::format(
-                "alpha is judged from {:g} on where the lobe is {}: the quadrature of a sharper one is not known",
+            fmt::format("alpha must be at least {:g} for the lobe {}: the quadrature of a sharper lobe is not known",
                 lobe_info(f.lobe).checked_from, lobe_info(f.lobe).label));
     if (f.rho_d + f.rho_s > 1)
         throw InputError({"--set", 0, 0},
@@ -192,7 +191,7 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
             }
     }
     if (!unread.empty())
-        throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
+        throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface of the checks of '" + arm + "' has it");
     return check_cases;
 }
 

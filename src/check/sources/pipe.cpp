@@ -425,7 +425,7 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     while (name.ends_with(' ') || name.ends_with('\t')) name.remove_suffix(1);
     out.name = printable(name, 60);
     if (out.delta && !out.weight)
-        return {"weight=yes beside delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
+        return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
     out.traits.delta = out.delta;
     return {};
 }

@@ -40,8 +40,8 @@ std::string PipeConnection::why_closed() const {
 /// The reason for a missing answer: a program that continues in the background, or one that does not flush its answers.
 std::string PipeConnection::why_silent() const {
     const std::string how = how_it_ended(0);
-    if (!how.empty()) return ": " + how + ", and what it left running holds its output open and says nothing";
-    return pending().empty() ? " (does it flush every answer?)" : "; half an answer stands there: " + shown(pending());
+    if (!how.empty()) return ": " + how + ", and what it left running keeps its output open without an answer";
+    return pending().empty() ? " (does it flush every answer?)" : "; it sent an incomplete answer: " + shown(pending());
 }
 
 std::string PipeConnection::end_of_output() const {
@@ -75,8 +75,9 @@ void PipeConnection::mind_the_time(Exchange& x, Clock::time_point last) {
         throw Interrupted{};
     }
     if (seconds_since(began_) > limits_.total_seconds) {
-        broken_ = fmt::format("the program is too slow to judge: {:g} s are spent and it gives {:.2g} answers a second",
-            limits_.total_seconds, static_cast<double>(requests_ + x.answered) / seconds_since(began_));
+        broken_ =
+            fmt::format("the program is too slow to check: {:g} s are spent and it gives {:.2g} answers per second",
+                limits_.total_seconds, static_cast<double>(requests_ + x.answered) / seconds_since(began_));
         slow_ = true;
         throw SamplerTimeout(broken_);
     }
@@ -125,7 +126,7 @@ void PipeConnection::lines(std::size_t count, std::string_view expected, const W
     run(x);
     if (pending().find('\n') != std::string_view::npos)
         fault(x, count - 1,
-            "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))) + only_answers);
+            "got more lines than requested: " + shown(pending().substr(0, pending().find('\n'))) + only_answers);
     requests_ += count;
 }
 
@@ -190,8 +191,8 @@ void PipeConnection::blocks(const Rows& rows) {
         mind_the_time(x, last);
     }
     if (program_.wait_ready(false, true, 0).output && fill() && !pending().empty())
-        fault(x, rows.count - 1,
-            fmt::format("got {} bytes more than were asked for: {}", pending().size(), shown(pending())));
+        fault(
+            x, rows.count - 1, fmt::format("got {} bytes more than requested: {}", pending().size(), shown(pending())));
     requests_ += rows.count;
 }
 

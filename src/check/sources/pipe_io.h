@@ -27,7 +27,7 @@ inline std::string shown(std::string_view s) {
 }
 
 /// Appended to an unexpected answer: programs print greetings, warnings and progress.
-inline constexpr const char* only_answers = "; stdout is for answers alone, what else is said belongs on stderr";
+inline constexpr const char* only_answers = "; stdout is for answers alone, other output belongs on stderr";
 
 /// The double for a number out of range: infinite if it is too large, 0 if it is too small. Decided by the position of
 /// its first digit, in powers of ten (of two for hexadecimal digits).

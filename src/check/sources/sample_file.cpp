@@ -189,7 +189,7 @@ void SampleFile::read_samples(const std::string& path) {
     with.emplace_back("f");
     const NumberTable t = read_table_file(in, {without, with});
     if (t.rows() < 1000)
-        in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())),
+        in.add(0, 0, fmt::format("{} samples are too few for a check; expected at least 1000", t.rows())),
             in.throw_if_any();
     const int f = t.column("f");
     has_drawn_f_ = f >= 0;
@@ -239,7 +239,7 @@ void SampleFile::read_table(const std::string& path) {
         values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
     for (double v : values_)
         if (std::isnan(v))
-            in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.throw_if_any();
+            in.add(0, 0, "expected a full grid: a cell is missing and another occurs twice"), in.throw_if_any();
 }
 
 /// Whether nine of ten samples have exactly the value of their cell.

@@ -309,7 +309,7 @@ public:
 private:
     std::uint64_t most_;
     void allow(std::size_t questions) const {
-        if (spending().answers + questions > most_) throw SamplerTimeout("it may not be asked more");
+        if (spending().answers + questions > most_) throw SamplerTimeout("the limit of queries is reached");
     }
 };
 
