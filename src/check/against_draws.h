@@ -25,18 +25,18 @@ struct AgainstSide {
 };
 
 /// The tree, directions and delta parts that both samplers share.
-struct CommonGround {
+struct CommonTree {
     Tree tree;
     double step = 0;  // of the less precise arithmetic, as an angle
     Vec3d middle{};
     double log_q = 0;                         // mean of ln q over the mass of the tree
-    std::vector<Vec3d> ways;                  // directions of delta parts
+    std::vector<Vec3d> delta_directions;      // of both samplers
     std::vector<DeltaPart> delta_a, delta_b;  // of the pilot draws
     std::vector<Vec3d> drawn;                 // some pilot directions of each sampler
 };
 
 /// Built from pilot draws of each sampler.
-CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);
+CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);
 
 /// Quantities of a draw whose means are compared.
 enum AgainstSum : int { log_density, mean_x, mean_y, mean_z, against_sums };
@@ -50,12 +50,12 @@ struct AgainstDraws {
     std::array<Replicates, against_sums> by_set{};
     std::vector<Replicates> node_by_set;
     std::vector<double> x;          // weights f L cos / p of the first draws; luminance
-    bool weighs = true;             // whether each of these draws has a weight
+    bool has_weights = true;        // whether each of these draws has a weight
     double invalid = 0, first = 0;  // unusable draws
 };
 
 /// Adds draws up to a look, and weights of the first `of_f`.
-void draw_on(const AgainstSide& side, const CommonGround& ground, const Look& to, std::uint32_t of_f, AgainstDraws& d);
+void draw_on(const AgainstSide& side, const CommonTree& common, const Look& to, std::uint32_t of_f, AgainstDraws& d);
 
 /// One test applied to both samplers.
 struct AgainstAnswer {
@@ -65,7 +65,7 @@ struct AgainstAnswer {
     double difference = 0, sd = 0, floor = 0, p = 1;  // share of A less share of B, or difference of the means
 };
 std::string_view name_of(AgainstAnswer::Family family);
-void test_against(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b,
+void test_against(const CommonTree& common, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit);
 
 /// Sizes that the test detects with the stated power: a part of the distribution of one sampler that the other never
@@ -74,14 +74,14 @@ struct AgainstSizes {
     std::optional<double> part, distance;
 };
 /// level: of each test.
-AgainstSizes sizes_against(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b, double level);
+AgainstSizes sizes_against(const CommonTree& common, const AgainstDraws& a, const AgainstDraws& b, double level);
 
 // ---- f and variances of two samplers.
 
 /// The inputs of a comparison at one w_o.
 struct AgainstCase {
     const AgainstSide &a, &b;
-    const CommonGround& ground;
+    const CommonTree& common;
     const AgainstDraws &draws_a, &draws_b;
     const CheckAt &own_a, &own_b;  // checks of each sampler alone
     std::uint32_t of_f = 0;

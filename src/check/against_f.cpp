@@ -43,7 +43,7 @@ SharedF f_of_both(const AgainstCase& c) {
         for (const Draw& d : draws)
             if (d.pdf > 0 && d.f && d.wi.z != 0) out.wi.push_back(normalize(d.wi)), out.a.push_back(*d.f);
     } else {
-        const bool whole = std::ranges::any_of(c.ground.drawn, [](Vec3d w) { return w.z < 0; });
+        const bool whole = std::ranges::any_of(c.common.drawn, [](Vec3d w) { return w.z < 0; });
         StreamKey key = c.a.key;
         key.purpose = Purpose::pairs;
         Stream stream(key);
@@ -51,7 +51,7 @@ SharedF f_of_both(const AgainstCase& c) {
             const double t = 0.98 * stream.number();
             out.wi.push_back(from_chart({whole && i % 2 ? 2 - t : t, two_pi * stream.number()}));
         }
-        out.wi.insert(out.wi.end(), c.ground.drawn.begin(), c.ground.drawn.end());
+        out.wi.insert(out.wi.end(), c.common.drawn.begin(), c.common.drawn.end());
     }
     std::vector<Pair> at;
     for (Vec3d w : out.wi) at.push_back({c.a.check_case.wo, w});
@@ -115,8 +115,8 @@ std::string differing_delta(const AgainstCase& c) {
             if (length(p.wi - w) < same_number) sum = sum + p.weight * p.q;
         return sum;
     };
-    for (Vec3d w : c.ground.ways) {
-        const Vec3d a = power(c.ground.delta_a, w), b = power(c.ground.delta_b, w);
+    for (Vec3d w : c.common.delta_directions) {
+        const Vec3d a = power(c.common.delta_a, w), b = power(c.common.delta_b, w);
         if (length(a - b) <= same_number * std::max({length(a), length(b), 1e-30})) continue;
         return fmt::format("The delta part towards {} differs: q times weight is {:.6g} and {:.6g}.", direction_text(w),
             luminance(a), luminance(b));
@@ -197,7 +197,7 @@ std::vector<double> fresh_weights(const AgainstSide& side, const AgainstCase& c)
     AgainstSide again = side;
     again.key.stage = 2;
     AgainstDraws d;
-    draw_on(again, c.ground, {0, c.of_f, 0}, c.of_f, d);
+    draw_on(again, c.common, {0, c.of_f, 0}, c.of_f, d);
     return d.x;
 }
 
@@ -342,7 +342,7 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
                          : "The file of A has no column f, so there are no weights f L cos / p.");
     if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, so its f L cos / p has no variance.");
     for (const auto& [draws, adapter, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
-        if (adapter->has_drawn_f() && !draws->weighs)
+        if (adapter->has_drawn_f() && !draws->has_weights)
             return skip(v,
                 fmt::format(
                     "{} has neither a pdf(w) nor a weight with its draws (weight=yes), so it has no variance.", who));

@@ -60,7 +60,7 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
     const std::string rest = "Not evaluated: the sampler failed before.";
     switch (cut.why) {
         case Cut::Why::fault: return {State::error, fmt::format("The sampler failed: {}.", cut.what), rest};
-        case Cut::Why::gone: return {State::error, rest, rest};
+        case Cut::Why::exited: return {State::error, rest, rest};
         case Cut::Why::too_slow: break;
     }
     const std::string message = fmt::format(
@@ -70,7 +70,7 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
 
 /// Sets all verdicts of a case that ended early, except `valid` if the first draws were examined. Records what was
 /// skipped.
-void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
+void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
     std::vector<Verdict>& verdicts, CheckResult& j) {
     const AbortText text = abort_text(cut, check_case, settings);
     SkippedCase left{check_case.arm, check_case.text(), {}, text.first};
@@ -88,7 +88,7 @@ void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& 
 }
 
 /// Reports at the first w_o that the tests of the whole sampler ended early.
-void cut_whole(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
+void report_whole_cut(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
     if (valid.state != State::right) return;
     const AbortText text = abort_text(cut, check_case, settings);
     valid.state = text.state, valid.message = text.first;
@@ -97,18 +97,17 @@ void cut_whole(const Cut& cut, const CheckCase& check_case, const TestSettings& 
 
 /// Upper bounds of the evaluations that no estimate includes. At each w_o: f at the draws of two baselines, seven timed
 /// turns of 512 samples, the first draws, and a rose. For the whole call: corners and reciprocity.
-constexpr std::size_t evaluations_beside = 16000, evaluations_for_all = 8000;
+constexpr std::size_t evaluations_extra = 16000, evaluations_for_all = 8000;
 
 /// The cases with adapters limited to the remaining evaluations of a program, less those reserved for later steps.
-std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> check_cases, const TestSettings& settings) {
+std::vector<CheckCase> with_remaining_limits(std::span<const CheckCase> check_cases, const TestSettings& settings) {
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     const auto w_o =
         static_cast<std::size_t>(std::ranges::count_if(out, [](const CheckCase& t) { return !t.baseline; }));
     const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
     for (CheckCase& t : out)
         if (t.adapter->limited())
-            t.adapter =
-                std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_beside));
+            t.adapter = std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_extra));
     return out;
 }
 
@@ -116,7 +115,7 @@ std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> check_cases,
 std::optional<check::Cause> cause_of(
     std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings) {
     if (!outcome.wrong()) return {};
-    const std::vector<CheckCase> capped = with_what_is_left(check_cases, settings);
+    const std::vector<CheckCase> capped = with_remaining_limits(check_cases, settings);
     try {
         return check::cause_of(capped, outcome);
     } catch (const SamplerError&) { return {}; }  // the limit was reached or the program ended
@@ -133,14 +132,15 @@ void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outc
         std::vector<Verdict>& mine = to[i];
         std::move(next, next + verdict_names.size(), std::back_inserter(mine));
         next += verdict_names.size();
-        if (outcome.cut[k]) cut_short(check_cases[i], *outcome.cut[k], settings, mine, j);
+        if (outcome.cut[k]) report_cut(check_cases[i], *outcome.cut[k], settings, mine, j);
     }
     if (outcome.whole_cut)
-        cut_whole(*outcome.whole_cut, check_cases[outcome.check_cases[0]], settings, to[outcome.check_cases[0]][0]);
+        report_whole_cut(
+            *outcome.whole_cut, check_cases[outcome.check_cases[0]], settings, to[outcome.check_cases[0]][0]);
 }
 
 /// A result without a single examined w_o is an error, also with accept_few.
-void refuse_none(std::span<const CheckOutcome> outcomes, CheckResult& j) {
+void require_examined(std::span<const CheckOutcome> outcomes, CheckResult& j) {
     const auto whole = [](const CheckOutcome& o) {
         return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
     };
@@ -191,7 +191,7 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
             for (const CheckAt& c : o.at[k])
                 if (std::optional<BinHistogram> map = check::bin_map(check_cases[i], c))
                     maps[i].push_back(std::move(*map));
-            if (!o.tails[k].weighed) continue;
+            if (!o.tails[k].has_weights) continue;
             weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.at[k]), o.tails[k]);
             try {
                 check::add_rose(check_cases[i], *weights[i]);
@@ -214,9 +214,9 @@ CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_
     if (limited) {
         // One twelfth is reserved for tests of the whole sampler, for baselines and for causes.
         const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
-        const std::size_t beside = evaluations_beside + evaluations_for_all / std::max<std::size_t>(w_o, 1);
+        const std::size_t extra = evaluations_extra + evaluations_for_all / std::max<std::size_t>(w_o, 1);
         return CheckBudget::limited(static_cast<double>(
-            std::min(settings.questions - std::min(settings.questions, beside), std::max(each, least_evaluations))));
+            std::min(settings.questions - std::min(settings.questions, extra), std::max(each, least_evaluations))));
     }
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }
@@ -249,7 +249,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
         std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));
         case_of.resize(out.verdicts.size(), i);
     }
-    if (settings.accept_few) refuse_none(outcomes, out);
+    if (settings.accept_few) require_examined(outcomes, out);
     for (std::size_t v = 0; v < out.verdicts.size(); ++v)
         expect(check_cases[case_of[v]], reaches_all[case_of[v]], out.verdicts[v]);
     next_step(out);

@@ -16,7 +16,7 @@ namespace {
 class Program : public SamplerAdapter {
 public:
     double factor = 1, rate = 1e5, allowed = 0;
-    std::uint64_t breaks_at = ~std::uint64_t{0};  // number of answers before it fails
+    std::uint64_t fails_at = ~std::uint64_t{0};  // number of answers before it fails
 
     std::string name() const override { return "program"; }
     bool serial() const override { return true; }
@@ -40,11 +40,11 @@ public:
 
 private:
     mutable std::uint64_t answers_ = 0;
-    mutable bool gone_ = false;
+    mutable bool failed_ = false;
     void answer(std::size_t n) const {
-        if (gone_) throw SamplerExited("given up");
+        if (failed_) throw SamplerExited("given up");
         answers_ += n;
-        if (answers_ > breaks_at) gone_ = true, throw SamplerError("no answer");
+        if (answers_ > fails_at) failed_ = true, throw SamplerError("no answer");
         if (allowed > 0 && spending().seconds > allowed) throw SamplerTimeout("too slow");
     }
 };
@@ -66,7 +66,7 @@ const Verdict& verdict_at(const CheckResult& j, std::size_t check_case, std::str
     throw std::out_of_range("no such verdict");
 }
 
-TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
+TEST(RunChecks, OrdersVerdictsByCaseAndList) {
     const auto program = std::make_shared<Program>();
     std::vector<CheckCase> check_cases = cases_of_program(program);
     ProgressMonitor monitor;
@@ -84,7 +84,7 @@ TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
 }
 
 /// The middle and the most grazing w_o come first. w_o for which no time is left are inconclusive, except for `valid`.
-TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
+TEST(RunChecks, SkipsCasesWithoutRemainingTime) {
     const auto program = std::make_shared<Program>();
     program->allowed = 10.5;  // 1,050,000 answers, two w_o
     const CheckResult j = checked(program);
@@ -100,7 +100,7 @@ TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
     EXPECT_EQ(j.state, State::inconclusive);
 }
 
-TEST(Judge, AcceptsFewButNotNone) {
+TEST(RunChecks, AcceptsFewCasesButNotNone) {
     const auto some = std::make_shared<Program>(), none = std::make_shared<Program>();
     some->allowed = 10.5, none->allowed = 0.5;
     const CheckResult j = checked(some, true);
@@ -111,9 +111,9 @@ TEST(Judge, AcceptsFewButNotNone) {
 }
 
 /// Results of earlier w_o are kept, and the first error is reported.
-TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
+TEST(RunChecks, KeepsResultsFromBeforeAFailure) {
     const auto program = std::make_shared<Program>();
-    program->breaks_at = 500000;
+    program->fails_at = 500000;
     const CheckResult j = checked(program);
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
@@ -124,7 +124,7 @@ TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
     EXPECT_TRUE(j.left_out.empty());
 }
 
-TEST(Judge, AsksAProgramNoMoreThanItsBudget) {
+TEST(RunChecks, QueriesAProgramWithinItsBudget) {
     for (std::uint64_t most : {200000u, 300000u, 500000u})
         for (double factor : {1.0, 1.002, 1.005, 1.1}) {
             Program program;
@@ -136,7 +136,7 @@ TEST(Judge, AsksAProgramNoMoreThanItsBudget) {
         }
 }
 
-TEST(Judge, SharesAlphaBetweenTheStages) {
+TEST(RunChecks, SharesAlphaBetweenTheStages) {
     for (double alpha : {1e-9, 1e-6, 1e-3, 0.05, 0.5})
         for (double questions : {1.0, 1e5, 1e7}) {
             const check::Levels l = check::levels_of(alpha, questions);

@@ -18,7 +18,7 @@
 
 /// Replaces the bytes that GoogleTest prints for a struct without operator<<.
 template <class S>
-    requires(crescent::user::Judgeable<S> && !crescent::user::Pointing<S> &&
+    requires(crescent::user::Checkable<S> && !crescent::user::Pointing<S> &&
         !requires(std::ostream& out, const S s) { out << s; })
 class testing::internal::UniversalPrinter<S> {
 public:
@@ -59,7 +59,7 @@ private:
             since_explained_ = 0;
             return *std::exchange(kept_, std::nullopt);
         }
-        CheckResult j = check_sampler("sampler", user::handed(arg), shared_settings(settings_));
+        CheckResult j = check_sampler("sampler", user::copy_for_check(arg), shared_settings(settings_));
         kept_.reset();
         since_explained_ = explains ? 0 : since_explained_ + 1;
         if (!explains) kept_ = j, of_ = &arg;

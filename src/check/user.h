@@ -62,7 +62,7 @@ template <class S> consteval bool traits_fit() {
 }
 template <class S> consteval bool takes_numbers() {
     using T = SampleParameters<S>;
-    if constexpr (read_of<T>() < 1 || written_of<T>() == 1 || written_of<T>() > 3) return false;
+    if constexpr (input_count<T>() < 1 || output_count<T>() == 1 || output_count<T>() > 3) return false;
     else {
         constexpr bool known = []<std::size_t... i>(std::index_sequence<i...>) {
             return ((Written<At<T, i>> || size_of<At<T, i>>() >= 0) && ...);
@@ -74,16 +74,16 @@ template <class S> consteval bool takes_numbers() {
 }
 template <class S> consteval bool gives_draws() {
     using T = SampleParameters<S>;
-    constexpr std::size_t reads = read_of<T>();
-    if constexpr (written_of<T>() > 1) return Three<Value<At<T, reads>>> && Scalar<Value<At<T, reads + 1>>>;
+    constexpr std::size_t reads = input_count<T>();
+    if constexpr (output_count<T>() > 1) return Three<Value<At<T, reads>>> && Scalar<Value<At<T, reads + 1>>>;
     else
         return requires(const Result<S> d) { direction(d.wi); } &&
             (!HasPdf<S> || requires(const Result<S> d) { number_of(d.pdf); });
 }
 template <class S> consteval bool gives_weights() {
     using T = SampleParameters<S>;
-    if constexpr (written_of<T>() > 2) return Channels<Value<At<T, read_of<T>() + 2>>>;
-    else if constexpr (written_of<T>() > 0) return true;
+    if constexpr (output_count<T>() > 2) return Channels<Value<At<T, input_count<T>() + 2>>>;
+    else if constexpr (output_count<T>() > 0) return true;
     else if constexpr (requires(const Result<S> d) { d.weight; })
         return requires(const Result<S> d) { colour(d.weight); };
     else if constexpr (requires(const Result<S> d) { d.f; }) return requires(const Result<S> d) { colour(d.f); };
@@ -92,7 +92,7 @@ template <class S> consteval bool gives_weights() {
 /// Whether pdf and f, if the class declares them, can be called.
 template <class S> consteval bool pdf_is_plain() { return HasPdf<S> || !names_pdf<S>(); }
 template <class S> consteval bool f_is_plain() { return HasF<S> || !names_f<S>(); }
-template <class S> consteval bool judgeable() {
+template <class S> consteval bool is_checkable() {
     if constexpr (!HasSample<S> || !pdf_is_plain<S>() || !f_is_plain<S>()) return false;
     else if constexpr (!takes_numbers<S>()) return false;
     else
@@ -100,10 +100,10 @@ template <class S> consteval bool judgeable() {
             gives_weights<S>();
 }
 template <class S>
-concept Judgeable = std::is_class_v<SamplerOf<S>> && judgeable<SamplerOf<S>>();
+concept Checkable = std::is_class_v<SamplerOf<S>> && is_checkable<SamplerOf<S>>();
 
 /// Reports what a struct lacks for a check as a compile-time message.
-template <class S> consteval bool must_be_judgeable() {
+template <class S> consteval bool require_checkable() {
     static_assert(HasSample<S>,
         "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; otherwise "
         "pass crescent::sampler_of(sample, pdf, f), three lambdas that call yours");
@@ -134,7 +134,7 @@ template <class S> consteval bool must_be_judgeable() {
                 "the .weight or .f of a draw is one number or three: {r, g, b}, {x, y, z} or an array of three");
         }
     }
-    return judgeable<S>();
+    return is_checkable<S>();
 }
 
 /// 3 if f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
@@ -142,7 +142,7 @@ template <class S> consteval bool must_be_judgeable() {
 template <class S> consteval int channels() {
     bool three = false;
     if constexpr (HasF<S>) three = Coloured<Bare<typename OfF<S>::Result>>;
-    if constexpr (written_of<SampleParameters<S>>() == 0) {
+    if constexpr (output_count<SampleParameters<S>>() == 0) {
         using D = Result<S>;
         if constexpr (requires(const D d) { d.weight; })
             three = three || Coloured<Bare<decltype(std::declval<D>().weight)>>;
@@ -158,8 +158,8 @@ template <class S> consteval bool all_const() {
     return out;
 }
 template <class S> consteval bool returns_weights() {
-    if constexpr (written_of<SampleParameters<S>>() > 0) return written_of<SampleParameters<S>>() > 2;
-    else return TellsWeight<Result<S>>;
+    if constexpr (output_count<SampleParameters<S>>() > 0) return output_count<SampleParameters<S>>() > 2;
+    else return HasWeight<Result<S>>;
 }
 template <class S> Traits traits_of(const S& s) {
     Traits t;
@@ -171,7 +171,7 @@ template <class S> Traits traits_of(const S& s) {
     t.channels = channels<S>();
     t.has_pdf = HasPdf<S>;
     if constexpr (without_wo<S>()) t.wo = Traits::WoDomain::none;
-    if constexpr (written_of<SampleParameters<S>>() == 0) t.delta = TellsDelta<Result<S>>;
+    if constexpr (output_count<SampleParameters<S>>() == 0) t.delta = HasDelta<Result<S>>;
     return t;
 }
 
@@ -253,7 +253,7 @@ private:
 /// detects smaller faults and takes minutes. Throws Interrupted if `monitor` requests a stop.
 template <class S> CheckResult check_sampler(std::string name, S sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
-    if constexpr (user::must_be_judgeable<user::SamplerOf<S>>()) {
+    if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
         const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), std::move(sampler));
         ProgressMonitor alone;
         return run_checks(make_user_cases(adapter, settings.full, settings.wo), settings, monitor ? *monitor : alone);

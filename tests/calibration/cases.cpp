@@ -11,7 +11,7 @@ namespace crescent::calibration {
 
 namespace {
 
-Rng dice_for(const CaseKey& key, std::string_view purpose) { return dice_of({key.set, key.seed, key.index, purpose}); }
+Rng rng_for(const CaseKey& key, std::string_view purpose) { return rng_of({key.set, key.seed, key.index, purpose}); }
 
 bool of_held_out_set(const CaseKey& key) { return key.set.ends_with("-held-out"); }
 
@@ -37,7 +37,7 @@ const std::vector<const Family*>& twelve() {
 Real real_of(Rng& d) { return d.whole(0, 1) ? Real::f32 : Real::f64; }
 
 std::vector<std::pair<double, double>> grid_of(const CaseKey& key, Traits::WoDomain asked) {
-    Rng d = dice_for(key, "w_o");
+    Rng d = rng_for(key, "w_o");
     return random_grid(d, asked, key.wo);
 }
 
@@ -64,7 +64,7 @@ Case make_right(const CaseKey& key) {
     static const std::vector<const Family*> sets[] = {families_of(false), families_of(true)};
     const auto& all = sets[of_held_out_set(key)];
     const Family& family = *all[key.index % all.size()];
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     const Member member = family.member(d);
     const Real real = key.index / all.size() % 2 ? Real::f32 : Real::f64;
     Case c = case_of(sampler_of(family, member, real), key, State::right, "right");
@@ -78,7 +78,7 @@ Case make_power(const CaseKey& key) {
     const std::uint64_t cell = key.index % 20;
     static const std::vector<const Family*> held_out = families_of(true);
     const auto& all = of_held_out_set(key) ? held_out : twelve();
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     const Family& family = *all[static_cast<std::size_t>(d.whole(0, static_cast<int>(all.size()) - 1))];
     const Real real = real_of(d);
     const Member member = family.member(d);
@@ -129,7 +129,7 @@ const std::vector<Choice>& other_kinds() {
 Case make_choice(const CaseKey& key, const std::vector<Choice>& all) {
     static const std::vector<const Family*> tuning = families_of(false);
     const Choice& choice = all[key.index % all.size()];
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     const auto any = [&](std::size_t n) { return static_cast<std::size_t>(d.whole(0, static_cast<int>(n) - 1)); };
     const Family& family =
         choice.of.empty() ? *tuning[any(tuning.size())] : family_named(choice.of[any(choice.of.size())]);
@@ -182,7 +182,7 @@ StatedCase stated_case(const CaseKey& key) {
                                                          : true;
         if (can && f.held_out == of_held_out_set(key)) all.push_back(&f);
     }
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     out.family = all[static_cast<std::size_t>(d.whole(0, static_cast<int>(all.size()) - 1))];
     out.real = real_of(d);
     out.member = out.family->member(d);

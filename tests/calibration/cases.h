@@ -42,7 +42,7 @@ const CaseSet& case_set(std::string_view name);
 
 /// Random w_o: n in one of eight, 0.5 to 80 degrees in three of four of the others, 80 to 89 in the rest; below the
 /// surface in half of them if the sampler accepts these.
-std::vector<std::pair<double, double>> random_grid(Rng& dice, Traits::WoDomain asked, int count);
+std::vector<std::pair<double, double>> random_grid(Rng& rng, Traits::WoDomain asked, int count);
 /// Makes the cases of a sampler. `expected`: the state that an engine should return.
 Case case_of(const Sampler& sampler, const CaseKey& key, State expected, std::string kind);
 

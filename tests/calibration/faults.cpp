@@ -63,7 +63,7 @@ template <class F> F claimed(const Fault& fault, Vec3<F> wo, Vec3<F> wi, F p) {
 }
 
 /// Applies a fault to the draw; only for the selected share of the draws.
-template <class F> void spoil(const Fault& fault, Drawn<F>& d) {
+template <class F> void apply_to_draw(const Fault& fault, Drawn<F>& d) {
     if (fault.kind == FaultKind::nan) d.pdf = std::numeric_limits<F>::quiet_NaN();
     if (fault.kind == FaultKind::negative) d.pdf = -d.pdf;
     if (fault.kind == FaultKind::length) d.wi = d.wi * F(1.01);
@@ -129,39 +129,39 @@ template <class F> struct FaultInjection {
         if (!(d.pdf > 0)) return {d.wi, 0};
         d.pdf = fault.kind == FaultKind::blind ? claims.pdf(wo, d.wi) : pdf(wo, d.wi);
         const bool share = needs_number(fault.kind) && u[numbers] < F(fault.size);
-        if (share && fault.kind != FaultKind::leak) spoil(fault, d);
+        if (share && fault.kind != FaultKind::leak) apply_to_draw(fault, d);
         return d;
     }
 };
 
-template <class F> Functions<F> bent(FaultInjection<F> bend) {
+template <class F> Functions<F> injected(FaultInjection<F> injection) {
     Functions<F> out;
-    out.f = bend.claims.f;
-    const auto all = std::make_shared<const FaultInjection<F>>(std::move(bend));
+    out.f = injection.claims.f;
+    const auto all = std::make_shared<const FaultInjection<F>>(std::move(injection));
     out.pdf = [all](Vec3<F> wo, Vec3<F> wi) { return all->pdf(wo, wi); };
     out.sample = [all](Vec3<F> wo, const F* u) { return all->sample(wo, u); };
     return out;
 }
 
-template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Rng& dice, int count) {
+template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Rng& rng, int count) {
     std::vector<Vec3d> out;
     for (int k = 0; k < count; ++k) {
         F u[PrimarySample::most];
-        for (F& v : u) v = F(std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24);
+        for (F& v : u) v = F(std::floor(rng.uniform(0, 0x1p24)) * 0x1p-24);
         const Drawn<F> d = s.sample(cast<F>(wo), u);
         if (d.pdf > 0) out.push_back(unit(widened(d.wi)));
     }
     return out;
 }
 
-PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Rng& dice) {
-    const Vec3d any = dice.direction(-1, 1);
+PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Rng& rng) {
+    const Vec3d any = rng.direction(-1, 1);
     PlaceOfFault at{wo, any, {0, 0, 1}};
     if (draws.empty()) return at;
     Vec3d mean{0, 0, 0};
     for (Vec3d w : draws) mean = mean + w * (1 / static_cast<double>(draws.size()));
     if (dot(mean, mean) > 1e-4) at.turn = unit(cross(unit(mean), any));
-    at.cap = draws[static_cast<std::size_t>(dice.uniform(0, static_cast<double>(draws.size())))];
+    at.cap = draws[static_cast<std::size_t>(rng.uniform(0, static_cast<double>(draws.size())))];
     std::vector<double> gaps;
     for (Vec3d w : draws) gaps.push_back(versine(at.cap, w));
     const auto k = static_cast<std::size_t>(fault.size * draws_for_places);
@@ -178,13 +178,13 @@ std::vector<PlaceOfFault> places_of(
     const bool capped = fault.kind == FaultKind::hole || fault.kind == FaultKind::blind;
     const bool tempered = fault.kind == FaultKind::exponent;
     if (!capped && !tempered && fault.kind != FaultKind::rotation) return {};
-    Rng dice = dice_of(key);
+    Rng rng = rng_of(key);
     std::vector<PlaceOfFault> out;
     const std::vector<Vec3d> only = {{0, 0, 1}};
     for (Vec3d o : right.wo == Traits::WoDomain::none ? std::span<const Vec3d>(only) : wo) {
         out.push_back(std::visit(
             [&](const auto& f) {
-                return place_at(drawn_at(f, o, dice, capped ? draws_for_places : 4096), o, fault, dice);
+                return place_at(drawn_at(f, o, rng, capped ? draws_for_places : 4096), o, fault, rng);
             },
             right.functions));
         if (!tempered) continue;
@@ -206,7 +206,7 @@ Sampler faulty(const Family& family, const Member& member, Real real, const Faul
     const std::vector<PlaceOfFault> places = places_of(right, fault, wo, key);
     std::visit(
         [&]<class F>(const Functions<F>& draws) {
-            right.functions = bent(FaultInjection<F>{
+            right.functions = injected(FaultInjection<F>{
                 draws, std::get<Functions<F>>(claims.functions), fault, places, family.domain, family.numbers});
         },
         other.functions);

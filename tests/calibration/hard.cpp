@@ -284,7 +284,7 @@ constexpr std::uint64_t variants = 3;
 std::uint64_t count_hard() { return variants * std::size(makers); }
 
 Case make_hard(const CaseKey& key) {
-    Rng d = dice_of({key.set, key.seed, key.index, "parameters"});
+    Rng d = rng_of({key.set, key.seed, key.index, "parameters"});
     return case_of(makers[key.index % std::size(makers)](d), key, State::right, "right");
 }
 

@@ -83,18 +83,18 @@ struct Tabulated {
         const int n = static_cast<int>(value.size());
         std::vector<double> sums = {0};
         for (double v : value) sums.push_back(sums.back() + v);
-        std::vector<F> upto, density;  // t = 1 - cos in bins of 2 / n
+        std::vector<F> cumulative, density;  // t = 1 - cos in bins of 2 / n
         for (int k = 0; k < n; ++k) {
-            upto.push_back(F(sums[static_cast<std::size_t>(k)] / sums.back()));
+            cumulative.push_back(F(sums[static_cast<std::size_t>(k)] / sums.back()));
             density.push_back(F(value[static_cast<std::size_t>(k)] / sums.back() * n / (4 * pi_of<double>)));
         }
-        upto.push_back(1);
+        cumulative.push_back(1);
         const auto bin = [n](F t) { return std::clamp(static_cast<int>(t / 2 * F(n)), 0, n - 1); };
         return single<F>(forward<F>(),
-            {[upto, n](F u) {
-                 const auto at = std::upper_bound(upto.begin(), upto.end(), u) - 1;
-                 const auto k = std::min<std::ptrdiff_t>(at - upto.begin(), n - 1);
-                 const F low = upto[std::size_t(k)], high = upto[std::size_t(k) + 1];
+            {[cumulative, n](F u) {
+                 const auto at = std::upper_bound(cumulative.begin(), cumulative.end(), u) - 1;
+                 const auto k = std::min<std::ptrdiff_t>(at - cumulative.begin(), n - 1);
+                 const F low = cumulative[std::size_t(k)], high = cumulative[std::size_t(k) + 1];
                  return 2 * (F(k) + std::min((u - low) / (high - low), F(1))) / F(n);
              },
                 [density, bin, n, b](F t) {

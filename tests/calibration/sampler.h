@@ -86,8 +86,8 @@ Functions<float> rounded(Functions<double> exact);
 std::shared_ptr<const SamplerAdapter> make_adapter(const Sampler& sampler);
 
 /// The declaration of a family's struct. `drawn` chooses the parameters, `stretched` multiplies the named one.
-template <class T> Member member_of(Rng& dice) {
-    const T chosen = T::drawn(dice);
+template <class T> Member member_of(Rng& rng) {
+    const T chosen = T::drawn(rng);
     Member m;
     m.text = chosen.text();
     m.in_double = [chosen](double by, Broken b) { return chosen.stretched(by).template in<double>(b); };

@@ -19,6 +19,6 @@ struct StreamKey {
 /// xxHash (XXH3, 64 bits) of all four parts.
 std::uint64_t hash_of(const StreamKey& key);
 /// Seeded with the whole hash: the seeding of the Mersenne twister distributes it over its 19,968 bits of state.
-Rng dice_of(const StreamKey& key);
+Rng rng_of(const StreamKey& key);
 
 }  // namespace crescent::calibration

@@ -129,8 +129,8 @@ struct TexturedDisk {
     template <class F> Functions<F> in(Broken broken) const {
         std::vector<double> sums = {0};
         for (double v : value) sums.push_back(sums.back() + v);
-        std::vector<F> upto, mass;
-        for (std::size_t k = 0; k < sums.size(); ++k) upto.push_back(F(sums[k] / sums.back()));
+        std::vector<F> cumulative, mass;
+        for (std::size_t k = 0; k < sums.size(); ++k) cumulative.push_back(F(sums[k] / sums.back()));
         for (double v : value) mass.push_back(F(v / sums.back()));
         const int n = side;
         const F h = F(height), texel = 4 / F(n * n);
@@ -149,7 +149,7 @@ struct TexturedDisk {
                                                                           : F(0);  // limits the reflected power
         };
         out.sample = [=, pdf = out.pdf](Vec3<F> o, const F* u) {
-            const auto at = std::upper_bound(upto.begin(), upto.end(), u[2]) - upto.begin() - 1;
+            const auto at = std::upper_bound(cumulative.begin(), cumulative.end(), u[2]) - cumulative.begin() - 1;
             const int k = int(std::clamp<std::ptrdiff_t>(at, 0, n * n - 1));
             const F x = 2 * (F(k % n) + u[0]) / F(n) - 1, y = 2 * (F(k / n) + u[1]) / F(n) - 1;
             const Vec3<F> w = unit(Vec3<F>{x, y, h});

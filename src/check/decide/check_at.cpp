@@ -58,10 +58,10 @@ auto least_of(const Evidence& e) {
 }
 
 /// Unusable numbers are a fault by themselves and need no second test.
-bool needs_no_second(Family f) { return f == Family::values || f == Family::corners; }
+bool is_deterministic(Family f) { return f == Family::values || f == Family::corners; }
 
 /// Tests the same member again, one-sided in the direction of the first result.
-Answer put_again(const Evidence& e, const Answer& first) {
+Answer retest(const Evidence& e, const Answer& first) {
     Answer out = same_member([&](const Visit& visit) { test_all(e, visit); }, first);
     const bool two_sided = out.p > 0 && first.family != Family::depth;
     if (two_sided) out.p = one_sided(first, out);
@@ -109,18 +109,18 @@ private:
 
     double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
-    double left() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
+    double remaining() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
 
     /// The size of this look: a part of all that stage 1 may still evaluate, including what it has evaluated.
     Look next(int look) const {
-        const double all = left() - budget_.cost_of_sizes() + first_.done.cost();
+        const double all = remaining() - budget_.cost_of_sizes() + first_.done.cost();
         const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
         Look last = look_of(all);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
         begin.points = std::max(begin.points, 2 * static_cast<std::uint32_t>(out_.plan->tree.leaves().size()));
         const double of_f = Stage::of_f(source_, begin, budget_.of_f());
-        const double paid = first_.observations.weighed + first_.integrals.light.points;
-        last = look_of(all - std::max(of_f - paid, 0.0));
+        const double evaluated = first_.observations.weighted_draws + first_.integrals.light.points;
+        last = look_of(all - std::max(of_f - evaluated, 0.0));
         return last.divided_by(parts);
     }
 
@@ -198,36 +198,36 @@ private:
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
-            const Answer again = needs_no_second(b.answer.family) ? b.answer : put_again(e, b.answer);
+            const Answer again = is_deterministic(b.answer.family) ? b.answer : retest(e, b.answer);
             if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
         confirming_ += static_cast<double>(source_.evaluations()) - before;
-        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) take(std::move(second));
+        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) use_second_stage(std::move(second));
     }
 
     void note_answers(const Evidence& e) { least_ = least_of(e); }
 
     /// Uses the second stage for the explanation, since it has more draws than the first.
-    void take(Stage&& second) {
+    void use_second_stage(Stage&& second) {
         first_ = std::move(second);
         note_answers(first_.evidence(source_, *out_.plan));
     }
 
     /// Tests the directions of delta parts, which do not depend on chance.
-    void look_at_deltas() {
+    void test_delta_directions() {
         const Observations& o = first_.observations;
         if (o.deltas.empty() || o.deltas.scattered()) return;
         StreamKey key = key_;
         key.purpose = Purpose::light, key.part = 2;
         const std::vector<DeltaPart>& parts = o.deltas.parts(o.independent);
         std::optional<SmallFault> fault = refraction(source_, parts, key);
-        if (!fault) fault = way_back(source_, parts, key);
+        if (!fault) fault = reverse_path(source_, parts, key);
         if (fault) out_.small.push_back(*fault);
     }
 
     void finish() {
-        look_at_deltas();
+        test_delta_directions();
         for (const auto& [family, least] : least_) {
             out_.answers.push_back(least.answer);
             out_.answers.back().p = least.p();

@@ -47,7 +47,7 @@ bool has(const CheckAt& c, std::string_view verdict) {
     return false;
 }
 
-TEST(CheckAtOneWo, CallsARightSamplerRightAndStatesSizes) {
+TEST(CheckAtOneWo, ReportsARightSamplerWithSizes) {
     const CheckAt c = checked({});
     EXPECT_FALSE(c.wrong());
     EXPECT_FALSE(c.inconclusive);
@@ -98,7 +98,7 @@ template <class Break> int found(double size, Break break_by) {
     }
     return out;
 }
-TEST(CheckAtOneWo, FindsWhatARightVerdictSaysItWouldHaveFound) {
+TEST(CheckAtOneWo, FindsFaultsOfTheStatedSizes) {
     const Sizes s = checked({}).sizes;
     EXPECT_GE(found(*s.constant, [](Cosine& c, double e) { c.factor = 1 + e; }), 7);
     EXPECT_GE(found(*s.leak, [](Cosine& c, double e) { c.leak = e; }), 7);

@@ -54,7 +54,7 @@ bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const Strea
     return std::ranges::any_of(o.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); });
 }
 
-void look_at_whole(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
+void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
     const SamplerAdapter& adapter = *check_cases[out.check_cases[0]].adapter;
     StreamKey key{settings.seed, static_cast<std::uint16_t>(out.check_cases[0]), 0, 1, Purpose::light, 0};
     const auto add = [&](std::optional<SmallFault> fault) {
@@ -88,13 +88,13 @@ template <class Work> std::optional<Cut> cut_of(const Work& work) {
     } catch (const SamplerTimeout& fault) {
         return Cut{Cut::Why::too_slow, fault.what(), false};
     } catch (const SamplerExited& fault) {
-        return Cut{Cut::Why::gone, fault.what(), false};
+        return Cut{Cut::Why::exited, fault.what(), false};
     } catch (const SamplerError& fault) { return Cut{Cut::Why::fault, fault.what(), false}; }
     return {};
 }
 
 /// Unusable numbers among a few draws.
-std::optional<SmallFault> look_first(const CheckCase& check_case, const StreamKey& key) {
+std::optional<SmallFault> fault_of_first_draws(const CheckCase& check_case, const StreamKey& key) {
     constexpr std::uint32_t few = 256;  // a program with 10 answers per second needs less than five minutes for 12 w_o
     SmallFault out{Family::values};
     const std::vector<PrimarySample> u = first_numbers(key, few, check_case.adapter->traits());
@@ -123,7 +123,7 @@ public:
 
     std::vector<CheckOutcome> run() {
         if (std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); })) {
-            in_turn();
+            run_serially();
         } else {
             parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
             check_whole();
@@ -161,15 +161,15 @@ private:
         });
         if (cut) at.clear();
         job.outcome->tails[job.index] = tail_of(at);
-        for (CheckAt& c : at) forget(c, check_case.adapter->traits().has_pdf);
+        for (CheckAt& c : at) release_unused(c, check_case.adapter->traits().has_pdf);
         monitor_.advance(1);
     }
 
     /// Frees memory that neither the explanation nor the report needs, several megabytes at each w_o. A right w_o keeps
     /// only its numbers, unless pictures are drawn or the draws are the only evidence of the density.
-    void forget(CheckAt& c, bool has_density) const {
+    void release_unused(CheckAt& c, bool has_density) const {
         const auto free = [](auto&... all) { (std::remove_reference_t<decltype(all)>().swap(all), ...); };
-        free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighed);
+        free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighted_points);
         if (settings_.keep_evidence) return;
         free(c.observations.weights);
         if (c.wrong() || !has_density) return;
@@ -178,11 +178,11 @@ private:
     }
 
     void check_whole() {
-        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { look_at_whole(check_cases_, settings_, o); });
+        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { test_whole_sampler(check_cases_, settings_, o); });
     }
 
     /// Moves the w_o nearest to 45 degrees to the front, then the most grazing one: together they show most faults.
-    void order() {
+    void order_jobs() {
         std::ranges::sort(
             jobs_, {}, [&](const Job& j) { return std::tuple(std::fabs(case_of(j).theta_deg - 45), index_of(j)); });
         const auto grazing = std::ranges::find_if(jobs_, [&](const Job& j) { return case_of(j).theta_deg == 85; });
@@ -190,7 +190,7 @@ private:
     }
 
     /// Keeps the fault of the first draws if the later draws do not show it or are missing.
-    void keep(const Job& job, const std::optional<SmallFault>& fault) {
+    void keep_first_fault(const Job& job, const std::optional<SmallFault>& fault) {
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         if (cut) cut->first_draws = true;
@@ -204,28 +204,29 @@ private:
         at.front().small.push_back(*fault);
     }
 
-    bool affords(const Job& job, std::uint64_t dearest) const {
+    bool has_time_for(const Job& job, std::uint64_t largest_cost) const {
         const QueryUsage now = case_of(job).adapter->spending();
-        if (now.allowed <= 0 || dearest == 0) return true;
+        if (now.allowed <= 0 || largest_cost == 0) return true;
         const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
-        return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
+        return now.seconds + static_cast<double>(largest_cost) / rate < now.allowed;
     }
 
     /// Runs on one thread: first a few draws at every w_o and the tests of the whole sampler, then each w_o while time
     /// is left. The cost of the most expensive w_o so far predicts the next one. The first w_o is always tried.
-    void in_turn() {
-        order();
-        std::vector<std::optional<SmallFault>> looks(jobs_.size());
+    void run_serially() {
+        order_jobs();
+        std::vector<std::optional<SmallFault>> first_faults(jobs_.size());
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             monitor_.check();
             const CheckCase& check_case = case_of(jobs_[j]);
             const StreamKey key{
                 settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
             if (check_case.adapter->can_draw())
-                jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(check_case, key); });
+                jobs_[j].outcome->cut[jobs_[j].index] =
+                    cut_of([&] { first_faults[j] = fault_of_first_draws(check_case, key); });
         }
         check_whole();
-        std::uint64_t dearest = 0;
+        std::uint64_t largest_cost = 0;
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
             if (cut) {
@@ -233,10 +234,10 @@ private:
                 continue;
             }
             const std::uint64_t before = case_of(jobs_[j]).adapter->spending().answers;
-            if (affords(jobs_[j], dearest)) check(jobs_[j]);
+            if (has_time_for(jobs_[j], largest_cost)) check(jobs_[j]);
             else cut = Cut{Cut::Why::too_slow, "no time is left", true}, monitor_.advance(1);
-            keep(jobs_[j], looks[j]);
-            dearest = std::max(dearest, case_of(jobs_[j]).adapter->spending().answers - before);
+            keep_first_fault(jobs_[j], first_faults[j]);
+            largest_cost = std::max(largest_cost, case_of(jobs_[j]).adapter->spending().answers - before);
         }
     }
 };

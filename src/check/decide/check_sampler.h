@@ -29,7 +29,7 @@ struct CheckSettings {
 
 /// The reason why the check of a sampler at some w_o ended early.
 struct Cut {
-    enum class Why { fault, gone, too_slow } why = Why::fault;
+    enum class Why { fault, exited, too_slow } why = Why::fault;
     std::string what;
     bool first_draws = false;  // whether the first draws were examined, see CheckOutcome::at
 };

@@ -63,24 +63,24 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
     if (!source.traits.eta) return {};
     const Vec3d wo = source.wo, eta = *source.traits.eta;
     std::vector<const DeltaPart*> across;
-    const DeltaPart* askew = nullptr;  // reflected, but not to the mirror direction of a flat boundary
+    const DeltaPart* off_mirror = nullptr;  // reflected, but not to the mirror direction of a flat boundary
     bool mirrors = false;
     for (const DeltaPart& p : parts) {
         const bool through = p.wi.z * wo.z < 0;
         if (!through) {
             if (near(p.wi, mirrored(wo))) mirrors = true;
-            else if (!near(p.wi, wo)) askew = &p;
+            else if (!near(p.wi, wo)) off_mirror = &p;
         } else if (std::ranges::none_of(across, [&](const DeltaPart* q) { return near(q->wi, p.wi); })) {
             across.push_back(&p);
         }
     }
     const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
     if (across.size() > indices) return {};  // a boundary of another shape
-    if (askew) {                             // a boundary that refracts as a flat one must also reflect as one
+    if (off_mirror) {                        // a boundary that refracts as a flat one must also reflect as one
         const bool flat = std::ranges::any_of(
             across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
         if (!flat) return {};
-        return fault_at(*askew,
+        return fault_at(*off_mirror,
             "a delta part is not reflected to the mirror direction, although the boundary refracts as a flat one");
     }
     for (const DeltaPart* p : across) {
@@ -96,7 +96,7 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
 namespace {
 
 /// q times the weight by channel; a single channel is used three times.
-Vec3d carried(const Source& source, const Draw& d) {
+Vec3d power_of(const Source& source, const Draw& d) {
     const double w = d.weight.value_or(0);
     return d.delta * (source.channels() == 3 ? d.weights : Vec3d{w, w, w});
 }
@@ -108,7 +108,7 @@ bool alike_power(Vec3d a, Vec3d b) { return alike_power(a.x, b.x) && alike_power
 
 /// The ratio of the power of the reverse path to that of the forward path: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach
 /// 1997, 5.2), and radiance is scaled by 1 / eta^2 in both directions. None if it is not known.
-std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
+std::optional<Vec3d> reverse_power_ratio(const Source& source, Vec3d wi) {
     const Vec3d wo = source.wo;
     if (wi.z * wo.z > 0) return near(wi, mirrored(wo)) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
     if (!source.traits.eta || near(wi, -wo) || !is_refracted(wo, wi, *source.traits.eta, false)) return {};
@@ -118,24 +118,25 @@ std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
 }
 
 /// Compares the power of a part with that of its reverse path, if each is a single part.
-std::optional<SmallFault> power_back(
+std::optional<SmallFault> reverse_power_fault(
     const Source& source, const std::vector<DeltaPart>& all, const DeltaPart& p, const std::vector<Draw>& back) {
-    const std::optional<Vec3d> due = due_back(source, p.wi);
+    const std::optional<Vec3d> due = reverse_power_ratio(source, p.wi);
     const auto in_one_piece = std::ranges::count_if(all, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
     if (!due || in_one_piece != 1 || p.otherwise > 0) return {};
-    const Vec3d first = carried(source, back[0]), come = p.q * p.weight,
-                expected = {come.x * due->x, come.y * due->y, come.z * due->z};
-    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(carried(source, d), first); })) return {};
+    const Vec3d first = power_of(source, back[0]), forward_power = p.q * p.weight,
+                expected = {forward_power.x * due->x, forward_power.y * due->y, forward_power.z * due->z};
+    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(power_of(source, d), first); })) return {};
     if (alike_power(first, expected)) return {};
     SmallFault out = fault_at(p, "the reverse path of a delta part has another power: not reciprocal");
-    out.first.p = first.x, out.first.due = expected.x;
+    out.first.p = first.x, out.first.expected = expected.x;
     out.size = expected.x > 0 ? first.x / expected.x - 1 : 0;
     return out;
 }
 
 }  // namespace
 
-std::optional<SmallFault> way_back(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
+std::optional<SmallFault> reverse_path(
+    const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
     const Traits& traits = source.traits;
     if (!traits.reciprocal || traits.wo == Traits::WoDomain::none || !source.adapter.can_draw()) return {};
     for (const DeltaPart& p : parts) {
@@ -148,7 +149,7 @@ std::optional<SmallFault> way_back(const Source& source, const std::vector<Delta
         const bool often = back.size() >= 8;
         std::erase_if(back, [&](const Draw& d) { return !near(d.wi, source.wo); });
         if (!back.empty()) {
-            if (std::optional<SmallFault> fault = power_back(source, parts, p, back)) return fault;
+            if (std::optional<SmallFault> fault = reverse_power_fault(source, parts, p, back)) return fault;
         } else if (often) {
             return fault_at(p, "no delta part returns from the direction of a delta part to w_o");
         }

@@ -53,14 +53,14 @@ bool names(const CheckAt& c, std::string_view verdict) {
         std::ranges::any_of(c.small, [&](const SmallFault& f) { return info(f.family).verdict == verdict; });
 }
 
-TEST(DeltaPartsOfASampler, AreRightWhereTheyComeAsTheySay) {
+TEST(DeltaPartsOfASampler, AreRightIfDrawnWithTheStatedProbability) {
     const CheckAt c = checked_delta(Coat{});
     EXPECT_FALSE(c.wrong());
     ASSERT_EQ(c.observations.deltas.parts(c.observations.independent).size(), 1u);
     EXPECT_NEAR(c.observations.delta_power[0], 0.2, 1e-9);
 }
 
-TEST(DeltaPartsOfASampler, DrawnLessOftenThanTheySayMakeTheDensityWrong) {
+TEST(DeltaPartsOfASampler, WithAWrongProbabilityMakeTheDensityWrong) {
     Coat coat;
     coat.chosen = 0.27;
     EXPECT_TRUE(names(checked_delta(coat), "density"));
@@ -74,7 +74,7 @@ TEST(DeltaPartsOfASampler, WithSeveralWeightsBreakIdentity) {
     EXPECT_FALSE(names(c, "density"));
 }
 
-TEST(DeltaPartsOfASampler, CountInTheAlbedo) {
+TEST(DeltaPartsOfASampler, AreIncludedInTheAlbedo) {
     Coat coat;
     coat.mirrored_share = 0.51;
     EXPECT_TRUE(names(checked_delta(coat), "physics"));
@@ -82,7 +82,7 @@ TEST(DeltaPartsOfASampler, CountInTheAlbedo) {
     EXPECT_FALSE(names(checked_delta(coat), "physics"));
 }
 
-TEST(DeltaPartsOfASampler, GoBackTheWayTheyCame) {
+TEST(DeltaPartsOfASampler, ReturnAlongTheReversePath) {
     Coat flipped;
     flipped.turned = {-1, 1, 1};
     EXPECT_FALSE(checked_delta(flipped).wrong());  // an unusual mirror that is its own inverse

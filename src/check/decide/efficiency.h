@@ -17,10 +17,10 @@ struct Efficiency {
     std::size_t check_case = 0;
     double variance = 0, relative_se = 0;  // of X; relative standard error of the variance
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error; 0: not measured
-    bool weighed = false;                  // whether there are weights
-    bool heavy = false;                    // whether the tail is too heavy for a variance
-    bool whole = false;                    // over the sphere, not only the upper hemisphere
-    std::string fault;                     // the error if the sampler failed meanwhile
+    bool has_weights = false;
+    bool heavy = false;  // whether the tail is too heavy for a variance
+    bool whole = false;  // over the sphere, not only the upper hemisphere
+    std::string fault;   // the error if the sampler failed meanwhile
     double value() const { return variance * nanoseconds; }
     double low() const;
     double high() const;

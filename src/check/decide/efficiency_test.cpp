@@ -37,12 +37,12 @@ TEST(EfficiencyOfSamplers, HasTheVarianceOfTheWeights) {
     EXPECT_EQ(v[0].message.find("ns"), std::string::npos);  // values that vary between runs are stored separately
 }
 
-TEST(EfficiencyOfSamplers, MeasuresWhatASampleCosts) {
+TEST(EfficiencyOfSamplers, MeasuresTheTimeOfASample) {
     std::vector<CheckCase> check_cases = {
         make_case_on(case_setup(LobeKind::none, true, "fill", 32), 30, 0, "cosine", nullptr)};
     check_cases[0].adapter = sampler_on("cosine", check_cases[0]);
     std::vector<Efficiency> all(1);
-    all[0].weighed = true;
+    all[0].has_weights = true;
     measure_costs(check_cases, 1, all, ProgressMonitor{});
     EXPECT_GT(all[0].nanoseconds, 0);
     EXPECT_LT(all[0].nanoseconds, 1e5);

@@ -65,15 +65,15 @@ std::vector<double> branch_lengths(
 
 /// The one of three numbers that only selects a branch; none if every number moves w.
 std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at) {
-    constexpr double little = 0x1p-16;
+    constexpr double small_move = 0x1p-16;
     for (int k = 2; k >= 0; --k) {
         std::vector<PrimarySample> v = u;
-        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? little : -little;
+        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? small_move : -small_move;
         const std::vector<Draw> d = draws_at(source, v);
-        int moved = 0, looked = 0;
+        int moved = 0, tested = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (drawn(at[i])) ++looked, moved += !same_direction(d[i], at[i]);
-        if (looked >= 16 && moved * 20 <= looked) return k;
+            if (drawn(at[i])) ++tested, moved += !same_direction(d[i], at[i]);
+        if (tested >= 16 && moved * 20 <= tested) return k;
     }
     return {};
 }
@@ -142,15 +142,15 @@ void differentiate(Source& source, std::vector<Point>& all) {
 }
 
 struct Round {
-    int looked = 0, broken = 0;
+    int tested = 0, broken = 0;
     double worst = 1;
     Example first{};
 };
 
-Round look(Source& source, const StreamKey& key) {
+Round test_points(Source& source, const StreamKey& key) {
     Round out;
     for (const MapDensity& x : map_densities(source, key)) {
-        ++out.looked;
+        ++out.tested;
         const double ratio = x.p / x.drawn;
         if (ratio >= 1 - jacobian_tolerance - 4 * x.error) continue;
         if (out.broken++ == 0) out.first = {x.u, x.draw, x.p, x.drawn};
@@ -196,13 +196,13 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
     if (!source.has_density()) return {};
     StreamKey key = given;
-    const Round one = look(source, key);
+    const Round one = test_points(source, key);
     if (one.broken < jacobian_breaks) return {};
     key.part = 1;
-    const Round two = look(source, key);
+    const Round two = test_points(source, key);
     if (two.broken < jacobian_breaks) return {};
     return SmallFault{Family::jacobian, static_cast<double>(one.broken + two.broken),
-        static_cast<double>(one.looked + two.looked), std::min(one.worst, two.worst) - 1, one.first,
+        static_cast<double>(one.tested + two.tested), std::min(one.worst, two.worst) - 1, one.first,
         "p is less than what is drawn"};
 }
 

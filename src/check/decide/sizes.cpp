@@ -54,9 +54,9 @@ public:
         return {floor, v.all(), 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
     }
 
-    /// `tested`: variance that the fault adds and that the test estimates from its draws; `beside`: variance that the
+    /// `tested`: variance that the fault adds and that the test estimates from its draws; `untested`: variance that the
     /// test does not include.
-    double difference(double tested = 0, double beside = 0, double errors = power_of_each) const {
+    double difference(double tested = 0, double untested = 0, double errors = power_of_each) const {
         const double v = variance_ + tested;
         // A single draw is never significant, for any small expectation: it may be in a region that the points have
         // missed.
@@ -65,13 +65,13 @@ public:
         // A standard deviation with nu degrees of freedom has a relative error of 1 / sqrt(2 nu). It enters through the
         // critical value, t times, and through the stated size, t + the quantile times.
         const double more = largest_ > 0 ? 0 : unknown_ * (sqr(critical_) + sqr(critical_ + errors));
-        return floor_ + critical + errors * std::sqrt(v * (1 + more) + beside);
+        return floor_ + critical + errors * std::sqrt(v * (1 + more) + untested);
     }
     /// The size of a detectable fault from its effect and its added variances, both per unit of size.
-    double size(double effect, double tested = 0, double beside = 0) const {
+    double size(double effect, double tested = 0, double untested = 0) const {
         if (!(effect > 0)) return 1e300;
         double e = difference() / effect;
-        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested, e * beside) / effect;
+        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested, e * untested) / effect;
         return e;
     }
 
@@ -221,7 +221,7 @@ public:
         : e_(e),
           sums_(sums),
           parent_(sums.size(), -1),
-          gone_(sums.size()),
+          removed_(sums.size()),
           least_(sums.size(), 1e300),
           variance_(sums.size()),
           shift_(static_cast<std::size_t>(e.plan.tree.depth()) + 1),
@@ -271,13 +271,13 @@ public:
                 for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
                     const auto i = static_cast<std::size_t>(at);
                     const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
-                    gone_[i] += leaf.claimed, touched.push_back(at);
+                    removed_[i] += leaf.claimed, touched.push_back(at);
                     found = found || shows(i, before);
                 }
             }
             inner = outer;
         }
-        for (int i : touched) gone_[static_cast<std::size_t>(i)] = 0;
+        for (int i : touched) removed_[static_cast<std::size_t>(i)] = 0;
         std::ranges::fill(shift_, 0);
         return found ? std::min(mass, 1.0) : 1;
     }
@@ -290,7 +290,7 @@ private:
     const Evidence& e_;
     const std::vector<NodeSums>& sums_;
     std::vector<int> parent_;
-    std::vector<double> gone_, least_;         // by node: removed mass of h p; least detectable difference
+    std::vector<double> removed_, least_;      // by node: removed mass of h p; least detectable difference
     std::vector<double> variance_;             // by node, for nodes that enter the sum of a depth
     std::vector<double> shift_, least_shift_;  // by depth: shift of chi^2, and the least detectable one
     std::vector<Piece> leaves_;
@@ -300,11 +300,11 @@ private:
         const int child = e_.plan.tree.nodes()[i].child;
         if (child < 0) return 0;
         const auto a = static_cast<std::size_t>(child);
-        return std::fabs(gone_[a] - sums_[a].claimed / sums_[i].claimed * gone_[i]);
+        return std::fabs(removed_[a] - sums_[a].claimed / sums_[i].claimed * removed_[i]);
     }
     /// Whether node i, whose squared difference was `before`, detects the cap. The remaining draws have less variance.
     bool shows(std::size_t i, double before) {
-        const double now = difference(i), left = std::max(1 - gone_[i] / sums_[i].claimed, 1e-3);
+        const double now = difference(i), left = std::max(1 - removed_[i] / sums_[i].claimed, 1e-3);
         if (variance_[i] > 0) {
             double& shift = shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)];
             shift += (sqr(now) - before) / variance_[i];

@@ -196,7 +196,7 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more than two numbers, one may choose a texel and others the place in it.
     if (source.traits.numbers > 2 || source.traits.own_random || !source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
-    const auto draws_beside = [&](int k, double by) {
+    const auto draws_moved_by = [&](int k, double by) {
         std::vector<PrimarySample> v = u;
         for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? by : -by;
         std::vector<Draw> out(v.size());
@@ -210,8 +210,8 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
         return a.pdf > 0 && b.pdf > 0 ? std::sqrt(dot(d, d)) : -1;
     };
     for (int k = 0; k < source.traits.numbers; ++k) {
-        const std::vector<Draw> far = draws_beside(k, 0x1p-10), near = draws_beside(k, 0x1p-11),
-                                least = draws_beside(k, few_bits_step);
+        const std::vector<Draw> far = draws_moved_by(k, 0x1p-10), near = draws_moved_by(k, 0x1p-11),
+                                least = draws_moved_by(k, few_bits_step);
         SmallFault out{Family::repeats, 0, 0, 0, {}, "only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double a = moved(at[i], far[i]), b = moved(at[i], near[i]);

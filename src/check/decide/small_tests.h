@@ -57,6 +57,6 @@ std::vector<SmallFault> small_tests(Source& source, const StreamKey& key);
 /// Compares the directions with the stated index, if there is one.
 std::optional<SmallFault> refraction(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key);
 /// Tests that draws at w_i of a part return to w_o with the power that reciprocity requires.
-std::optional<SmallFault> way_back(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key);
+std::optional<SmallFault> reverse_path(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key);
 
 }  // namespace crescent::check

@@ -68,14 +68,14 @@ TEST(TailOfWeights, HasTheIndexOfTheory) {
     }
 }
 
-TEST(TailOfWeights, IsRightWhereWeightsAreAlike) {
+TEST(TailOfWeights, IsRightForEqualWeights) {
     const CheckedTail t = tail_at({});
     EXPECT_EQ(t.tail.state, State::right);
     EXPECT_FALSE(t.of.has_unseen());
     EXPECT_NEAR(t.tail.evidence["samples_for_1_percent"].get<double>(), 1, 1e-9);
 }
 
-TEST(TailOfWeights, TellsThePlainMeanAndItsError) {
+TEST(TailOfWeights, ReportsThePlainMeanAndItsError) {
     PowerLobe lobe;
     lobe.s = 2;
     const nlohmann::ordered_json e = tail_at(lobe).mean.evidence;
@@ -87,7 +87,7 @@ TEST(TailOfWeights, TellsThePlainMeanAndItsError) {
 }
 
 /// One draw in 1e6 comes from the cosine, which contributes nearly all of the light; the draws contain none of them.
-TEST(TailOfWeights, ThatNoDrawMetIsSeenByThePoints) {
+TEST(TailOfWeights, IsFoundByThePointsIfNoDrawShowsIt) {
     PowerLobe lobe;
     lobe.s = 1e4, lobe.share = 1e-6;
     const CheckedTail t = tail_at(lobe);
@@ -101,7 +101,7 @@ TEST(TailOfWeights, ThatNoDrawMetIsSeenByThePoints) {
 }
 
 /// The same cosine, drawn often enough: a step of the weights, not a tail.
-TEST(TailOfWeights, ThatIsDrawnOftenIsNone) {
+TEST(TailOfWeights, IsAbsentForAFrequentStep) {
     PowerLobe lobe;
     lobe.s = 1e4, lobe.share = 0.02;
     EXPECT_EQ(tail_at(lobe).tail.state, State::right);

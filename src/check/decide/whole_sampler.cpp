@@ -139,7 +139,7 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
             Draw at;
             at.wi = p.wi;
             if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance))
-                note(out, {}, at, a, out.what), out.first.due = b;
+                note(out, {}, at, a, out.what), out.first.expected = b;
         }
     // A few of 256 pairs may be at the edge of the support of f, where the half vector is rounded.
     if (out.times <= tolerated_breaks || both_ways(adapter, key) == BothWays::phase_function) return {};

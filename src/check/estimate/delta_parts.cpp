@@ -53,7 +53,7 @@ const std::vector<DeltaPart>& DeltaParts::parts(double of) const {
 namespace {
 
 constexpr double straight_on = unit_length;  // tolerance of a direction
-constexpr double beside_normal = 0.01;       // radians; refraction bends less than that there
+constexpr double near_normal = 0.01;         // radians; refraction bends less than that there
 
 /// Power of the first delta part that is transmitted straight at an oblique w_o, where refraction would bend it.
 Vec3d through_holes(Source& source) {
@@ -85,14 +85,14 @@ std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& p
             else out[c] += carried * flux_factor(source, p.wi, channel);
         }
     if (std::ranges::all_of(onward, [](double v) { return v == 0; })) return out;
-    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < beside_normal && source.adapter.can_draw();
+    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < near_normal && source.adapter.can_draw();
     const Vec3d slanted = at_normal ? through_holes(source) : Vec3d{};
     for (std::size_t c = 0; c < channels; ++c) {
         const int channel = static_cast<int>(c);
-        const double seen = channel_of(slanted, channel);
+        const double through_hole = channel_of(slanted, channel);
         // A pane transmits other shares at other angles: all of it counts as a hole if half of it is transmitted
         // straight there.
-        const double holes = !at_normal || seen > onward[c] / 2 ? onward[c] : seen;
+        const double holes = !at_normal || through_hole > onward[c] / 2 ? onward[c] : through_hole;
         out[c] += holes + (onward[c] - holes) * flux_factor(source, -source.wo, channel);
     }
     return out;

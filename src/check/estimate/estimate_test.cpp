@@ -26,7 +26,7 @@ struct CosinePower : SamplerAdapter {
     double value(double z) const { return z > 0 ? (s + 1) / (2 * pi_value) * std::pow(z, s) : 0; }
 };
 
-TEST(CheckStreams, ShareNoBlockWhicheverFieldOfTheirKeysDiffers) {
+TEST(CheckStreams, KeysThatDifferInAnyFieldShareNoBlock) {
     const StreamKey base{7, 3, 0, 1, Purpose::draws, 2};
     std::vector<StreamKey> keys(7, base);
     keys[1].seed = 8, keys[2].place = 4, keys[3].technique = 1, keys[4].stage = 2, keys[5].purpose = Purpose::points;
@@ -40,7 +40,7 @@ TEST(CheckStreams, ShareNoBlockWhicheverFieldOfTheirKeysDiffers) {
     EXPECT_EQ(blocks.size(), keys.size() * 4096);
 }
 
-TEST(CheckStreams, GiveNumbersThatNoFloatRoundsToOne) {
+TEST(CheckStreams, NumbersDoNotRoundToOneInFloat) {
     EXPECT_LT(static_cast<float>(unit_number(0xffffffffu)), 1.0f);
     EXPECT_GT(unit_number(0), 0);
     EXPECT_EQ(single_number(unit_number(0)), 0x1p-24);
@@ -75,7 +75,7 @@ TEST(CheckSobol, PairsOfDimensionsHaveNoMoreThanEightPointsInACell) {  // t <= 3
         for (int b = 0; b < a; ++b) EXPECT_LE(most_in_a_cell(a, b, 5, 5, 10, 1u, 2u), 8) << a << " " << b;
 }
 
-TEST(CheckChart, GoesThereAndBackToARounding) {
+TEST(CheckChart, RoundTripIsExactToRounding) {
     for (double t : {1e-18, 1e-9, 0.3, 1.0, 1.7, 2 - 1e-9})
         for (double phi : {0.0, 1e-9, 2.0, 6.28}) {
             const ChartPoint back = to_chart(from_chart({t, phi}));

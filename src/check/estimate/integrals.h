@@ -37,7 +37,7 @@ struct LeafIntegral {
 
 /// A point with light: the weight X = f L cos / p of a draw there (the luminance for three channels), with the MIS
 /// weight of the technique, and its contributions to the integrals of X p and of p.
-struct WeighedPoint {
+struct WeightedPoint {
     double x = 0, light = 0, chance = 0;
 };
 
@@ -47,7 +47,7 @@ struct LightIntegrals {
     Estimate lost;                                // times the light, where p is 0
     Estimate lit;                                 // times the light
     std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, if no density divides the draws
-    std::vector<WeighedPoint> weighed;            // where p > 0 and X > 0
+    std::vector<WeightedPoint> weighted_points;   // where p > 0 and X > 0
     Estimate lost_again;                          // of the leaves with p = 0 at a point, from separate points
     double largest_lost = 0;                      // largest contribution of one of these points
     std::vector<std::size_t> lost_in;             // these leaves, including those given before a pass

@@ -81,13 +81,13 @@ public:
     void batch(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, bool with_f) {
         draws_.assign(u.size(), {});
         source_.draw(key, from, u, draws_);
-        look_at(u, -1, with_f);
+        process(u, -1, with_f);
     }
     /// Adds draws of one scrambled set.
     void batch(std::span<const PrimarySample> u, int set) {
         draws_.assign(u.size(), {});
         source_.draw(u, draws_);
-        look_at(u, set, false);
+        process(u, set, false);
     }
 
 private:
@@ -100,7 +100,7 @@ private:
     std::vector<std::size_t> at_;  // indices of the draws of w_
     std::vector<double> p_;
 
-    void look_at(std::span<const PrimarySample> u, int set, bool with_f) {
+    void process(std::span<const PrimarySample> u, int set, bool with_f) {
         w_.clear(), at_.clear();
         for (std::size_t i = 0; i < u.size(); ++i)
             if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
@@ -109,18 +109,18 @@ private:
             for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
         } else {
             source_.density(w_, p_);
-            if (source_.estimates) skip_zeros();
+            if (source_.estimates) restore_zeros();
             compare_pdf(u);
         }
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set, u[at_[k]]);
+            if (is_direction(draws_[at_[k]], p_[k])) add_direction(w_[k], p_[k], set, u[at_[k]]);
             else if (set < 0) ++to_.checks.nothing;
     }
 
     /// Restores draws below the surface whose estimated p happens to be 0, if other draws there have p > 0.
-    void skip_zeros() {
+    void restore_zeros() {
         bool below = false;
         for (std::size_t k = 0; k < w_.size(); ++k) below = below || (w_[k].z <= 0 && p_[k] > 0);
         for (std::size_t k = 0; below && k < w_.size(); ++k)
@@ -130,7 +130,7 @@ private:
     /// Whether the draw is a direction of the density with finite numbers; counts the others.
     bool usable(const PrimarySample& u, const Draw& d, int set) {
         DrawChecks& c = to_.checks;
-        if (set < 0) ++c.looked_at;
+        if (set < 0) ++c.tested;
         if (d.delta != 0) {
             if (set < 0) ++c.deltas, take_delta(d);
             const bool chosen = d.delta > 0 && d.delta <= 1;
@@ -166,26 +166,26 @@ private:
     /// them.
     void compare_pdf(std::span<const PrimarySample> u) {
         if (!source_.has_density() || plan_.estimates) return;
-        std::vector<std::size_t> odd;
+        std::vector<std::size_t> differing;
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
                     same_number * p_[k] + 2 * source_.adapter.tabulation_error(w_[k])))
-                odd.push_back(k);
-        to_.checks.followed += w_.size(), to_.checks.odd += odd.size();
-        if (to_.checks.odd_compared >= most_compared) return;
-        odd.resize(std::min<std::size_t>(odd.size(), most_compared - to_.checks.odd_compared));
-        if (odd.empty()) return;
-        to_.checks.odd_compared += odd.size();
+                differing.push_back(k);
+        to_.checks.followed += w_.size(), to_.checks.differing += differing.size();
+        if (to_.checks.differing_compared >= most_compared) return;
+        differing.resize(std::min<std::size_t>(differing.size(), most_compared - to_.checks.differing_compared));
+        if (differing.empty()) return;
+        to_.checks.differing_compared += differing.size();
         std::vector<Vec3d> around, here;
-        for (std::size_t k : odd) {
+        for (std::size_t k : differing) {
             here.push_back(w_[k]);
             for (Vec3d v : neighbours(w_[k])) around.push_back(v);
         }
         std::vector<double> q(around.size()), stated(here.size());
         source_.density(around, q);
         source_.stated_pdf(here, stated);
-        for (std::size_t j = 0; j < odd.size(); ++j) {
-            const std::size_t k = odd[j];
+        for (std::size_t j = 0; j < differing.size(); ++j) {
+            const std::size_t k = differing[j];
             const Draw& d = draws_[at_[k]];
             const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
             const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
@@ -212,7 +212,7 @@ private:
             true_f_.assign(w_.size(), {});
             source_.f_cos(w_, true_f_, true);
         }
-        if (set < 0) to_.weighed += static_cast<double>(u.size());
+        if (set < 0) to_.weighted_draws += static_cast<double>(u.size());
         for (std::size_t k = 0; k < w_.size(); ++k) {
             const Draw& d = draws_[at_[k]];
             if (!is_direction(d, p_[k])) continue;
@@ -225,7 +225,7 @@ private:
         }
     }
 
-    void compare_weight(const PrimarySample& u, const Draw& d, std::size_t k, Vec3d due, int set) {
+    void compare_weight(const PrimarySample& u, const Draw& d, std::size_t k, Vec3d expected, int set) {
         const Vec3d f = f_[k];
         const bool derived = source_.has_density();
         // The weight may be an estimate too; its mean is tested.
@@ -234,7 +234,7 @@ private:
         bool wrong = false, untrue = false;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
-            const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(due, c);
+            const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(expected, c);
             const double w = !d.weight ? own : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
             wrong = wrong || (derived && std::fabs(own - w) > same_number * std::max(own, 1e-6) + 1e-9);
             untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
@@ -244,7 +244,7 @@ private:
         }
         ++to_.checks.weights;
         if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
-        if (untrue && !source_.f_estimates) to_.checks.reference_f.add({u, d, f.x, due.x});
+        if (untrue && !source_.f_estimates) to_.checks.reference_f.add({u, d, f.x, expected.x});
     }
 
     /// If rounding leaves few directions, a direction may lie on a cut: the draws are spread over half a step about it.
@@ -259,7 +259,7 @@ private:
         return plan_.tree.find(to_chart(w + frame.t * (r * math::cos(angle)) + frame.b * (r * math::sin(angle))));
     }
 
-    void take(Vec3d w, double p, int set, const PrimarySample& u) {
+    void add_direction(Vec3d w, double p, int set, const PrimarySample& u) {
         const ChartPoint point = to_chart(w);
         const std::size_t l = leaf_of(w, point, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
@@ -314,7 +314,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
     Observer observer(source, plan, integrals, to);
-    const bool weighs = source.has_f() || source.adapter.has_drawn_f();
+    const bool with_weights = source.has_f() || source.adapter.has_drawn_f();
     std::vector<PrimarySample> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
@@ -323,7 +323,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     to.independent = std::max(last_draw, before);
     for (std::uint32_t from = before; from < last_draw; from += batch_size) {
         u.resize(std::min(batch_size, last_draw - from));
-        observer.batch(draws, from, u, weighs && from < of_f);
+        observer.batch(draws, from, u, with_weights && from < of_f);
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.adapter.can_draw()) return;

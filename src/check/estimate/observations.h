@@ -18,7 +18,7 @@ namespace crescent::check {
 struct Example {
     PrimarySample u;
     Draw draw;
-    double p = 0, due = 0;  // density there; expected value
+    double p = 0, expected = 0;  // density there; expected value
 };
 
 /// Number of occurrences, and the first of them.
@@ -32,7 +32,7 @@ struct Count {
 
 /// Tests of each draw, for independent draws; `invalid` for all.
 struct DrawChecks {
-    std::uint64_t looked_at = 0, directions = 0, deltas = 0, nothing = 0;
+    std::uint64_t tested = 0, directions = 0, deltas = 0, nothing = 0;
     Count invalid;      // not finite, negative, not unit
     Count pointwise;    // pdf with the draw against pdf(w)
     Count zero;         // p is 0 at and around a draw
@@ -41,7 +41,7 @@ struct DrawChecks {
     std::uint64_t weights = 0;
     // Draws with an evaluation of pdf(w); those whose pdf differs; the number of these that were compared with
     // neighbours of w.
-    std::uint64_t followed = 0, odd = 0, odd_compared = 0;
+    std::uint64_t followed = 0, differing = 0, differing_compared = 0;
     std::uint64_t null_below = 0;  // draws below the surface at which p is 0, which the estimator ignores
 };
 
@@ -83,7 +83,7 @@ struct Observations {
     DeltaParts deltas;                    // of independent draws
     std::array<Sums, 3> mean;             // bridged weights by channel
     std::array<double, 3> delta_power{};  // power returned by delta parts, by channel
-    double weighed = 0;                   // number of draws in `mean` and `weights`
+    double weighted_draws = 0;            // number of draws in `mean` and `weights`
     std::uint64_t weightless = 0;         // directions among them without a weight, because there is no p
     /// Without a density: weights by leaf and channel, and draws by rings of 5 degrees about n.
     std::vector<std::array<WeightSums, 3>> weight_leaves;

@@ -212,13 +212,13 @@ EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     EvaluationNoise out;
     if (!source.adapter.can_draw()) return out;  // a file has one answer for each direction
     const std::vector<Vec3d> at = places_of(source, key), near = beside(at, fine_step), far = beside(at, coarse_step);
-    const SamplerAdapter& anew = uncached(source.adapter);
+    const SamplerAdapter& sampler = uncached(source.adapter);
     const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
         std::vector<Pair> pairs;
         for (Vec3d w : wi) pairs.push_back({source.wo, w});
         std::vector<double> v(wi.size());
         source.count(wi.size());
-        of_f ? anew.f(pairs, v) : anew.pdf(source.technique, pairs, v);
+        of_f ? sampler.f(pairs, v) : sampler.pdf(source.technique, pairs, v);
         return v;
     };
     for (bool of_f : {false, true}) {

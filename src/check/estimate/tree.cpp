@@ -12,7 +12,7 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t round_share = 8;  // one leaf in eight is cut in a round
-constexpr double worthless = 1e-7;      // a score too small for a cut: 1/2000 of the detection floor
+constexpr double least_score = 1e-7;    // a score too small for a cut: 1/2000 of the detection floor
 constexpr int fewest_steps = 4;         // measured steps in a leaf that has its own mean
 constexpr double fewest_pilots = 8;     // draws of a leaf that is cut without a density, so that its halves have some
 
@@ -82,7 +82,7 @@ private:
         std::partial_sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count), open.end(),
             [&](int a, int b) { return at(a).score != at(b).score ? at(a).score > at(b).score : a < b; });
         std::vector<int> chosen(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
-        std::erase_if(chosen, [&](int i) { return at(i).score <= worthless; });
+        std::erase_if(chosen, [&](int i) { return at(i).score <= least_score; });
         if (chosen.empty()) return false;
         const std::vector<int> fresh = cut(chosen);
         for (int i : chosen)
@@ -192,18 +192,18 @@ private:
     void score(double area, Growing& g) const {
         if (!source_.has_density()) return score_by_draws(area, g);
         const double n = sampled(g);
-        double mean = 0, square = 0, top = 0, seen = 0;
+        double mean = 0, square = 0, top = 0, largest_known = 0;
         for (const DensityPoint& e : g.points) {
             if (e.hint) {
-                seen = std::max(seen, e.p);
+                largest_known = std::max(largest_known, e.p);
                 continue;
             }
             mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
         }
-        for (std::size_t k = g.first; k < g.last; ++k) seen = std::max(seen, pilots_[k].p);
+        for (std::size_t k = g.first; k < g.last; ++k) largest_known = std::max(largest_known, pilots_[k].p);
         const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
-        const bool missed = seen > alike * top;
-        const double hidden = missed ? std::max(drawn, area * std::min(seen, 1 / area) / n) : 0;
+        const bool missed = largest_known > alike * top;
+        const double hidden = missed ? std::max(drawn, area * std::min(largest_known, 1 / area) / n) : 0;
         g.spread = area * std::sqrt(std::max(0.0, square - mean * mean));
         g.score = g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + hidden;
         // Not from the draws alone: their noise would make h vary from leaf to leaf, and replicates would gain nothing.
@@ -241,15 +241,15 @@ void Tree::number_leaves() {
 
 /// Whether a neighbouring leaf has another density, so that this leaf may contain a strip of it without any point.
 bool Tree::at_edge(const Leaf& leaf) const {
-    constexpr double beside = 1e-12, places[2] = {0.25, 0.75};
+    constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
     const ChartRect& r = rect(leaf);
     for (int face = 0; face < 4; ++face)
         for (double x : places) {
             ChartPoint at = r.at(x, x);
-            if (face == 0) at.t = r.t0 - beside;
-            if (face == 1) at.t = r.t1 + beside;
-            if (face == 2) at.phi = r.phi0 - beside < 0 ? r.phi0 - beside + two_pi : r.phi0 - beside;
-            if (face == 3) at.phi = r.phi1 + beside >= two_pi ? r.phi1 + beside - two_pi : r.phi1 + beside;
+            if (face == 0) at.t = r.t0 - outside;
+            if (face == 1) at.t = r.t1 + outside;
+            if (face == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
+            if (face == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
             if (at.t < 0 || at.t > 2) continue;
             const Leaf& neighbour = leaves_[find(at)];
             const double q = neighbour.met ? neighbour.q : 0;

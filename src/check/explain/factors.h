@@ -132,6 +132,6 @@ std::optional<Cause> unreached_cause(std::span<const Place> places);
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
 
 /// "Weights are f cos / p over cos theta_i and a constant 0.5 = 1/2."
-std::string ratio_sentence(const char* given, const char* due, const RatioCause& cause, const Traits& traits);
+std::string ratio_sentence(const char* given, const char* expected, const RatioCause& cause, const Traits& traits);
 
 }  // namespace crescent::check

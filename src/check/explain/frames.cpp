@@ -183,10 +183,10 @@ Vec3d without_twist(
 
 /// A nearby whole part of a turn, 2 pi / n, that is as likely: a column of a table.
 template <class L> double whole_columns(double angle, const L& likelihood) {
-    constexpr int beside = 3;
+    constexpr int neighbours = 3;
     const double n = std::round(two_pi / std::fabs(angle));
     double best = angle, most = likelihood(angle, false);
-    for (int k = -beside; k <= beside; ++k) {
+    for (int k = -neighbours; k <= neighbours; ++k) {
         const double to = std::copysign(two_pi / std::max(n + k, 2.0), angle);
         if (std::fabs(to - angle) > 0.1 * std::fabs(angle)) continue;
         if (const double l = likelihood(to, false); l >= most) best = to, most = l;

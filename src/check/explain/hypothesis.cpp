@@ -46,11 +46,11 @@ bool density_is_wrong(const CheckAt& c) {
 /// A cause explains the difference if nothing remains of it: it is not sufficient that no family is below alpha1, which
 /// the fewer draws of this check might not reach; no family may be below this level. One right sampler in a hundred has
 /// such a family.
-constexpr double nothing_left = 1e-2;
+constexpr double remaining_level = 1e-2;
 
-bool difference_is_left(const CheckAt& c) {
+bool difference_remains(const CheckAt& c) {
     return density_is_wrong(c) ||
-        std::ranges::any_of(c.answers, [](const Answer& a) { return of_density(a.family) && a.p < nothing_left; });
+        std::ranges::any_of(c.answers, [](const Answer& a) { return of_density(a.family) && a.p < remaining_level; });
 }
 
 void draw_at(Place& place, std::uint32_t count) {
@@ -180,14 +180,14 @@ bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed) {
                 budget_for(*place.at, supposed.serial()), seed ^ 0x9e3779b9u);
         };
         CheckAt c = check();
-        if (difference_is_left(c) && h.free) {
+        if (difference_remains(c) && h.free) {
             const double claimed = c.integrals.sums[mass].value;
             const double drawn = c.observations.sums[mass].sum / std::max(c.observations.independent, 1.0);
             if (!(claimed > 0) || !(drawn > 0)) return false;
             h.constants[k] *= drawn / claimed;
             c = check();
         }
-        if (difference_is_left(c)) return false;
+        if (difference_remains(c)) return false;
     }
     return !places.empty();
 }

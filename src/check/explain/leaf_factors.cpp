@@ -59,7 +59,7 @@ double simple_of(double b, double error) {
 double power_of(double x, double b) { return x > 0 ? math::exp(b * math::log(x)) : 0; }
 
 /// The known number next to a constant: 1, or the usual constant of the factor.
-double settled(double constant, double usual, double b) {
+double known_constant(double constant, double usual, double b) {
     for (double known : {1.0, power_of(usual, b)})
         if (std::fabs(constant / known - 1) < 0.02) return known;
     return constant;
@@ -112,7 +112,7 @@ std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
         FactorHypothesis found{
             times(factors[k], exponent), factors[k].name, exponent, b, f.errors[0], factors[k].usual_constant};
         for (double c : f.constants)
-            found.hypothesis.constants.push_back(settled(c, factors[k].usual_constant, exponent));
+            found.hypothesis.constants.push_back(known_constant(c, factors[k].usual_constant, exponent));
         set_gain(found.hypothesis, f.likelihood - even.likelihood, places);
         if (found.hypothesis.helps()) out.push_back(std::move(found));
     }

@@ -41,8 +41,8 @@ std::string histogram(const WeightHistogram& w) {
         for (std::size_t i = 0; i < w.counts.size(); ++i) {
             const double low = math::pow(10.0, w.log10_edges[i]), high = math::pow(10.0, w.log10_edges[i + 1]);
             if (low < w.threshold) continue;
-            const double due = w.exceedances * (survival(low) - survival(high));
-            if (due >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, due});
+            const double expected = w.exceedances * (survival(low) - survival(high));
+            if (expected >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, expected});
         }
         if (tail.size() > 1) chart.line(tail, "c2"), line = true;
     }

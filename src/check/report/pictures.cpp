@@ -39,12 +39,13 @@ double quantile_of(std::span<const Spread1d> all, double share, double low, doub
 std::vector<double> edges_of(std::span<const Spread1d> all, double low, double high, int bins) {
     constexpr double outside = 1e-3;    // of the mass, on either side
     constexpr double zoom_below = 0.6;  // of the range
-    constexpr int beside = 2;           // bins
+    constexpr int margin_bins = 2;      // bins
     double from = quantile_of(all, outside, low, high), to = quantile_of(all, 1 - outside, low, high);
     const double margin = 0.02 * (to - from);
     from = std::max(low, from - margin), to = std::min(high, to + margin);
     if (to - from > zoom_below * (high - low)) from = low, to = high;
-    const int before = from > low ? beside : 0, after = to < high ? beside : 0, inside = bins - before - after;
+    const int before = from > low ? margin_bins : 0, after = to < high ? margin_bins : 0,
+              inside = bins - before - after;
     std::vector<double> out;
     for (int i = 0; i < before; ++i) out.push_back(low + (from - low) * i / before);
     for (int i = 0; i < inside; ++i) out.push_back(from + (to - from) * i / inside);

@@ -22,7 +22,7 @@ MappedCase mapped(const char* arm, double theta) {
 }
 double sum_of(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
-TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
+TEST(PicturesOfACheck, MapObservedAndExpectedDraws) {
     for (double theta : {0.0, 60.0}) {
         const MappedCase m = mapped("ggx-vndf", theta);
         const std::optional<BinHistogram> map = bin_map(m.check_case, m.at);

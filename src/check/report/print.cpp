@@ -124,7 +124,7 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
         one["state"] = word(v.state);
         one["say"] = v.message;
         if (!v.cause.empty()) one["cause"] = v.cause;
-        if (const std::string next = settling(v); !next.empty()) one["settle"] = next;
+        if (const std::string next = next_step_text(v); !next.empty()) one["settle"] = next;
         one["expected"] = v.expected;
         if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
         if (v.waived) one["waived"] = true;
@@ -152,7 +152,7 @@ std::string verdict_junit(const CheckResult& result) {
     for (const Verdict& v : result.verdicts) {
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         const bool open = v.state == State::skipped || v.state == State::inconclusive;
-        const std::string next = settling(v);
+        const std::string next = next_step_text(v);
         const Case state = v.state == State::error ? Case::error
             : fails                                ? Case::failed
             : open                                 ? Case::skipped
@@ -181,7 +181,7 @@ std::string named(const Words& words, FrontEnd front_end) { return words[static_
 
 }  // namespace
 
-std::string settling(const Verdict& v, FrontEnd front_end) {
+std::string next_step_text(const Verdict& v, FrontEnd front_end) {
     switch (v.next.kind) {
         case NextStep::Kind::none: return v.next_step;
         case NextStep::Kind::more_draws:

@@ -33,7 +33,7 @@ std::string verdict_html(const CheckResult& result, const ResultSource& source =
 enum class FrontEnd { command_line, cpp, python };
 
 /// The next step for an inconclusive verdict: "--full draws more." or the equivalent call; "" if there is none.
-std::string settling(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
+std::string next_step_text(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
 /// How to check the sampler at a single w_o: theta and azimuth in degrees.
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end);
 

@@ -146,11 +146,11 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
         case Family::weight:
             return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, numbers,
                 fmt::format(": weight {:.5g}, f cos / pdf {:.5g}", checks.weight.first.draw.weight.value_or(0),
-                    checks.weight.first.due));
+                    checks.weight.first.expected));
         case Family::reference_f:
             return pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, numbers,
                 fmt::format(
-                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.due));
+                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.expected));
         case Family::repeats:
             return fmt::format("{:g} pairs of {:g} draws have the same direction. Expected {:.2g}.", a.difference,
                 c.observations.independent, a.expected);
@@ -236,27 +236,27 @@ std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
 
 namespace {
 
-bool comes_weighted(const CheckAt& c) { return c.observations.weighed > 0 && c.observations.weightless == 0; }
+bool has_all_weights(const CheckAt& c) { return c.observations.weighted_draws > 0 && c.observations.weightless == 0; }
 
 void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     note_implied_density(c, v);
     v.state = State::skipped;
     const bool of_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
-    if (of_deltas || (sampler.has_f() && comes_weighted(c))) return;
+    if (of_deltas || (sampler.has_f() && has_all_weights(c))) return;
     v.state = State::inconclusive;
     v.message += fmt::format(" There is {}: whether the draws are right could not be examined.",
-        comes_weighted(c) ? "no f either" : "no weight with the draws either");
-    v.next_step = comes_weighted(c) ? "f(w), for a comparison with the mean of the weights."
-                                    : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
+        has_all_weights(c) ? "no f either" : "no weight with the draws either");
+    v.next_step = has_all_weights(c) ? "f(w), for a comparison with the mean of the weights."
+                                     : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
 }
 
 void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
-    const bool asked = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
-    if (asked) return;
+    const bool tested = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
+    if (tested) return;
     if (c.observations.weightless > 0) {
         v.state = State::skipped;
         v.message = "The draws come with neither a pdf nor a weight.";
-    } else if (comes_weighted(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
+    } else if (has_all_weights(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
         v.state = State::inconclusive;
         v.message = "The weights have a heavy tail: their mean has no known error.";
         v.next_step = "Draws whose weights are bounded.";

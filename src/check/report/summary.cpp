@@ -85,7 +85,7 @@ std::string cause_of(const Finding& f, const CheckResult& j) {
 }  // namespace
 
 std::string describe(const Verdict& v, FrontEnd front_end) {
-    const std::string next = settling(v, front_end);
+    const std::string next = next_step_text(v, front_end);
     return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next) +
         (v.timed_message.empty() ? "" : " " + v.timed_message);
 }
@@ -209,7 +209,7 @@ std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
 /// inconclusive.
 std::string next_step_of(const Finding& f) {
     const Verdict& v = *f.worst;
-    std::string message = in_one_line(settling(v, FrontEnd::cpp));
+    std::string message = in_one_line(next_step_text(v, FrontEnd::cpp));
     if (message.empty() && v.wo && f.state == State::wrong) message = one_wo_text(*v.wo, FrontEnd::cpp);
     return message.empty() ? "" : "Next: " + message;
 }
@@ -260,9 +260,9 @@ std::string unseen_text(const CheckResult& result) {
 }
 
 std::string nothing_drawn_text(const CheckResult& result) {
-    constexpr double worth_saying = 0.01;
+    constexpr double least_share = 0.01;
     const auto most = std::ranges::max_element(result.verdicts, {}, &Verdict::nothing);
-    if (most == result.verdicts.end() || !(most->nothing > worth_saying)) return "";
+    if (most == result.verdicts.end() || !(most->nothing > least_share)) return "";
     return fmt::format("Up to {:.3g} % of the draws returned no sample (pdf 0, or below the horizon): {}{}.",
         100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
 }

@@ -31,8 +31,8 @@ void add_sizes(const Sizes& s, Verdict& v) {
 void decide_at(const CheckAt& c, Verdict& v) {
     constexpr double beyond_chance = 1e9;  // standard errors of a count
     const DrawChecks& checks = c.observations.checks;
-    if (v.name == verdict_names[0] && checks.looked_at > 0)
-        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing) / static_cast<double>(checks.looked_at));
+    if (v.name == verdict_names[0] && checks.tested > 0)
+        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing) / static_cast<double>(checks.tested));
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name)
             v.state = State::wrong, v.size = beyond_chance * f.times / std::max(f.of, 1.0),

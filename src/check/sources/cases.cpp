@@ -61,20 +61,20 @@ ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& on, double 
     return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : ExpectedBehaviour{};
 }
 
-/// Sets the parameters of this surface and light; removes the keys that it uses from `unread`.
-void apply(const Settings& settings, CaseSetup& setup, Settings& unread) {
+/// Sets the parameters of this surface and light; removes the keys that it uses from `unused`.
+void apply(const Settings& settings, CaseSetup& setup, Settings& unused) {
     const auto set = [&](const char* key, bool has, double& to) {
         const auto at = settings.find(key);
         if (at == settings.end() || !has) return;
         to = at->second;
-        unread.erase(key);
+        unused.erase(key);
     };
     SurfaceSetup& f = setup.surface;
-    set("s", setup.tells_s, f.s);
-    set("alpha", setup.tells_alpha, f.alpha);
+    set("s", setup.has_s, f.s);
+    set("alpha", setup.has_alpha, f.alpha);
     set("rho_d", f.rho_d > 0, f.rho_d);
     set("rho_s", f.rho_s > 0, f.rho_s);
-    if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).checked_from)
+    if (setup.has_alpha && f.alpha < lobe_info(f.lobe).checked_from)
         throw InputError({"--set", 0, 0},
             fmt::format("alpha must be at least {:g} for the lobe {}: the quadrature of a sharper lobe is not known",
                 lobe_info(f.lobe).checked_from, lobe_info(f.lobe).label));
@@ -93,8 +93,8 @@ std::shared_ptr<const SamplerAdapter> make_adapter(const std::string& arm, const
 
 /// Whether two setups are equal after --set.
 bool alike(const CaseSetup& a, const CaseSetup& b) {
-    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.tells_s || a.surface.s == b.surface.s) &&
-        (!a.tells_alpha || a.surface.alpha == b.surface.alpha);
+    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.has_s || a.surface.s == b.surface.s) &&
+        (!a.has_alpha || a.surface.alpha == b.surface.alpha);
 }
 
 }  // namespace
@@ -137,9 +137,9 @@ CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, d
     out.surface.lobe = lobe;
     out.surface.rho_d = lambert ? 0.5 : 0;
     out.surface.rho_s = lobe == LobeKind::none ? 0 : 0.4;
-    out.tells_alpha = info && info->parameter == LobeParameter::alpha;
-    out.tells_s = info && info->parameter == LobeParameter::s;
-    (out.tells_alpha ? out.surface.alpha : out.surface.s) = sharpness;
+    out.has_alpha = info && info->parameter == LobeParameter::alpha;
+    out.has_s = info && info->parameter == LobeParameter::s;
+    (out.has_alpha ? out.surface.alpha : out.surface.s) = sharpness;
     out.brdf = info ? info->label : "";
     if (lambert) out.brdf = out.brdf.empty() ? "Lambert" : "Lambert + " + out.brdf;
     out.lighting = lighting;
@@ -156,8 +156,8 @@ CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std
     t.wo = tilt(theta, azimuth);
     t.theta_deg = theta;
     t.azimuth_deg = azimuth;
-    if (setup.tells_s) t.parameters.emplace_back("s", setup.surface.s);
-    if (setup.tells_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
+    if (setup.has_s) t.parameters.emplace_back("s", setup.surface.s);
+    if (setup.has_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
     t.light = setup.light;
     t.adapter = std::move(adapter);
     return t;
@@ -173,12 +173,12 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
                 (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", "))
                               : "; did you mean '" + near + "'?"));
     }
-    Settings unread = settings;
+    Settings unused = settings;
     for (const std::string& name : names) {
         if (!arm.empty() && name != arm) continue;
         Setups setups;
         for (CaseSetup s : setups_of(*find_arm_info(name))) {
-            apply(settings, s, unread);
+            apply(settings, s, unused);
             bool seen = false;
             for (const CaseSetup& other : setups) seen = seen || alike(s, other);
             if (!seen) setups.push_back(s);
@@ -190,8 +190,8 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
                 check_cases.push_back(std::move(t));
             }
     }
-    if (!unread.empty())
-        throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface of the checks of '" + arm + "' has it");
+    if (!unused.empty())
+        throw InputError({"--set " + unused.begin()->first, 0, 0}, "no surface of the checks of '" + arm + "' has it");
     return check_cases;
 }
 
@@ -200,9 +200,9 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
 namespace {
 
 /// A built-in arm for a user's BRDF.
-template <template <class> class A> class Borrowed : public BuiltIn<A> {
+template <template <class> class A> class ForUserBrdf : public BuiltIn<A> {
 public:
-    Borrowed(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
+    ForUserBrdf(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
         : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
     void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
     bool serial() const override { return owner_->serial(); }
@@ -251,8 +251,8 @@ std::vector<CheckCase> make_user_cases(
         if (!can_be_ranked) continue;  // cosine and uniform sample neither delta parts nor the other side
         const Vec3d wo = tilt(theta, azimuth);
         for (const std::shared_ptr<const SamplerAdapter>& peer :
-            {std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Uniform>>(adapter, wo)),
-                std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Cosine>>(adapter, wo))}) {
+            {std::shared_ptr<const SamplerAdapter>(std::make_shared<ForUserBrdf<Uniform>>(adapter, wo)),
+                std::shared_ptr<const SamplerAdapter>(std::make_shared<ForUserBrdf<Cosine>>(adapter, wo))}) {
             check_cases.push_back(make_user_case(peer, theta, azimuth));
             check_cases.back().baseline = true;
         }
@@ -263,9 +263,9 @@ std::vector<CheckCase> make_user_cases(
 namespace {
 
 /// A built-in arm with a user's f.
-class WithF : public SamplerAdapter {
+class WithUserF : public SamplerAdapter {
 public:
-    WithF(std::shared_ptr<const SamplerAdapter> arm, std::shared_ptr<const SamplerAdapter> owner)
+    WithUserF(std::shared_ptr<const SamplerAdapter> arm, std::shared_ptr<const SamplerAdapter> owner)
         : arm_(std::move(arm)), owner_(std::move(owner)) {}
     std::string name() const override { return arm_->name(); }
     Traits traits() const override { return arm_->traits(); }
@@ -297,7 +297,7 @@ std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<
         CheckCase b = t;
         b.arm = name;
         b.theory = {};
-        b.adapter = std::make_shared<WithF>(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
+        b.adapter = std::make_shared<WithUserF>(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
         out.push_back(std::move(b));
     }
     return out;

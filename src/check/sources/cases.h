@@ -30,7 +30,7 @@ struct CaseSetup {
     SurfaceSetup surface;
     CaseLighting light;
     std::string brdf, lighting;
-    bool tells_s = false, tells_alpha = false;
+    bool has_s = false, has_alpha = false;
 };
 /// A surface and light of the built-in list: a lobe, with or without a Lambert part, under "fill", "disk" or both.
 CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);

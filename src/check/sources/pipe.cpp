@@ -28,23 +28,23 @@ double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1
 class PipeSampler : public ProgramSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label)
-        : talk_(command, limits, label) {
+        : connection_(command, limits, label) {
         try {
             handshake_with_program(label);
         } catch (const SamplerError&) {
-            const std::string& broken = talk_.broken();
+            const std::string& broken = connection_.broken();
             const bool unknown =
                 broken.find("exit code 127") != std::string::npos || broken.find("exit code 126") != std::string::npos;
-            talk_.stop();
+            connection_.stop();
             if (unknown && hello_.name.empty())
                 throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
             throw;
         } catch (...) {
-            talk_.stop();
+            connection_.stop();
             throw;
         }
     }
-    ~PipeSampler() override { talk_.stop(); }
+    ~PipeSampler() override { connection_.stop(); }
     PipeSampler(const PipeSampler&) = delete;
     PipeSampler& operator=(const PipeSampler&) = delete;
 
@@ -53,7 +53,7 @@ public:
     bool serial() const override { return true; }
     bool has_f() const override { return has_f_; }
     bool has_drawn_f() const override { return has_f_ || hello_.weight; }
-    QueryUsage spending() const override { return talk_.spending(); }
+    QueryUsage spending() const override { return connection_.spending(); }
 
     int numbers() const override { return hello_.traits.numbers; }
     bool uses_lights() const override { return hello_.uses_lights(); }
@@ -63,7 +63,7 @@ public:
         std::vector<double> in;
         in.reserve(u.size() * columns_of_sample(example_lights));
         for (const PrimarySample& v : u)
-            add_row(asked(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
+            add_row(wo_to_send(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
         query_samples(in, example_lights, out.size(), [&](std::size_t i, const Draw& d) { out[i] = d; });
     }
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
@@ -78,7 +78,7 @@ public:
             add_context(hello_.uses, run, batch.lights,
                 lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
             for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
-                add_row(asked(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
+                add_row(wo_to_send(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
         }
         query_samples(
             in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) { out.wi[i] = d.wi, out.pdf[i] = d.pdf; });
@@ -117,7 +117,7 @@ public:
     }
 
 private:
-    mutable PipeConnection talk_;
+    mutable PipeConnection connection_;
     static constexpr std::size_t example_lights = 1;  // of example_context()
     Handshake hello_;
     std::vector<double> example_;  // the columns of the context in a check
@@ -125,7 +125,7 @@ private:
     mutable std::mutex lock_;
 
     std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
-    Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
+    Vec3d wo_to_send(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
             hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
@@ -161,9 +161,10 @@ private:
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
-            talk_.lines(count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
-            });
+            connection_.lines(
+                count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+                });
         for (std::size_t i = 0; i < count; ++i)
             take(i, drawn(std::span(answers).subspan(i * got, got), !hello_.blocks && delta[i]));
     }
@@ -174,7 +175,7 @@ private:
         if (hello_.uses_lights())
             for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(lights >> (8 * byte) & 255);
         const PipeConnection::Write write = writer(verb, given, in);
-        talk_.blocks({operation, count, given, got, in, out,
+        connection_.blocks({operation, count, given, got, in, out,
             [&](std::size_t i) {
                 std::string line;
                 write(i, line);
@@ -217,7 +218,7 @@ private:
         for (std::size_t row = 0; row < all.size(); ++row) {
             const Pair& p = all[row];
             if (!counts(p)) continue;
-            const Vec3d o = asked(p.wo);
+            const Vec3d o = wo_to_send(p.wo);
             for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
             const auto own = std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
             in.insert(in.end(), own.begin(), own.end());
@@ -226,7 +227,7 @@ private:
         std::vector<double> answers(count * columns);
         if (hello_.blocks) query_block(operation, verb, count, given, columns, in, answers, lights);
         else if (count > 0)
-            talk_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
+            connection_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
                 if (operation[0] == 'f' && s == "-") {
                     std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
                     return true;
@@ -247,19 +248,19 @@ private:
     }
 
     void handshake_with_program(const std::string& label) {
-        talk_.lines(
+        connection_.lines(
             1, "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
             [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
                 Handshake hello;
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
-                    talk_.fault("hello 2", 0, fault.got, fault.expected);
+                    connection_.fault("hello 2", 0, fault.got, fault.expected);
                 hello_ = hello;
                 example_ = example_context(hello.uses);
                 return true;
             });
-        talk_.greeted();
+        connection_.finish_handshake();
         probe_f();
     }
     /// Determines whether there is a BRDF: `-`, or NaN in a block, means none.
@@ -273,7 +274,7 @@ private:
             has_f_ = !std::isnan(answer[0]);
             return;
         }
-        talk_.lines(1,
+        connection_.lines(1,
             columns == 1 ? "one number, or '-' where there is no BRDF"
                          : "three numbers, one a channel, or '-' where there is no BRDF",
             writer("f", normal.size(), normal), [&](std::size_t, std::string_view s) {

@@ -23,7 +23,7 @@ void PipeConnection::fault(
 }
 
 /// "" while it runs.
-std::string PipeConnection::how_it_ended(int milliseconds) const {
+std::string PipeConnection::exit_text(int milliseconds) const {
     const std::optional<ProcessEnd> end = program_.ended(milliseconds);
     if (!end) return "";
     if (end->signal != 0) return "the program was killed by " + end->text();
@@ -32,21 +32,21 @@ std::string PipeConnection::how_it_ended(int milliseconds) const {
     return "the program ended with " + end->text() + (by_signal ? ": " + ProcessEnd{0, end->code - 128}.text() : "");
 }
 
-std::string PipeConnection::why_closed() const {
-    const std::string how = how_it_ended(200);
+std::string PipeConnection::close_reason() const {
+    const std::string how = exit_text(200);
     return how.empty() ? "the program closed its output" : how;
 }
 
 /// The reason for a missing answer: a program that continues in the background, or one that does not flush its answers.
-std::string PipeConnection::why_silent() const {
-    const std::string how = how_it_ended(0);
+std::string PipeConnection::silence_reason() const {
+    const std::string how = exit_text(0);
     if (!how.empty()) return ": " + how + ", and what it left running keeps its output open without an answer";
     return pending().empty() ? " (does it flush every answer?)" : "; it sent an incomplete answer: " + shown(pending());
 }
 
 std::string PipeConnection::end_of_output() const {
     return fmt::format(
-        "but {}{}", why_closed(), pending().empty() ? "" : " in the middle of an answer: " + shown(pending()));
+        "but {}{}", close_reason(), pending().empty() ? "" : " in the middle of an answer: " + shown(pending()));
 }
 
 /// Returns false at the end of the program's output.
@@ -65,11 +65,11 @@ bool PipeConnection::fill() {
 /// Returns the number of bytes written.
 std::size_t PipeConnection::send(Exchange& x, std::string_view bytes, bool answers_wait) {
     const ssize_t n = program_.write(bytes);
-    if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + why_closed());
+    if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + close_reason());
     return static_cast<std::size_t>(std::max<ssize_t>(n, 0));
 }
 
-void PipeConnection::mind_the_time(Exchange& x, Clock::time_point last) {
+void PipeConnection::check_time_limits(Exchange& x, Clock::time_point last) {
     if (limits_.stop && limits_.stop->load()) {
         broken_ = "interrupted";
         throw Interrupted{};
@@ -82,8 +82,8 @@ void PipeConnection::mind_the_time(Exchange& x, Clock::time_point last) {
         throw SamplerTimeout(broken_);
     }
     const double quiet = seconds_since(last);
-    if (quiet > (greeted_ ? limits_.quiet_seconds : limits_.hello_seconds))
-        fault(x, x.answered, fmt::format("got nothing for {:.0f} s{}", quiet, why_silent()));
+    if (quiet > (handshake_done_ ? limits_.quiet_seconds : limits_.hello_seconds))
+        fault(x, x.answered, fmt::format("got nothing for {:.0f} s{}", quiet, silence_reason()));
 }
 
 void PipeConnection::check_open() const {
@@ -110,7 +110,7 @@ void PipeConnection::run(Exchange& x) {
             last = Clock::now();
             x.take();
         }
-        mind_the_time(x, last);
+        check_time_limits(x, last);
     }
 }
 
@@ -188,7 +188,7 @@ void PipeConnection::blocks(const Rows& rows) {
             }
             last = Clock::now();
         }
-        mind_the_time(x, last);
+        check_time_limits(x, last);
     }
     if (program_.wait_ready(false, true, 0).output && fill() && !pending().empty())
         fault(

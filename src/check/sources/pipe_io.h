@@ -105,7 +105,7 @@ public:
     /// Throws an error for the answer to request i of the current exchange.
     [[noreturn]] void fault(
         const std::string& request, std::size_t i, const std::string& what, std::string_view expected);
-    void greeted() { greeted_ = true; }
+    void finish_handshake() { handshake_done_ = true; }
     const std::string& broken() const { return broken_; }
     QueryUsage spending() const { return {requests_, seconds_since(began_), limits_.total_seconds}; }
     /// Ends the program without reading more output; it has half a second to exit by itself, unless it failed.
@@ -128,7 +128,7 @@ private:
     std::size_t read_from_ = 0;
     std::uint64_t requests_ = 0;
     std::string broken_;  // the error; no requests are sent after it
-    bool greeted_ = false, slow_ = false;
+    bool handshake_done_ = false, slow_ = false;
     Clock::time_point began_ = Clock::now();
 
     static double seconds_since(Clock::time_point then) {
@@ -137,7 +137,7 @@ private:
     void run(Exchange& x);
     void check_open() const;
     std::size_t send(Exchange& x, std::string_view bytes, bool answers_wait);
-    void mind_the_time(Exchange& x, Clock::time_point last);
+    void check_time_limits(Exchange& x, Clock::time_point last);
     void take_lines(Exchange& x, const Read& read);
     bool take_block(Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read);
     [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
@@ -145,9 +145,9 @@ private:
     }
     bool fill();
     std::string_view pending() const { return std::string_view(incoming_).substr(read_from_); }
-    std::string how_it_ended(int milliseconds) const;
-    std::string why_closed() const;
-    std::string why_silent() const;
+    std::string exit_text(int milliseconds) const;
+    std::string close_reason() const;
+    std::string silence_reason() const;
     std::string end_of_output() const;
 };
 

@@ -73,7 +73,7 @@ TEST_F(Plugins, AnswerManyThreadsAtOnce) {
     EXPECT_EQ(plugin->spending().answers, 4u * 2 * 70000);
 }
 
-TEST_F(Plugins, ThatEndTheirProcessAreGivenUp) {
+TEST_F(Plugins, EndingTheProcessIsAnError) {
     const auto plugin = open_plugin(compiled("raise(SIGFPE)"));
     const std::string message = error<SamplerError>(*plugin);
     EXPECT_THAT(message, HasSubstr("libodd.so"));
@@ -82,7 +82,7 @@ TEST_F(Plugins, ThatEndTheirProcessAreGivenUp) {
     EXPECT_THAT(error<SamplerExited>(*plugin), HasSubstr("SIGFPE"));
 }
 
-TEST_F(Plugins, ThatLoopAreStoppedAfterTheirTimeOrByTheMonitor) {
+TEST_F(Plugins, EndlessCallsAreStopped) {
     const std::string file = compiled("for (;;) {}");
     PipeLimits limits;
     limits.limit_answers(0.3);
@@ -95,7 +95,7 @@ TEST_F(Plugins, ThatLoopAreStoppedAfterTheirTimeOrByTheMonitor) {
     EXPECT_EQ(error<Interrupted>(*plugin), "interrupted");
 }
 
-TEST_F(Plugins, ThatAreNoneSayWhatIsMissing) {
+TEST_F(Plugins, MissingFunctionsAreReported) {
     EXPECT_THROW(open_plugin("nowhere.so"), OutputError);
     EXPECT_THROW(open_plugin(CRESCENT_SOURCE_DIR "/README.md"), OutputError);
 }

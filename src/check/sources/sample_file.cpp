@@ -94,9 +94,9 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
     file.read(first.data(), static_cast<std::streamsize>(first.size()));
     first.resize(static_cast<std::size_t>(file.gcount()));
     const NpyHeader h = read_npy_header(in.path, first);
-    const auto refuse = [&](const std::string& message) { in.add(0, 0, message), in.throw_if_any(); };
+    const auto reject = [&](const std::string& message) { in.add(0, 0, message), in.throw_if_any(); };
     if (h.shape.size() != 2)
-        refuse(fmt::format("expected a two-dimensional array, not one of {} dimensions", h.shape.size()));
+        reject(fmt::format("expected a two-dimensional array, not one of {} dimensions", h.shape.size()));
     const std::size_t rows = h.shape[0], columns = h.shape[1];
     NumberTable t;
     std::string expected;
@@ -104,12 +104,12 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
         if (layout.size() == columns) t.columns = layout;
         expected += fmt::format("{}{} ({})", expected.empty() ? "" : " or ", layout.size(), fmt::join(layout, ","));
     }
-    if (t.columns.empty()) refuse(fmt::format("expected {} columns, not {}", expected, columns));
+    if (t.columns.empty()) reject(fmt::format("expected {} columns, not {}", expected, columns));
     file.clear();
     file.seekg(0, std::ios::end);
     const std::size_t bytes = static_cast<std::size_t>(file.tellg()) - h.end;
     if (bytes / h.bytes / columns < rows)
-        refuse(fmt::format("the file ends in row {} of {}", bytes / h.bytes / columns + 1, rows));
+        reject(fmt::format("the file ends in row {} of {}", bytes / h.bytes / columns + 1, rows));
     file.seekg(static_cast<std::streamoff>(h.end));
     std::vector<char> raw(rows * columns * h.bytes);
     file.read(raw.data(), static_cast<std::streamsize>(raw.size()));

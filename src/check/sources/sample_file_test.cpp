@@ -46,7 +46,7 @@ template <class F> std::string bytes_of(std::initializer_list<F> numbers) {
     return out;
 }
 
-TEST(TableFiles, AreReadByTheNamesOfTheirColumns) {
+TEST(TableFiles, ColumnsAreReadByName) {
     const NumberTable t = read(file_of("t.csv",
         "\xef\xbb\xbf"
         "c, b,a\r\n1,2,+3e-1\n\n-4,inf,nan\n"));
@@ -59,7 +59,7 @@ TEST(TableFiles, AreReadByTheNamesOfTheirColumns) {
     EXPECT_EQ(t.column("d"), -1);
 }
 
-TEST(TableFiles, OfNumPyAreTheSameInEitherOrderAndPrecision) {
+TEST(TableFiles, NpyFilesAreEqualInEitherOrderAndPrecision) {
     const std::string rows = "'fortran_order': False, 'shape': (3, 2), }",
                       columns = "'fortran_order': True, 'shape': (3, 2), }";
     const auto values = ElementsAre(1, 2, 3, 4, 5, 6);
@@ -70,7 +70,7 @@ TEST(TableFiles, OfNumPyAreTheSameInEitherOrderAndPrecision) {
 }
 
 // A density must not be infinite, so a number too large for a double is rejected; as 0 it would be accepted.
-TEST(TableFiles, TakeWhatOverflowsForInfinityAndWhatUnderflowsForZero) {
+TEST(TableFiles, OverflowIsInfiniteAndUnderflowIsZero) {
     const NumberTable t = read(file_of("o.csv", "a,b\n1e999,-1e999\n1e-999,-1e-999\n"));
     EXPECT_EQ(t.at(0, 0), INFINITY);
     EXPECT_EQ(t.at(0, 1), -INFINITY);
@@ -87,7 +87,7 @@ TEST(TableFiles, NameEveryMistakeWithItsPlace) {
     EXPECT_THAT(error_of(testing::TempDir() + "absent.csv"), HasSubstr("cannot be read"));
 }
 
-TEST(TableFiles, OfNumPyThatAreBrokenAreRefused) {
+TEST(TableFiles, InvalidNpyFilesAreRejected) {
     const std::string numbers = bytes_of<double>({1, 2});
     const std::string order = "'fortran_order': False, ";
     for (const auto& [dictionary, message] :
@@ -104,7 +104,7 @@ TEST(TableFiles, OfNumPyThatAreBrokenAreRefused) {
 }
 
 // Gaps as long as the header allows, which a regular expression that recurses for each character would not survive.
-TEST(TableFiles, OfNumPyMayHaveLongGaps) {
+TEST(TableFiles, NpyHeadersMayHaveLongGaps) {
     const std::string gap(20000, ' ');
     const std::string dictionary = "{'descr':" + gap + "'<f8', 'fortran_order': False, 'shape':" + gap + "(1, 2), }";
     EXPECT_THAT(read(file_of("g.npy", npy(dictionary, bytes_of<double>({7, 8})))).values, ElementsAre(7, 8));

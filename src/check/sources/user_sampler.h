@@ -56,7 +56,7 @@ template <Pointing S> struct Sampler<S> {
     static Type& of(S& s) { return *s; }
 };
 /// A copy of a sampler for the check: the sampler itself, or a pointer to it.
-template <class S> auto handed(const S& s) {
+template <class S> auto copy_for_check(const S& s) {
     if constexpr (Pointing<S>) return &*s;
     else return s;
 }
@@ -236,12 +236,12 @@ template <class T> inline constexpr std::size_t count_of = std::tuple_size_v<T>;
 template <class T, std::size_t i> using At = std::tuple_element_t<i, T>;
 
 /// Number of input parameters of a tuple; output parameters are at its end.
-template <class T> consteval std::size_t read_of() {
+template <class T> consteval std::size_t input_count() {
     return []<std::size_t... i>(std::index_sequence<i...>) {
         return (std::size_t{0} + ... + (Written<At<T, i>> ? 0 : 1));
     }(std::make_index_sequence<count_of<T>>{});
 }
-template <class T> consteval std::size_t written_of() { return count_of<T> - read_of<T>(); }
+template <class T> consteval std::size_t output_count() { return count_of<T> - input_count<T>(); }
 
 /// For a pointer to u S::numbers gives the number of its elements, by default two.
 template <class S, class C> consteval int numbers_in() {
@@ -254,7 +254,7 @@ template <class C>
 concept Direction = size_of<C>() == 3 || size_of<C>() == 0 || size_of<C>() == 4;  // the fourth of a padded one is 0
 
 /// Whether the member is sample(u), without w_o.
-template <class S> consteval bool without_wo() { return read_of<SampleParameters<S>>() == 1; }
+template <class S> consteval bool without_wo() { return input_count<SampleParameters<S>>() == 1; }
 
 /// The numbers of parameter `i` of sample: the first one, and how many.
 struct Share {
@@ -262,7 +262,7 @@ struct Share {
 };
 template <class S> consteval auto shares() {
     using T = SampleParameters<S>;
-    constexpr std::size_t reads = read_of<T>(), from = without_wo<S>() ? 0 : 1;
+    constexpr std::size_t reads = input_count<T>(), from = without_wo<S>() ? 0 : 1;
     std::array<Share, reads + 1> out{};
     int next = 0;
     [&]<std::size_t... i>(std::index_sequence<i...>) { ((out[i].count = numbers_in<S, At<T, i>>()), ...); }(
@@ -276,11 +276,11 @@ template <class S> consteval auto shares() {
     out[reads].count = next;
     return out;
 }
-template <class S> consteval int numbers() { return shares<S>()[read_of<SampleParameters<S>>()].count; }
+template <class S> consteval int numbers() { return shares<S>()[input_count<SampleParameters<S>>()].count; }
 
 /// The value type of an output parameter; passed as the parameter declares.
 template <class C> using Value = std::remove_cv_t<std::remove_pointer_t<Bare<C>>>;
-template <class C> decltype(auto) hand(Value<C>& v) {
+template <class C> decltype(auto) pass_output(Value<C>& v) {
     if constexpr (std::is_pointer_v<Bare<C>>) return &v;
     else return (v);
 }
@@ -299,10 +299,12 @@ template <class S, class C, std::size_t i> Filled<C> filled(Vec3d wo, const Prim
 template <class D> Draw described(const D& d) {
     Draw out{direction(d.wi), 1};
     if constexpr (requires { d.pdf; }) out.pdf = number_of(d.pdf);
-    const auto weigh = [&](Vec3d w, bool coloured) { out.weights = w, out.weight = coloured ? luminance(w) : w.x; };
-    if constexpr (requires { d.weight; }) weigh(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
+    const auto set_weight = [&](Vec3d w, bool coloured) {
+        out.weights = w, out.weight = coloured ? luminance(w) : w.x;
+    };
+    if constexpr (requires { d.weight; }) set_weight(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
     else if constexpr (requires { colour(d.f); }) {
-        if (out.pdf > 0) weigh(colour(d.f) * (std::fabs(out.wi.z) / out.pdf), Coloured<Bare<decltype(d.f)>>);
+        if (out.pdf > 0) set_weight(colour(d.f) * (std::fabs(out.wi.z) / out.pdf), Coloured<Bare<decltype(d.f)>>);
     }
     double q = 0;
     if constexpr (requires {
@@ -326,30 +328,30 @@ template <Optional D> struct Inner<D> {
 };
 template <class S> using Result = typename Inner<Bare<typename OfSample<S>::Result>>::Type;
 template <class D>
-concept TellsDelta = requires(const D d) {
+concept HasDelta = requires(const D d) {
     { d.delta } -> std::convertible_to<double>;
 } || requires(const D d) { d.IsSpecular(); } || requires(const D d) { d.specular; };
 template <class D>
-concept TellsWeight = requires(const D d) { d.weight; } || requires(const D d) { d.f; };
+concept HasWeight = requires(const D d) { d.weight; } || requires(const D d) { d.f; };
 
 /// bool or void with wi and pdf as outputs, and then a weight.
 template <class S, class... C>
 Draw written(S& s, Vec3d wo, const PrimarySample& u, std::type_identity<std::tuple<C...>>) {
     using T = std::tuple<C...>;
-    constexpr std::size_t reads = read_of<T>();
+    constexpr std::size_t reads = input_count<T>();
     std::tuple<Value<C>...> store{};
     bool is_drawn = true;
     [&]<std::size_t... i, std::size_t... k>(std::index_sequence<i...>, std::index_sequence<k...>) {
         const auto given = std::make_tuple(filled<S, At<T, i>, i>(wo, u)...);
         const auto call = [&] {
-            return s.sample(std::get<i>(given).get()..., hand<At<T, reads + k>>(std::get<reads + k>(store))...);
+            return s.sample(std::get<i>(given).get()..., pass_output<At<T, reads + k>>(std::get<reads + k>(store))...);
         };
         if constexpr (std::convertible_to<typename OfSample<S>::Result, bool>) is_drawn = static_cast<bool>(call());
         else call();
-    }(std::make_index_sequence<reads>{}, std::make_index_sequence<written_of<T>()>{});
+    }(std::make_index_sequence<reads>{}, std::make_index_sequence<output_count<T>()>{});
     if (!is_drawn) return {{0, 0, 1}, 0};
     Draw out{direction(std::get<reads>(store)), number_of(std::get<reads + 1>(store))};
-    if constexpr (written_of<T>() > 2) {
+    if constexpr (output_count<T>() > 2) {
         const auto& weight = std::get<reads + 2>(store);
         out.weights = colour(weight);
         out.weight = Coloured<Bare<decltype(weight)>> ? luminance(out.weights) : out.weights.x;
@@ -359,7 +361,7 @@ Draw written(S& s, Vec3d wo, const PrimarySample& u, std::type_identity<std::tup
 
 template <class S> Draw sample(S& s, Vec3d wo, const PrimarySample& u) {
     using T = SampleParameters<S>;
-    if constexpr (written_of<T>() > 0) return written(s, wo, u, std::type_identity<T>{});
+    if constexpr (output_count<T>() > 0) return written(s, wo, u, std::type_identity<T>{});
     else
         return [&]<std::size_t... i>(std::index_sequence<i...>) {
             return drawn(s.sample(filled<S, At<T, i>, i>(wo, u).get()...));

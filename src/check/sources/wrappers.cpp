@@ -88,9 +88,9 @@ private:
 class CachingAdapter : public ForwardingAdapter {
 public:
     CachingAdapter(std::shared_ptr<const SamplerAdapter> sampler, bool draws)
-        : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), keeps_draws_(draws) {}
+        : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), caches_draws_(draws) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        if (!keeps_draws_) return inner().sample(t, wo, u, out);
+        if (!caches_draws_) return inner().sample(t, wo, u, out);
         for (const Drawn& d : drawn_)
             if (d.technique == t && Key({wo, wo}) == Key({d.wo, d.wo}) && std::ranges::equal(d.u, u, same)) {
                 std::ranges::copy(d.draws, out.begin());
@@ -100,7 +100,7 @@ public:
         drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
     }
     void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        if (!keeps_draws_ || t > 1) return inner().pdf(t, at, out);
+        if (!caches_draws_ || t > 1) return inner().pdf(t, at, out);
         answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
             [&](std::span<const Pair> a, std::span<double> o) { inner().pdf(t, a, o); });
     }
@@ -123,7 +123,7 @@ public:
         if (has_true_f()) inner().reference_f(at, out);
         else f(at, out);
     }
-    const SamplerAdapter& anew() const { return inner(); }
+    const SamplerAdapter& uncached_sampler() const { return inner(); }
 
 private:
     struct Drawn {
@@ -132,7 +132,7 @@ private:
         std::vector<PrimarySample> u;
         std::vector<Draw> draws;
     };
-    bool keeps_draws_;
+    bool caches_draws_;
     mutable std::vector<Drawn> drawn_;
     mutable std::array<Cache<double>, 2> plain_pdf_;  // by technique
     mutable std::array<Cache<double>, 2> pdf_;        // by technique
@@ -161,20 +161,20 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
 
 const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
     const auto* cache = dynamic_cast<const CachingAdapter*>(&sampler);
-    return cache ? cache->anew() : sampler;
+    return cache ? cache->uncached_sampler() : sampler;
 }
 
 // ---- Adds the side to the message of an error and throws it again with the same type.
 
 namespace {
 
-constexpr std::string_view opening = "sampler ";  // no error of a sampler begins with it
+constexpr std::string_view side_prefix = "sampler ";  // no error of a sampler begins with it
 
 class LabelledAdapter : public ForwardingAdapter {
 public:
     LabelledAdapter(std::shared_ptr<const SamplerAdapter> sampler, const std::string& side)
         : ForwardingAdapter(std::move(sampler)),
-          who_(fmt::format("{}{} ({}): ", opening, side, printable(inner().name(), 40))) {}
+          prefix_(fmt::format("{}{} ({}): ", side_prefix, side, printable(inner().name(), 40))) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         forward([&] { inner().sample(t, wo, u, out); });
     }
@@ -198,11 +198,11 @@ public:
     }
 
 private:
-    std::string who_;
+    std::string prefix_;
 
     std::string message_of(const SamplerError& fault) const {
         const std::string_view what = fault.what();
-        return what.starts_with(opening) ? std::string(what) : who_ + std::string(what);
+        return what.starts_with(side_prefix) ? std::string(what) : prefix_ + std::string(what);
     }
     template <class Call> void forward(Call&& call) const {
         try {

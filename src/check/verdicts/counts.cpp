@@ -48,7 +48,8 @@ void test_counts(const Evidence& e, const Visit& visit) {
     const std::uint64_t of_draws = e.source.recorded() ? 0 : c.invalid.times;
     const double invalid = static_cast<double>(of_draws + e.source.invalid());
     visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
-    const double per = static_cast<double>(c.odd) / static_cast<double>(std::max<std::uint64_t>(c.odd_compared, 1));
+    const double per =
+        static_cast<double>(c.differing) / static_cast<double>(std::max<std::uint64_t>(c.differing_compared, 1));
     test_share(Family::pointwise, c.pointwise, followed, tolerated_share, visit, std::max(per, 1.0));
     test_share(Family::zero, c.zero, followed, tolerated_zeros, visit, std::max(per, 1.0));
     test_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);

@@ -1,5 +1,5 @@
-// The two stages of a test: the member of each family with the least p, and a second test of the same member. `ask`
-// visits every member of all families; an answer has a family, a member, a difference and a p.
+// The two stages of a test: the member of each family with the least p, and a second test of the same member.
+// `visit_all` visits every member of all families; an answer has a family, a member, a difference and a p.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,9 @@ template <class Answer> struct LeastOf {
     double p() const { return std::min(1.0, answer.p * members); }
 };
 
-template <class Answer, class Ask> auto least_by_family(const Ask& ask) {
+template <class Answer, class VisitAll> auto least_by_family(const VisitAll& visit_all) {
     std::map<decltype(Answer::family), LeastOf<Answer>> out;
-    ask([&](const Answer& a) {
+    visit_all([&](const Answer& a) {
         LeastOf<Answer>& least = out[a.family];
         if (least.members++ == 0 || a.p < least.answer.p) least.answer = a;
     });
@@ -24,10 +24,10 @@ template <class Answer, class Ask> auto least_by_family(const Ask& ask) {
 }
 
 /// With p = 1 if the member does not exist any more.
-template <class Answer, class Ask> Answer same_member(const Ask& ask, const Answer& first) {
+template <class Answer, class VisitAll> Answer same_member(const VisitAll& visit_all, const Answer& first) {
     Answer out = first;
     out.p = 1;
-    ask([&](const Answer& a) {
+    visit_all([&](const Answer& a) {
         if (a.family == first.family && a.member == first.member) out = a;
     });
     return out;
