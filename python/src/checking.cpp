@@ -199,7 +199,7 @@ AsDict as_dict(const Verdict& v) {
     out["state"] = std::string(word(v.state));
     out["say"] = v.message;
     out["cause"] = v.cause;
-    out["settle"] = settling(v, FrontEnd::python);
+    out["settle"] = next_step_text(v, FrontEnd::python);
     out["expected"] = v.expected;
     out["evidence"] = v.evidence.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     out["seconds"] = v.seconds;

@@ -1,5 +1,6 @@
-// Each w_o by itself: what cannot be used is not compared; then one tree of both, two looks, and what is found is put
-// again to fresh draws of both. A and B draw from different streams.
+// At each w_o: unusable draws are left out, one tree is grown for both samplers, the first stage looks at the draws
+// twice, and each difference that it finds is tested again with fresh draws of both. A and B draw from different
+// streams.
 #include "check/against.h"
 
 #include <algorithm>
@@ -24,21 +25,21 @@ namespace crescent::check {
 namespace {
 
 constexpr std::array compared_by = {"same_distribution", "same_f", "variance"};
-constexpr std::uint32_t places_of_b = 1u << 15;  // B draws from streams that no A draws from
+constexpr std::uint32_t streams_of_b = 1u << 15;  // B draws from streams that A never uses
 
-/// What a comparison finds of the distributions.
+/// Differences between the two distributions.
 struct Differences {
-    std::vector<std::pair<AgainstAnswer, AgainstAnswer>> found;  // at both stages
-    std::map<AgainstAnswer::Family, double> p;                   // the least, times their number
+    std::vector<std::pair<AgainstAnswer, AgainstAnswer>> found;  // significant at both stages
+    std::map<AgainstAnswer::Family, double> p;                   // least p-value times the number of members
 };
 
-auto questions_to(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b) {
-    return [&](const std::function<void(const AgainstAnswer&)>& visit) { test_against(ground, a, b, visit); };
+auto questions_to(const CommonTree& common, const AgainstDraws& a, const AgainstDraws& b) {
+    return [&](const std::function<void(const AgainstAnswer&)>& visit) { test_against(common, a, b, visit); };
 }
 
-/// What the comparison of one w_o is made with.
+/// The settings of the comparison at one w_o.
 struct AgainstPlan {
-    CheckBudget budget, own;  // of both together; of each by itself
+    CheckBudget budget, own;  // of both samplers together; of each alone
     Levels levels;
     std::uint32_t seed = 1;
     bool expect_same = false;
@@ -46,7 +47,7 @@ struct AgainstPlan {
 
 AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same, std::size_t cases) {
     AgainstPlan out;
-    // A program answers for its own check too, which looks once: what is wrong at a first look is not ranked.
+    // The budget includes a check of each sampler alone, with one look. A sampler that fails that check is not ranked.
     TestSettings shared = settings;
     if (limited) shared.questions /= 2;
     out.budget = budget_of(shared, limited, cases);
@@ -73,7 +74,7 @@ public:
             v.name = name;
             out.push_back(std::move(v));
         }
-        ground_.emplace(common_ground(a_, b_, plan_.budget));
+        common_.emplace(common_tree(a_, b_, plan_.budget));
         const Differences d = differences();
         if (draws_a_.invalid + draws_b_.invalid > 0) {
             for (Verdict& v : out) note_unusable(v);
@@ -82,7 +83,7 @@ public:
         note_distribution(d, out[0]);
         const CheckAt own_a = own(a_), own_b = own(b_);
         const AgainstCase c{
-            a_, b_, *ground_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f(), plan_.levels, plan_.expect_same};
+            a_, b_, *common_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f(), plan_.levels, plan_.expect_same};
         compare_f(c, out[1]);
         compare_variances(c, out[1], out[2]);
         return out;
@@ -91,7 +92,7 @@ public:
 private:
     const AgainstPlan& plan_;
     AgainstSide a_, b_;
-    std::optional<CommonGround> ground_;
+    std::optional<CommonTree> common_;
     AgainstDraws draws_a_, draws_b_;
 
     StreamKey key_of(const Side& side) const {
@@ -109,13 +110,13 @@ private:
         Differences out;
         for (int look = 0; look < plan_.budget.looks && out.found.empty(); ++look) {
             const Look to = plan_.budget.look(look);
-            draw_on(a_, *ground_, to, plan_.budget.of_f(), draws_a_);
-            draw_on(b_, *ground_, to, plan_.budget.of_f(), draws_b_);
+            draw_on(a_, *common_, to, plan_.budget.of_f(), draws_a_);
+            draw_on(b_, *common_, to, plan_.budget.of_f(), draws_b_);
             const double level = level_at(plan_.levels, look, plan_.budget.looks);
             out.p.clear();
             std::vector<AgainstAnswer> suspects;
             for (const auto& [family, least] :
-                least_by_family<AgainstAnswer>(questions_to(*ground_, draws_a_, draws_b_))) {
+                least_by_family<AgainstAnswer>(questions_to(*common_, draws_a_, draws_b_))) {
                 out.p[family] = least.p();
                 if (least.p() < level) suspects.push_back(least.answer);
             }
@@ -130,10 +131,10 @@ private:
         AgainstSide a = a_, b = b_;
         a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look);
         AgainstDraws of_a, of_b;
-        draw_on(a, *ground_, more, 0, of_a);
-        draw_on(b, *ground_, more, 0, of_b);
+        draw_on(a, *common_, more, 0, of_a);
+        draw_on(b, *common_, more, 0, of_b);
         for (const AgainstAnswer& r : suspects) {
-            AgainstAnswer again = same_member(questions_to(*ground_, of_a, of_b), r);
+            AgainstAnswer again = same_member(questions_to(*common_, of_a, of_b), r);
             again.p = one_sided(r, again);
             if (again.p < plan_.levels.second) out.found.push_back({r, again});
         }
@@ -144,7 +145,7 @@ private:
         v.state = State::inconclusive;
         v.message = fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
             of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B");
-        v.next_step = "A sampler that is valid: `crescent check` of it alone says more.";
+        v.next_step = "A valid sampler; `crescent check` of it alone shows more.";
     }
 
     std::string sentence_of(const AgainstAnswer& r) const {
@@ -156,7 +157,8 @@ private:
                         r.member == 0 ? "draws nothing at" : "draws a direction at", r.difference, half);
                 return fmt::format(
                     "The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
-                    direction_text(ground_->ways[static_cast<std::size_t>(r.member) - 2]), r.difference, half);
+                    direction_text(common_->delta_directions[static_cast<std::size_t>(r.member) - 2]), r.difference,
+                    half);
             case AgainstAnswer::sums:
             case AgainstAnswer::sums_by_sets:
                 if (r.member == log_density)
@@ -168,7 +170,7 @@ private:
                     "xyz"[r.member - mean_x], r.difference, half);
             default: break;
         }
-        const ChartRect& rect = ground_->tree.nodes()[static_cast<std::size_t>(r.member)].rect;
+        const ChartRect& rect = common_->tree.nodes()[static_cast<std::size_t>(r.member)].rect;
         return fmt::format(
             "About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
             "of those there.",
@@ -191,8 +193,8 @@ private:
             v.message = "They draw from different distributions. " + sentence_of(clearest->second);
             return;
         }
-        const AgainstSizes sizes = sizes_against(*ground_, draws_a_, draws_b_, plan_.levels.first);
-        v.message = "No difference between their distributions is seen.";
+        const AgainstSizes sizes = sizes_against(*common_, draws_a_, draws_b_, plan_.levels.first);
+        v.message = "No difference between their distributions was found.";
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;
         v.message +=
@@ -205,7 +207,7 @@ private:
     }
 };
 
-/// CheckCases of the same w_o one after the other.
+/// Indices of the cases, grouped by w_o.
 std::vector<std::size_t> by_direction(std::span<const CheckCase> check_cases) {
     std::vector<std::size_t> order(check_cases.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -216,8 +218,8 @@ std::vector<std::size_t> by_direction(std::span<const CheckCase> check_cases) {
     return order;
 }
 
-/// The three verdicts of a w_o at which a sampler broke off.
-std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const SamplerError& fault) {
+/// The three verdicts at a w_o at which a sampler failed to answer.
+std::vector<Verdict> failed_verdicts(const CheckCase& a, const CheckCase& b, const SamplerError& fault) {
     const bool slow = dynamic_cast<const SamplerTimeout*>(&fault);
     std::vector<Verdict> out;
     for (const char* name : compared_by) {
@@ -226,14 +228,14 @@ std::vector<Verdict> broken_off(const CheckCase& a, const CheckCase& b, const Sa
         v.state = slow ? State::inconclusive : State::error;
         v.message = slow                                 ? std::string(fault.what())
             : dynamic_cast<const SamplerExited*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
-                                                         : fmt::format("The sampler broke off: {}.", fault.what());
+                                                         : fmt::format("The sampler failed: {}.", fault.what());
         if (slow) v.next.kind = NextStep::Kind::more_time;
         out.push_back(std::move(v));
     }
     return out;
 }
 
-/// What breaks off says which side it was. A sampler stays one for all of its cases.
+/// The cases with adapters that name the side in each error. A sampler keeps one adapter for all of its cases.
 std::vector<CheckCase> named_cases(std::span<const CheckCase> check_cases, const std::string& side) {
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     std::map<std::shared_ptr<const SamplerAdapter>, std::shared_ptr<const SamplerAdapter>> named;
@@ -245,7 +247,7 @@ std::vector<CheckCase> named_cases(std::span<const CheckCase> check_cases, const
     return out;
 }
 
-/// That of all: the worst of them.
+/// The worst state of the verdicts.
 State worst_state(const std::vector<Verdict>& verdicts) {
     for (State s : {State::wrong, State::error, State::inconclusive})
         if (std::ranges::any_of(verdicts, [s](const Verdict& v) { return v.state == s; })) return s;
@@ -263,14 +265,14 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     const bool serial = either([](const CheckCase& t) { return t.adapter->serial(); });
     const bool limited = either([](const CheckCase& t) { return t.adapter->limited(); });
     const AgainstPlan plan = plan_of(settings, limited, expect_same, a.size());
-    PerDirectionCache cache_a, cache_b;  // kept by one thread, where either is serial
+    PerDirectionCache cache_a, cache_b;  // used by one thread if either sampler is serial
     const auto one = [&](std::size_t i) {
         monitor.check();
         try {
             const auto stream = static_cast<std::uint32_t>(i);
-            const Side side_a = cache_a.of(of_a[i], stream), side_b = cache_b.of(of_b[i], stream + places_of_b);
+            const Side side_a = cache_a.of(of_a[i], stream), side_b = cache_b.of(of_b[i], stream + streams_of_b);
             all[i] = Comparison(side_a, side_b, plan).run();
-        } catch (const SamplerError& fault) { all[i] = broken_off(a[i], b[i], fault); }
+        } catch (const SamplerError& fault) { all[i] = failed_verdicts(a[i], b[i], fault); }
         monitor.advance(1);
     };
     if (serial)
@@ -294,7 +296,7 @@ std::string against_text(const CheckResult& j) {
         if (v.check_case != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.check_case);
         last = v.check_case;
         out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.message,
-            settling(v).empty() ? "" : " What would settle it: " + settling(v));
+            next_step_text(v).empty() ? "" : " Next step: " + next_step_text(v));
     }
     return out +
         fmt::format(

@@ -1,6 +1,6 @@
-// Given how many draws of both fall into a node, those of A in its first half follow a hypergeometric law if both are
-// of one distribution, which is that of a sum of independent indicators (Vatutin and Mikhailov 1982): Bennett's
-// inequality holds with its variance at every count.
+// Given the number of draws of both in a node, the draws of A in its first half have a hypergeometric distribution if
+// both samplers have the same distribution. It is the distribution of a sum of independent indicators (Vatutin and
+// Mikhailov 1982), so Bennett's inequality holds with its variance at every count.
 #include "check/against_draws.h"
 
 #include <algorithm>
@@ -14,14 +14,14 @@ namespace crescent::check {
 
 namespace {
 
-constexpr std::size_t kinds_before_ways = 2;  // nothing, directions
-constexpr double same_way = 1e-4;             // distance of unit vectors
+constexpr std::size_t kinds_before_deltas = 2;  // no sample, a direction
+constexpr double same_delta_direction = 1e-4;   // distance of unit vectors
 constexpr std::size_t drawn_kept = 256;
 
-/// What one draw is: -1 nothing, 0 a direction, 1 + k the k-th way.
-class Sorter {
+/// Decides which draws are usable, and which of them are directions of the density.
+class DrawClassifier {
 public:
-    Sorter(const AgainstSide& side, int technique)
+    DrawClassifier(const AgainstSide& side, int technique)
         : source_(*side.check_case.adapter, technique, side.check_case.wo, side.check_case.light),
           other_(side.other, 0, side.check_case.wo, side.check_case.light) {}
     Source& source() { return source_; }
@@ -45,9 +45,9 @@ Vec3d weight_of(const Draw& d, int channels) {
     return channels == 3 ? d.weights : Vec3d{w, w, w};
 }
 
-std::size_t nearest_way(std::span<const Vec3d> ways, Vec3d w) {
-    const auto off = [w](Vec3d way) { return length(w - way); };
-    return static_cast<std::size_t>(std::ranges::min_element(ways, {}, off) - ways.begin());
+std::size_t nearest_delta(std::span<const Vec3d> delta_directions, Vec3d w) {
+    const auto off = [w](Vec3d direction) { return length(w - direction); };
+    return static_cast<std::size_t>(std::ranges::min_element(delta_directions, {}, off) - delta_directions.begin());
 }
 
 /// Pilot draws of all techniques.
@@ -56,18 +56,18 @@ std::uint32_t draw_pilots(
     std::uint32_t of = 0;
     DeltaParts delta;
     for (int t = 0; t < side.check_case.adapter->techniques(); ++t) {
-        Sorter sorter(side, t);
+        DrawClassifier classifier(side, t);
         StreamKey key = side.key;
         key.purpose = Purpose::pilot, key.technique = static_cast<std::uint8_t>(t);
-        const std::uint32_t count = sorter.source().available(key, budget.pilot());
+        const std::uint32_t count = classifier.source().available(key, budget.pilot());
         std::vector<PrimarySample> u;
         std::vector<Draw> draws;
         for (std::uint32_t from = 0; from < count; from += batch_size) {
             u.resize(std::min(batch_size, count - from)), draws.assign(u.size(), {});
-            sorter.source().draw(key, from, u, draws);
+            classifier.source().draw(key, from, u, draws);
             for (const Draw& d : draws)
-                if (sorter.is_drawn(d)) out.push_back(normalize(d.wi));
-                else if (d.delta > 0 && d.delta <= 1) delta.add(d, weight_of(d, sorter.source().channels()));
+                if (classifier.is_drawn(d)) out.push_back(normalize(d.wi));
+                else if (d.delta > 0 && d.delta <= 1) delta.add(d, weight_of(d, classifier.source().channels()));
         }
         of += count;
     }
@@ -77,13 +77,15 @@ std::uint32_t draw_pilots(
 
 }  // namespace
 
-CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
-    std::vector<Vec3d> of_a, of_b, drawn, ways;
+CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
+    std::vector<Vec3d> of_a, of_b, drawn, delta_directions;
     std::vector<DeltaPart> delta_a, delta_b;
     const std::uint32_t of = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
     for (const auto* parts : {&delta_a, &delta_b})
         for (const DeltaPart& p : *parts)
-            if (std::ranges::none_of(ways, [&](Vec3d w) { return length(w - p.wi) < same_way; })) ways.push_back(p.wi);
+            if (std::ranges::none_of(
+                    delta_directions, [&](Vec3d w) { return length(w - p.wi) < same_delta_direction; }))
+                delta_directions.push_back(p.wi);
     const double step = std::max(step_of_directions(of_a), step_of_directions(of_b));
     std::vector<DensityPoint> pilots;
     Vec3d middle{};
@@ -99,8 +101,8 @@ CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const Che
     source.by_draws = true;
     StreamKey key = a.key;
     key.purpose = Purpose::tree;
-    CommonGround out{Tree(source, std::move(pilots), of, {}, step, budget, key), step, middle, 0, std::move(ways),
-        std::move(delta_a), std::move(delta_b), std::move(drawn)};
+    CommonTree out{Tree(source, std::move(pilots), of, {}, step, budget, key), step, middle, 0,
+        std::move(delta_directions), std::move(delta_a), std::move(delta_b), std::move(drawn)};
     double all = 0;
     for (const Leaf& leaf : out.tree.leaves()) {
         const double m = leaf.q * out.tree.rect(leaf).area();
@@ -112,11 +114,11 @@ CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const Che
 
 namespace {
 
-/// Draws of one technique of one side.
+/// Draws of one technique of one sampler.
 class AgainstTechnique {
 public:
-    AgainstTechnique(const AgainstSide& side, const CommonGround& ground, int technique, AgainstDraws& to)
-        : ground_(ground), sorter_(side, technique), source_(sorter_.source()), to_(to) {}
+    AgainstTechnique(const AgainstSide& side, const CommonTree& common, int technique, AgainstDraws& to)
+        : common_(common), classifier_(side, technique), source_(classifier_.source()), to_(to) {}
 
     void independent(StreamKey key, std::uint32_t from, std::uint32_t last, std::uint32_t of_f) {
         key.purpose = Purpose::draws, key.technique = static_cast<std::uint8_t>(source_.technique);
@@ -126,7 +128,7 @@ public:
             source_.draw(key, from, u_, draws_);
             to_.independent += static_cast<double>(u_.size());
             for (const Draw& d : draws_) take(d, -1);
-            if (from < of_f) weigh(from);
+            if (from < of_f) add_weights(from);
         }
     }
     void scrambled(StreamKey key, std::uint32_t first, std::uint32_t last) {
@@ -146,26 +148,28 @@ public:
     }
 
 private:
-    const CommonGround& ground_;
-    Sorter sorter_;
+    const CommonTree& common_;
+    DrawClassifier classifier_;
     Source& source_;
     AgainstDraws& to_;
     std::vector<PrimarySample> u_;
     std::vector<Draw> draws_;
 
     void take(const Draw& d, int set) {
-        to_.invalid += !Sorter::usable(d);
-        const bool drawn = sorter_.is_drawn(d);
+        to_.invalid += !DrawClassifier::usable(d);
+        const bool drawn = classifier_.is_drawn(d);
         if (set < 0) {
-            const bool way = d.delta > 0 && !ground_.ways.empty();
-            ++to_.kinds[drawn ? 1 : way ? kinds_before_ways + nearest_way(ground_.ways, d.wi) : 0];
+            const bool direction = d.delta > 0 && !common_.delta_directions.empty();
+            ++to_.kinds[drawn   ? 1
+                    : direction ? kinds_before_deltas + nearest_delta(common_.delta_directions, d.wi)
+                                : 0];
         }
         if (!drawn) return;
         const Vec3d w = normalize(d.wi);
-        const std::size_t l = ground_.tree.find(to_chart(w));
-        const Leaf& leaf = ground_.tree.leaves()[l];
+        const std::size_t l = common_.tree.find(to_chart(w));
+        const Leaf& leaf = common_.tree.leaves()[l];
         const std::array<double, against_sums> h = {
-            math::log(leaf.q) - ground_.log_q, w.x - ground_.middle.x, w.y - ground_.middle.y, w.z - ground_.middle.z};
+            math::log(leaf.q) - common_.log_q, w.x - common_.middle.x, w.y - common_.middle.y, w.z - common_.middle.z};
         if (set < 0) {
             ++to_.leaves[l];
             for (std::size_t q = 0; q < h.size(); ++q) to_.sums[q].add(h[q]);
@@ -175,15 +179,15 @@ private:
         ++to_.node_by_set[static_cast<std::size_t>(leaf.coarse)][static_cast<std::size_t>(set)];
     }
 
-    /// f L cos / p of the draws in hand, or the weight that comes with them; summed over the techniques.
-    void weigh(std::uint32_t from) {
+    /// f L cos / p of the buffered draws, or the weight returned with them, summed over the techniques.
+    void add_weights(std::uint32_t from) {
         std::vector<std::size_t> at;
         std::vector<Vec3d> w;
         for (std::size_t i = 0; i < draws_.size(); ++i) {
             const Draw& d = draws_[i];
-            if (!sorter_.is_drawn(d)) continue;
+            if (!classifier_.is_drawn(d)) continue;
             at.push_back(i), w.push_back(d.wi);
-            to_.weighs = to_.weighs && (d.weight || (source_.has_density() && (source_.has_f() || d.f)));
+            to_.has_weights = to_.has_weights && (d.weight || (source_.has_density() && (source_.has_f() || d.f)));
         }
         std::vector<Vec3d> f(source_.has_f() ? w.size() : 0);
         if (source_.has_f()) source_.f_cos(w, f);
@@ -197,14 +201,14 @@ private:
 
 }  // namespace
 
-void draw_on(const AgainstSide& side, const CommonGround& ground, const Look& to, std::uint32_t of_f, AgainstDraws& d) {
+void draw_on(const AgainstSide& side, const CommonTree& common, const Look& to, std::uint32_t of_f, AgainstDraws& d) {
     const auto techniques = static_cast<std::uint32_t>(side.check_case.adapter->techniques());
     const auto before = static_cast<std::uint32_t>(d.independent) / techniques,
                set_before = static_cast<std::uint32_t>(d.scrambled) / replicate_sets / techniques;
-    d.leaves.resize(ground.tree.leaves().size()), d.node_by_set.resize(ground.tree.rows());
-    d.kinds.resize(kinds_before_ways + ground.ways.size());
+    d.leaves.resize(common.tree.leaves().size()), d.node_by_set.resize(common.tree.rows());
+    d.kinds.resize(kinds_before_deltas + common.delta_directions.size());
     for (std::uint32_t t = 0; t < techniques; ++t) {
-        AgainstTechnique one(side, ground, static_cast<int>(t), d);
+        AgainstTechnique one(side, common, static_cast<int>(t), d);
         one.independent(side.key, before, to.independent, of_f);
         one.scrambled(side.key, set_before, to.scrambled / replicate_sets);
     }
@@ -218,7 +222,7 @@ std::string_view name_of(AgainstAnswer::Family family) {
 
 namespace {
 
-/// Counts of one node by side: in its first half, and in all.
+/// Counts of one node by sampler: in its first half, and in the whole node.
 struct NodeCounts {
     double a = 0, b = 0;
 };
@@ -237,11 +241,11 @@ std::vector<NodeCounts> counts_of(const Tree& tree, const AgainstDraws& a, const
     return out;
 }
 
-/// Two counts, each of so many: the difference of their shares, in draws of A given the sum of both.
+/// Two counts, each with its total: the difference of their shares, in draws of A given the sum of both.
 struct TwoShares {
     double difference = 0, variance = 0;  // of k_a
-    double per_share = 0;                 // what one of difference is in shares
-    double share = 0;                     // in both together
+    double per_share = 0;                 // change of the share for each unit of difference
+    double share = 0;                     // of both together
     TwoShares(double ka, double na, double kb, double nb) {
         const double n = na + nb, k = ka + kb;
         share = k / n;
@@ -257,7 +261,7 @@ AgainstAnswer answer_of(AgainstAnswer::Family family, int member, const TwoShare
     return out;
 }
 
-/// Means of replicates of both sides, by Welch's t-test.
+/// Compares means of replicates of both samplers by Welch's t-test.
 AgainstAnswer by_sets(AgainstAnswer::Family family, int member, const ReplicateMean<Replicates>& a,
     const ReplicateMean<Replicates>& b, double floor) {
     const double v = a.variance + b.variance;
@@ -276,7 +280,7 @@ void test_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::functio
     }
 }
 
-void test_sums_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
+void test_sums_against(const CommonTree& g, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit) {
     double low = 1e300, high = -1e300;  // of ln q
     for (const Leaf& leaf : g.tree.leaves()) low = std::min(low, leaf.q), high = std::max(high, leaf.q);
@@ -304,7 +308,7 @@ void test_sums_against(const CommonGround& g, const AgainstDraws& a, const Again
 
 }  // namespace
 
-void test_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
+void test_against(const CommonTree& g, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit) {
     test_kinds(a, b, visit);
     test_sums_against(g, a, b, visit);
@@ -323,7 +327,7 @@ void test_against(const CommonGround& g, const AgainstDraws& a, const AgainstDra
         const auto in_each = [&](const AgainstDraws& d, double n) {
             return std::min(s.share, 1 - s.share) * n * d.scrambled / d.independent / replicate_sets;
         };
-        // As for one sampler: a replicate's mean must be near normal.
+        // As for one sampler, the mean of a replicate must be nearly normal.
         if (!both || x.depth >= replicated_depth || std::min(in_each(a, all.a), in_each(b, all.b)) < least_count)
             continue;
         const auto row = static_cast<std::size_t>(x.row),
@@ -339,7 +343,7 @@ void test_against(const CommonGround& g, const AgainstDraws& a, const AgainstDra
     }
 }
 
-AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b, double level) {
+AgainstSizes sizes_against(const CommonTree& g, const AgainstDraws& a, const AgainstDraws& b, double level) {
     AgainstSizes out;
     double tests = 0;
     test_against(g, a, b, [&](const AgainstAnswer& r) {
@@ -353,7 +357,7 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
         }
     });
     const std::vector<NodeCounts> counts = counts_of(g.tree, a, b);
-    std::vector<double> part(counts.size(), 1.0);  // what shows if it lies in this node
+    std::vector<double> part(counts.size(), 1.0);  // detectable missing part if it lies in this node
     std::vector<std::pair<double, double>> leaves;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         const TreeNode& x = g.tree.nodes()[i];
@@ -370,7 +374,7 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
             needed_by_bennett(floor_of_cut(x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) * s.per_share;
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;
-            // Of the node's draws; it lies across cells, half of it in one.
+            // Relative to the draws of the node; the missing part may overlap several cells, with half of it in one.
             const double missing = needed / (1 - share + 1e-300);
             const double of_all = std::max(all.a / a.independent, all.b / b.independent);
             if (missing <= share) part[half] = std::min(part[half], 2 * missing * of_all);

@@ -1,6 +1,5 @@
-// f is compared within what a few roundings of the directions move it by. Variances are ranked by a test of their
-// difference that fails at both stages; where f is known at A's draws alone, B's variance follows from them by p_A /
-// p_B.
+// f is compared within the change that a few roundings of the directions cause. Variances are ranked if the test of
+// their difference fails at both stages. If f is known only at A's draws, B's variance follows from them by p_A / p_B.
 #include "check/against_draws.h"
 
 #include <algorithm>
@@ -17,7 +16,7 @@ namespace crescent::check {
 
 namespace {
 
-/// Where f of both is known. Of a file A it is known at its draws.
+/// Where f of both samplers is known. If A is a file, f is known only at its draws.
 struct SharedF {
     std::vector<Vec3d> wi;
     std::vector<double> a, b;
@@ -44,7 +43,7 @@ SharedF f_of_both(const AgainstCase& c) {
         for (const Draw& d : draws)
             if (d.pdf > 0 && d.f && d.wi.z != 0) out.wi.push_back(normalize(d.wi)), out.a.push_back(*d.f);
     } else {
-        const bool whole = std::ranges::any_of(c.ground.drawn, [](Vec3d w) { return w.z < 0; });
+        const bool whole = std::ranges::any_of(c.common.drawn, [](Vec3d w) { return w.z < 0; });
         StreamKey key = c.a.key;
         key.purpose = Purpose::pairs;
         Stream stream(key);
@@ -52,7 +51,7 @@ SharedF f_of_both(const AgainstCase& c) {
             const double t = 0.98 * stream.number();
             out.wi.push_back(from_chart({whole && i % 2 ? 2 - t : t, two_pi * stream.number()}));
         }
-        out.wi.insert(out.wi.end(), c.ground.drawn.begin(), c.ground.drawn.end());
+        out.wi.insert(out.wi.end(), c.common.drawn.begin(), c.common.drawn.end());
     }
     std::vector<Pair> at;
     for (Vec3d w : out.wi) at.push_back({c.a.check_case.wo, w});
@@ -61,7 +60,7 @@ SharedF f_of_both(const AgainstCase& c) {
     return out;
 }
 
-/// What roundings of single precision move f by there.
+/// The change of f that rounding in single precision causes there.
 double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
     std::vector<Pair> at;
     for (int k = 0; k < 6; ++k) {
@@ -107,7 +106,8 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     v.message += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
 }
 
-/// The first delta part whose q times weight differs. A part that is drawn less than once in a pilot may be missing.
+/// The first delta part whose q times weight differs. A part that has less than one expected draw in the pilot may be
+/// missing.
 std::string differing_delta(const AgainstCase& c) {
     const auto power = [](const std::vector<DeltaPart>& parts, Vec3d w) {
         Vec3d sum{};
@@ -115,8 +115,8 @@ std::string differing_delta(const AgainstCase& c) {
             if (length(p.wi - w) < same_number) sum = sum + p.weight * p.q;
         return sum;
     };
-    for (Vec3d w : c.ground.ways) {
-        const Vec3d a = power(c.ground.delta_a, w), b = power(c.ground.delta_b, w);
+    for (Vec3d w : c.common.delta_directions) {
+        const Vec3d a = power(c.common.delta_a, w), b = power(c.common.delta_b, w);
         if (length(a - b) <= same_number * std::max({length(a), length(b), 1e-30})) continue;
         return fmt::format("The delta part towards {} differs: q times weight is {:.6g} and {:.6g}.", direction_text(w),
             luminance(a), luminance(b));
@@ -134,7 +134,7 @@ void compare_f(const AgainstCase& c, Verdict& v) {
     };
     if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
         v.state = State::skipped;
-        v.message = only_at_draws(a) ? "f of A is known at its draws alone, and B has no f to compare with it."
+        v.message = only_at_draws(a) ? "f of A is known only at its draws, and B has no f for a comparison."
             : a.can_draw()           ? "There is no f to compare."
                                      : "The file of A has no column f: there is nothing to compare.";
     } else if (is_estimate(c.a) || is_estimate(c.b)) {
@@ -153,7 +153,7 @@ void compare_f(const AgainstCase& c, Verdict& v) {
 
 namespace {
 
-constexpr double alike_variances = 0.01;  // relative: less does not decide between samplers
+constexpr double alike_variances = 0.01;  // relative: a smaller difference does not matter for the choice of a sampler
 constexpr double interval_95 = 1.959964;
 
 /// Moments of weights with their standard errors.
@@ -165,18 +165,18 @@ struct WeightMoments {
         n = s.n, mean = s.mean, variance = sqr(s.sd);
         double m4 = 0;
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
-        // The second term is what the mean costs: alone where two values come equally often.
+        // The second term is the error of the mean. It is the only term if the weights take two values equally often.
         variance_se = std::sqrt(std::max(m4 - sqr(variance), 0.0) / n + 2 * sqr(variance / std::max(n - 1, 1.0)));
         const WeightTail tail = tail_of_weights(x);
         heavy = tail.heavy() || tail.open();
     }
-    /// No more than the rounding of p is left.
+    /// Whether the remaining variance is within the rounding of p.
     bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
 };
 
 void skip(Verdict& v, std::string message) { v.state = State::skipped, v.message = std::move(message); }
 
-/// The ratio with its interval, and which is smaller where both stages say so.
+/// Adds the ratio with its interval to the verdict, and the smaller variance if both stages agree.
 void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
     const double low = ratio * math::exp(-interval_95 * log_se), high = ratio * math::exp(interval_95 * log_se);
     v.evidence["ratio"] = ratio;
@@ -197,7 +197,7 @@ std::vector<double> fresh_weights(const AgainstSide& side, const AgainstCase& c)
     AgainstSide again = side;
     again.key.stage = 2;
     AgainstDraws d;
-    draw_on(again, c.ground, {0, c.of_f, 0}, c.of_f, d);
+    draw_on(again, c.common, {0, c.of_f, 0}, c.of_f, d);
     return d.x;
 }
 
@@ -234,7 +234,7 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
     }
 }
 
-/// Draws of A in twenty groups, with what they say of B by p_A / p_B: E_B[X_B^2] = E_A[X_A^2 p_A / p_B].
+/// Draws of A in twenty groups, reweighted to B by p_A / p_B: E_B[X_B^2] = E_A[X_A^2 p_A / p_B].
 struct ReweighedDraws {
     static constexpr std::size_t groups = 20;
     struct Group {
@@ -250,7 +250,7 @@ struct ReweighedDraws {
     std::array<Group, groups> of{};
     Group all{};
     std::vector<double> x, others;
-    double lost = 0;  // draws with light at which p of B is 0
+    double lost = 0;  // draws with light where p of B is 0
 
     ReweighedDraws(const AgainstCase& c, int stage) {
         Source a(*c.a.check_case.adapter, 0, c.a.check_case.wo, c.a.check_case.light),
@@ -271,7 +271,7 @@ struct ReweighedDraws {
                 ++g->n, g->x += x[i], g->square += sqr(x[i]), g->other += others[i];
         }
     }
-    /// Of the log ratio, by the jackknife (Quenouille 1956).
+    /// Standard error of the log ratio by the jackknife (Quenouille 1956).
     double log_se() const {
         double square = 0;
         for (const Group& g : of) {
@@ -288,15 +288,15 @@ struct ReweighedDraws {
 void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     const SamplerAdapter& b = *c.b.check_case.adapter;
     if (!b.traits().has_pdf)
-        return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
+        return skip(v, "f is known only at the draws of A, and B has no pdf(w) to weight them with.");
     if (b.techniques() > 1)
-        return skip(v, "f is known at the draws of A alone: the variance of a pair of techniques does not follow.");
+        return skip(v, "f is known only at the draws of A: the variance of a pair of techniques does not follow.");
     const ReweighedDraws first(c, 1);
     if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.others).heavy) {
         v.state = State::inconclusive;
         v.message = first.lost > 0
-            ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A that carry light: B never finds that.",
-                  first.lost, first.x.size())
+            ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A with light: B never samples it.", first.lost,
+                  first.x.size())
             : "A or B has a heavy tail: the variance is not known.";
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
@@ -313,7 +313,7 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     v.message += " B's follows from the draws of A by p_A / p_B.";
 }
 
-/// What each sampler's own check says against a ratio of its variance.
+/// Whether the check of the sampler alone prevents a variance ratio.
 bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
     static constexpr std::array<std::string_view, 6> counts = {
         "support", "normalised", "density", "identity", "mean", "valid"};
@@ -322,7 +322,7 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
         if (std::ranges::find(counts, name) == counts.end()) return false;
         skip(v,
             fmt::format("{} is wrong itself, by {}: the variance of a wrong sampler is not ranked. `crescent check` of "
-                        "it alone says more.",
+                        "it alone shows more.",
                 who, name));
         return true;
     };
@@ -342,7 +342,7 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
                          : "The file of A has no column f, so there are no weights f L cos / p.");
     if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, so its f L cos / p has no variance.");
     for (const auto& [draws, adapter, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
-        if (adapter->has_drawn_f() && !draws->weighs)
+        if (adapter->has_drawn_f() && !draws->has_weights)
             return skip(v,
                 fmt::format(
                     "{} has neither a pdf(w) nor a weight with its draws (weight=yes), so it has no variance.", who));

@@ -1,4 +1,4 @@
-// The engine's outcomes as one result: verdicts in order, what is expected of each, what there was no time for.
+// Combines the outcomes of the engine into one result: verdicts in order, expected states, and skipped w_o.
 #include "check/check.h"
 
 #include <algorithm>
@@ -23,22 +23,22 @@ using check::CheckBudget;
 using check::CheckOutcome;
 using check::Cut;
 
-/// Verdicts of each case, in the order of the list.
+/// Verdicts by case, in the order of the verdict list.
 using VerdictsByCase = std::vector<std::vector<Verdict>>;
 
-/// A heavy tail or an equal rank is no fault of a sampler.
+/// A heavy tail or an equal rank does not make a sampler wrong.
 bool may_stay_open(const Verdict& v) {
     return v.name == "tail" || v.name == "mean" || v.name == "efficiency" || v.evidence.contains("unmet_share");
 }
 
-/// Whether it is what is expected of a right sampler, or of a built-in arm here.
+/// Sets whether the state is the expected one, for a right sampler or for a built-in arm.
 void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
     const bool infinite = check_case.theory.tail_k && *check_case.theory.tail_k >= check::heavy_index;
     if (check_case.theory.wrong && *check_case.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
         v.why_expected = check_case.theory.why;
     } else if (infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
-        // Where p is 0, the light that makes the tail is not among the weights.
+        // Where p is 0, the weights do not include the light that causes the tail.
         v.expected = v.state == State::inconclusive || !reaches_all;
         v.why_expected = check_case.theory.why;
     } else if (!check_case.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
@@ -50,28 +50,27 @@ void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
     }
 }
 
-/// What the verdicts of a case that ended early say: the first of them, and the others.
+/// Messages of the verdicts of a case that ended early: of the first verdict, and of the others.
 struct AbortText {
     State state = State::error;
     std::string first, rest;
 };
 
 AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSettings& settings) {
-    const std::string rest = "It could not be evaluated: the sampler broke off before.";
+    const std::string rest = "Not evaluated: the sampler failed before.";
     switch (cut.why) {
-        case Cut::Why::fault: return {State::error, fmt::format("The sampler broke off: {}.", cut.what), rest};
-        case Cut::Why::gone: return {State::error, rest, rest};
+        case Cut::Why::fault: return {State::error, fmt::format("The sampler failed: {}.", cut.what), rest};
+        case Cut::Why::exited: return {State::error, rest, rest};
         case Cut::Why::too_slow: break;
     }
-    const std::string message =
-        fmt::format("Not examined: {:g} s are too short for this program to be examined at every w_o.",
-            check_case.adapter->spending().allowed);
+    const std::string message = fmt::format(
+        "Not examined: {:g} s are not enough for this program at every w_o.", check_case.adapter->spending().allowed);
     return {settings.accept_few ? State::skipped : State::inconclusive, message, message};
 }
 
-/// Every verdict of a case that ended early, but for `valid` where the first draws were seen. Notes what there was no
-/// time for.
-void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
+/// Sets all verdicts of a case that ended early, except `valid` if the first draws were examined. Records what was
+/// skipped.
+void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
     std::vector<Verdict>& verdicts, CheckResult& j) {
     const AbortText text = abort_text(cut, check_case, settings);
     SkippedCase left{check_case.arm, check_case.text(), {}, text.first};
@@ -88,42 +87,41 @@ void cut_short(const CheckCase& check_case, const Cut& cut, const TestSettings& 
     if (text.state != State::error) j.left_out.push_back(std::move(left));
 }
 
-/// The tests of the sampler as a whole ended early: said where they would be, at its first w_o.
-void cut_whole(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
+/// Reports at the first w_o that the tests of the whole sampler ended early.
+void report_whole_cut(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
     if (valid.state != State::right) return;
     const AbortText text = abort_text(cut, check_case, settings);
     valid.state = text.state, valid.message = text.first;
     if (cut.why == Cut::Why::fault) valid.evidence["first_fault"] = cut.what;
 }
 
-/// Questions to a program for each w_o that belong to none of its estimates, at most: f at the draws of two baselines,
-/// seven turns of 512 samples each that are timed, the first draws, a rose. And for the call: corners, reciprocity.
-constexpr std::size_t evaluations_beside = 16000, evaluations_for_all = 8000;
+/// Upper bounds of the evaluations that no estimate includes. At each w_o: f at the draws of two baselines, seven timed
+/// turns of 512 samples, the first draws, and a rose. For the whole call: corners and reciprocity.
+constexpr std::size_t evaluations_extra = 16000, evaluations_for_all = 8000;
 
-/// CheckCases whose programs may be asked what is left of what they may be asked in all, less what follows.
-std::vector<CheckCase> with_what_is_left(std::span<const CheckCase> check_cases, const TestSettings& settings) {
+/// The cases with adapters limited to the remaining evaluations of a program, less those reserved for later steps.
+std::vector<CheckCase> with_remaining_limits(std::span<const CheckCase> check_cases, const TestSettings& settings) {
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     const auto w_o =
         static_cast<std::size_t>(std::ranges::count_if(out, [](const CheckCase& t) { return !t.baseline; }));
     const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
     for (CheckCase& t : out)
         if (t.adapter->limited())
-            t.adapter =
-                std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_beside));
+            t.adapter = std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_extra));
     return out;
 }
 
-/// What is wrong, as far as the evaluations that are left tell.
+/// The cause of a wrong verdict, as far as the remaining evaluations allow.
 std::optional<check::Cause> cause_of(
     std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings) {
     if (!outcome.wrong()) return {};
-    const std::vector<CheckCase> capped = with_what_is_left(check_cases, settings);
+    const std::vector<CheckCase> capped = with_remaining_limits(check_cases, settings);
     try {
         return check::cause_of(capped, outcome);
-    } catch (const SamplerError&) { return {}; }  // they did not suffice, or it ended meanwhile
+    } catch (const SamplerError&) { return {}; }  // the limit was reached or the program ended
 }
 
-/// Verdicts of one sampler, handed to its cases.
+/// Assigns the verdicts of one sampler to its cases.
 void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings,
     VerdictsByCase& to, CheckResult& j) {
     const std::optional<check::Cause> cause = cause_of(check_cases, outcome, settings);
@@ -134,14 +132,15 @@ void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outc
         std::vector<Verdict>& mine = to[i];
         std::move(next, next + verdict_names.size(), std::back_inserter(mine));
         next += verdict_names.size();
-        if (outcome.cut[k]) cut_short(check_cases[i], *outcome.cut[k], settings, mine, j);
+        if (outcome.cut[k]) report_cut(check_cases[i], *outcome.cut[k], settings, mine, j);
     }
     if (outcome.whole_cut)
-        cut_whole(*outcome.whole_cut, check_cases[outcome.check_cases[0]], settings, to[outcome.check_cases[0]][0]);
+        report_whole_cut(
+            *outcome.whole_cut, check_cases[outcome.check_cases[0]], settings, to[outcome.check_cases[0]][0]);
 }
 
-/// Few w_o may be accepted, none may not.
-void refuse_none(std::span<const CheckOutcome> outcomes, CheckResult& j) {
+/// A result without a single examined w_o is an error, also with accept_few.
+void require_examined(std::span<const CheckOutcome> outcomes, CheckResult& j) {
     const auto whole = [](const CheckOutcome& o) {
         return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
     };
@@ -162,7 +161,7 @@ void count(const CheckOutcome& outcome, CheckResult& j) {
     j.evaluations += outcome.evaluations;
 }
 
-/// CheckCases beside each other; the call does nothing else while it takes times. What ended early stays so.
+/// Ranks the cases against each other. No other thread runs during the timing. Cases that ended early keep their state.
 void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const check::CheckSettings& settings, const ProgressMonitor& monitor, VerdictsByCase& verdicts) {
     std::vector<check::Efficiency> all = check::variances_of(check_cases, outcomes, settings, monitor);
@@ -179,8 +178,8 @@ void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> 
         }
 }
 
-/// Maps and weights by case. A program is asked for them in any case: what it is asked does not depend on what is
-/// written.
+/// Maps and weights by case. They are computed even if no output shows them, so that the queries to a program do not
+/// depend on the output.
 void draw_pictures(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const TestSettings& settings, CheckResult& j) {
     std::vector<std::vector<BinHistogram>> maps(check_cases.size());
@@ -192,11 +191,11 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
             for (const CheckAt& c : o.at[k])
                 if (std::optional<BinHistogram> map = check::bin_map(check_cases[i], c))
                     maps[i].push_back(std::move(*map));
-            if (!o.tails[k].weighed) continue;
+            if (!o.tails[k].has_weights) continue;
             weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.at[k]), o.tails[k]);
             try {
                 check::add_rose(check_cases[i], *weights[i]);
-            } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // it ended meanwhile
+            } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // the program ended
         }
     if (!settings.pictures) return;
     for (std::size_t i = 0; i < check_cases.size(); ++i) {
@@ -205,7 +204,7 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
     }
 }
 
-/// Fewer than these are not worth a verdict: a call with more than 18 w_o takes more in all.
+/// Fewer evaluations do not give a useful verdict, so a call with more than 18 w_o uses more in all.
 constexpr std::size_t least_evaluations = 200000;
 
 }  // namespace
@@ -213,11 +212,11 @@ constexpr std::size_t least_evaluations = 200000;
 CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
     if (settings.budget) return *settings.budget;
     if (limited) {
-        // A twelfth of all is for what belongs to no w_o, for the arms beside it and for causes.
+        // One twelfth is reserved for tests of the whole sampler, for baselines and for causes.
         const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
-        const std::size_t beside = evaluations_beside + evaluations_for_all / std::max<std::size_t>(w_o, 1);
+        const std::size_t extra = evaluations_extra + evaluations_for_all / std::max<std::size_t>(w_o, 1);
         return CheckBudget::limited(static_cast<double>(
-            std::min(settings.questions - std::min(settings.questions, beside), std::max(each, least_evaluations))));
+            std::min(settings.questions - std::min(settings.questions, extra), std::max(each, least_evaluations))));
     }
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }
@@ -250,7 +249,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
         std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));
         case_of.resize(out.verdicts.size(), i);
     }
-    if (settings.accept_few) refuse_none(outcomes, out);
+    if (settings.accept_few) require_examined(outcomes, out);
     for (std::size_t v = 0; v < out.verdicts.size(); ++v)
         expect(check_cases[case_of[v]], reaches_all[case_of[v]], out.verdicts[v]);
     next_step(out);

@@ -1,4 +1,4 @@
-// run_checks(): order of its verdicts, what is left of a sampler that breaks off or is too slow, budgets and levels.
+// run_checks(): order of the verdicts, partial results of a sampler that fails or is too slow, budgets and levels.
 #include "check/check.h"
 
 #include <cmath>
@@ -12,11 +12,11 @@
 namespace crescent {
 namespace {
 
-/// Lambert by the cosine, p times `factor`; a program that answers `rate` times a second and has `allowed` seconds.
+/// Lambert by the cosine, p times `factor`; a program that gives `rate` answers per second and has `allowed` seconds.
 class Program : public SamplerAdapter {
 public:
     double factor = 1, rate = 1e5, allowed = 0;
-    std::uint64_t breaks_at = ~std::uint64_t{0};  // after so many answers
+    std::uint64_t fails_at = ~std::uint64_t{0};  // number of answers before it fails
 
     std::string name() const override { return "program"; }
     bool serial() const override { return true; }
@@ -40,11 +40,11 @@ public:
 
 private:
     mutable std::uint64_t answers_ = 0;
-    mutable bool gone_ = false;
+    mutable bool failed_ = false;
     void answer(std::size_t n) const {
-        if (gone_) throw SamplerExited("given up");
+        if (failed_) throw SamplerExited("given up");
         answers_ += n;
-        if (answers_ > breaks_at) gone_ = true, throw SamplerError("it fell silent");
+        if (answers_ > fails_at) failed_ = true, throw SamplerError("no answer");
         if (allowed > 0 && spending().seconds > allowed) throw SamplerTimeout("too slow");
     }
 };
@@ -66,7 +66,7 @@ const Verdict& verdict_at(const CheckResult& j, std::size_t check_case, std::str
     throw std::out_of_range("no such verdict");
 }
 
-TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
+TEST(RunChecks, OrdersVerdictsByCaseAndList) {
     const auto program = std::make_shared<Program>();
     std::vector<CheckCase> check_cases = cases_of_program(program);
     ProgressMonitor monitor;
@@ -83,8 +83,8 @@ TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
     EXPECT_LE(j.evaluations, j.questions);
 }
 
-/// The middle and the most grazing w_o come first; what there was no time for is inconclusive, but for `valid`.
-TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
+/// The middle and the most grazing w_o come first. w_o for which no time is left are inconclusive, except for `valid`.
+TEST(RunChecks, SkipsCasesWithoutRemainingTime) {
     const auto program = std::make_shared<Program>();
     program->allowed = 10.5;  // 1,050,000 answers, two w_o
     const CheckResult j = checked(program);
@@ -100,7 +100,7 @@ TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
     EXPECT_EQ(j.state, State::inconclusive);
 }
 
-TEST(Judge, AcceptsFewButNotNone) {
+TEST(RunChecks, AcceptsFewCasesButNotNone) {
     const auto some = std::make_shared<Program>(), none = std::make_shared<Program>();
     some->allowed = 10.5, none->allowed = 0.5;
     const CheckResult j = checked(some, true);
@@ -110,21 +110,21 @@ TEST(Judge, AcceptsFewButNotNone) {
     EXPECT_EQ(checked(none, true).state, State::inconclusive);
 }
 
-/// The w_o that were examined before stay; the first error says what happened.
-TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
+/// Results of earlier w_o are kept, and the first error is reported.
+TEST(RunChecks, KeepsResultsFromBeforeAFailure) {
     const auto program = std::make_shared<Program>();
-    program->breaks_at = 500000;
+    program->fails_at = 500000;
     const CheckResult j = checked(program);
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
-    EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // of its first draws
-    EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler broke off: it fell silent.");
-    EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "it fell silent");
-    EXPECT_EQ(verdict_at(j, 0, "density").message, "It could not be evaluated: the sampler broke off before.");
+    EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // from its first draws
+    EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler failed: no answer.");
+    EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "no answer");
+    EXPECT_EQ(verdict_at(j, 0, "density").message, "Not evaluated: the sampler failed before.");
     EXPECT_TRUE(j.left_out.empty());
 }
 
-TEST(Judge, AsksAProgramNoMoreThanItsBudget) {
+TEST(RunChecks, QueriesAProgramWithinItsBudget) {
     for (std::uint64_t most : {200000u, 300000u, 500000u})
         for (double factor : {1.0, 1.002, 1.005, 1.1}) {
             Program program;
@@ -136,7 +136,7 @@ TEST(Judge, AsksAProgramNoMoreThanItsBudget) {
         }
 }
 
-TEST(Judge, SharesAlphaBetweenTheStages) {
+TEST(RunChecks, SharesAlphaBetweenTheStages) {
     for (double alpha : {1e-9, 1e-6, 1e-3, 0.05, 0.5})
         for (double questions : {1.0, 1e5, 1e7}) {
             const check::Levels l = check::levels_of(alpha, questions);

@@ -1,5 +1,4 @@
-// GoogleTest matchers: a sampler checked in one line of a user's own suite. gtest_alpha.h shares one alpha over a
-// suite.
+// GoogleTest matchers that check a sampler in one line of a test suite. gtest_alpha.h shares one alpha over a suite.
 //
 //   EXPECT_THAT(MySampler{}, crescent::IsARightSampler());        // nothing wrong, nothing inconclusive
 //   EXPECT_THAT(MySampler{}, crescent::IsNotAWrongSampler());     // a heavy tail is allowed
@@ -17,26 +16,26 @@
 #include "check/gtest_alpha.h"
 #include "check/user.h"
 
-/// In place of the bytes of a struct that has no operator<<.
+/// Replaces the bytes that GoogleTest prints for a struct without operator<<.
 template <class S>
-    requires(crescent::user::Judgeable<S> && !crescent::user::Pointing<S> &&
+    requires(crescent::user::Checkable<S> && !crescent::user::Pointing<S> &&
         !requires(std::ostream& out, const S s) { out << s; })
 class testing::internal::UniversalPrinter<S> {
 public:
-    /// Prints what it is.
+    /// Prints a fixed text.
     static void Print(const S&, std::ostream* out) { *out << "a sampler"; }
 };
 
 namespace crescent {
 
-/// Checks a sampler. EXPECT_THAT matches first and, where that fails, matches again to explain: the second time, of the
-/// same argument, has the result of the first. No match is decided by a result that was kept.
+/// Checks a sampler. EXPECT_THAT matches first and, on failure, matches again for an explanation: the second match of
+/// the same argument reuses the result of the first. A stored result is never used for another match.
 template <class Argument> class SamplerMatcher : public testing::MatcherInterface<Argument> {
 public:
     /// settings: of each check; open: whether inconclusive verdicts match.
     SamplerMatcher(TestSettings settings, bool open) : settings_(std::move(settings)), open_(open) {}
 
-    /// Whether the sampler is right. Explains in at most 8 lines where it is not.
+    /// Whether the sampler is right. If it is not, explains why in at most 8 lines.
     bool MatchAndExplain(Argument arg, testing::MatchResultListener* listener) const override {
         const CheckResult j = result_of(arg, listener->IsInterested());
         const bool matches = j.state == State::right || (open_ && j.state == State::inconclusive);
@@ -54,13 +53,13 @@ public:
 
 private:
     /// Matchers of several elements (Each, ElementsAre) match some before they explain the first: only an explanation
-    /// that follows a single match can take its result.
+    /// directly after a single match reuses its result.
     CheckResult result_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
         if (explains && since_explained_ == 1 && of_ == &arg && kept_) {
             since_explained_ = 0;
             return *std::exchange(kept_, std::nullopt);
         }
-        CheckResult j = check_sampler("sampler", user::handed(arg), shared_settings(settings_));
+        CheckResult j = check_sampler("sampler", user::copy_for_check(arg), shared_settings(settings_));
         kept_.reset();
         since_explained_ = explains ? 0 : since_explained_ + 1;
         if (!explains) kept_ = j, of_ = &arg;
@@ -74,12 +73,12 @@ private:
     mutable int since_explained_ = 0;
 };
 
-/// A matcher of any sampler that check_sampler takes.
+/// A matcher for any sampler that check_sampler accepts.
 class AnySamplerMatcher {
 public:
-    /// As of SamplerMatcher.
+    /// As SamplerMatcher.
     AnySamplerMatcher(TestSettings settings, bool open) : settings_(std::move(settings)), open_(open) {}
-    /// The matcher of one type.
+    /// The matcher for one type.
     template <class Argument> operator testing::Matcher<Argument>() const {
         return testing::Matcher<Argument>(new SamplerMatcher<Argument>(settings_, open_));
     }
@@ -89,13 +88,13 @@ private:
     bool open_;
 };
 
-/// EXPECT_THAT(MySampler{}, crescent::IsARightSampler()): every verdict is right or was skipped.
+/// EXPECT_THAT(MySampler{}, crescent::IsARightSampler()): every verdict is right or skipped.
 inline AnySamplerMatcher IsARightSampler() { return {TestSettings::quick(), false}; }
 
-/// The same where inconclusive verdicts pass too.
+/// The same, but inconclusive verdicts pass too.
 inline AnySamplerMatcher IsNotAWrongSampler() { return {TestSettings::quick(), true}; }
 
-/// With levels, budget, w_o and seed of one's own: EXPECT_THAT(MySampler{},
+/// The same with other settings: EXPECT_THAT(MySampler{},
 /// crescent::IsARightSamplerBy(crescent::TestSettings::thorough())).
 inline AnySamplerMatcher IsARightSamplerBy(const TestSettings& settings) { return {settings, false}; }
 

@@ -1,4 +1,4 @@
-// One alpha over all tests of a GoogleTest suite, however many samplers they check.
+// One alpha over all tests of a GoogleTest suite, independent of how many samplers they check.
 //
 //   int main(int argc, char** argv) {
 //       testing::InitGoogleTest(&argc, argv);
@@ -6,9 +6,9 @@
 //       return RUN_ALL_TESTS();
 //   }
 //
-// Every test of the program has an equal share (Sidak), whether it runs or not, and the k-th matcher within a test
-// 6 / (pi k)^2 of its test's. So the shares are the same if all tests run in one process or, as gtest_discover_tests
-// has it, each in a process of its own.
+// Every test of the program has an equal share (Sidak), whether it runs or not, and the k-th matcher of a test has 6 /
+// (pi k)^2 of the share of that test. The shares are therefore the same if all tests run in one process or, with
+// gtest_discover_tests, each in its own process.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class SharedAlpha : public testing::Environment {
 public:
     explicit SharedAlpha(double alpha) : alpha_(alpha) {}
 
-    /// The alpha of the next sampler in the test of that name; tests: in the whole suite.
+    /// The alpha of the next sampler in the test with that name; tests: number of tests in the suite.
     double next(const std::string& test, int tests) {
         const double pi2 = 9.869604401089358, k = ++calls_[test];
         const double share = -std::expm1(std::log1p(-alpha_) / std::max(tests, 1)) * 6 / (pi2 * k * k);
@@ -35,9 +35,9 @@ public:
         ++checked_;
         return share;
     }
-    /// The sum of what this process gave out.
+    /// The sum of the shares that this process used.
     double spent() const { return spent_; }
-    /// Prints the number of samplers checked and the probability of a false failure.
+    /// Prints the number of checked samplers and the probability of a false failure.
     void TearDown() override {
         if (checked_ > 0)
             std::printf(
@@ -52,18 +52,18 @@ private:
     std::map<std::string, int> calls_;
 };
 
-/// The shared alpha; null: each matcher has alpha for itself.
+/// The shared alpha; null: each matcher has its own alpha.
 inline SharedAlpha*& shared_alpha() {
     static SharedAlpha* shared = nullptr;
     return shared;
 }
-/// From here on the matchers of this program share alpha. GoogleTest owns what is returned.
+/// Makes the matchers of this program share alpha. GoogleTest owns the returned object.
 inline SharedAlpha& share_alpha(double alpha = 1e-3) {
     auto* shared = new SharedAlpha(alpha);
     testing::AddGlobalTestEnvironment(shared);
     return *(shared_alpha() = shared);
 }
-/// `settings` with the share of alpha that the running test's next sampler has.
+/// `settings` with the share of alpha of the next sampler in the running test.
 inline TestSettings shared_settings(TestSettings settings = TestSettings::quick()) {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
     if (shared_alpha() && test)

@@ -1,4 +1,4 @@
-// The matchers for GoogleTest: one check each, failing or not, and one alpha over a suite.
+// The GoogleTest matchers: one check for each, on success and on failure, and one alpha over a suite.
 #include "check/gtest.h"
 
 #include <gtest/gtest-spi.h>
@@ -39,7 +39,7 @@ TestSettings one_wo() {
     return settings;
 }
 
-TEST(Matchers, CheckOnceAlsoWhereTheyFail) {
+TEST(Matchers, CheckOnceAlsoOnFailure) {
     const int once = calls_of([] { check_sampler("sampler", Counted{1.1}, one_wo()); });
     ASSERT_GT(once, 0);
     EXPECT_EQ(calls_of([] { EXPECT_THAT(Counted{}, IsARightSamplerBy(one_wo())); }),
@@ -50,8 +50,8 @@ TEST(Matchers, CheckOnceAlsoWhereTheyFail) {
         once);
 }
 
-/// The second element has the address of the first: what was kept of one is never taken for another.
-TEST(Matchers, OfSeveralElementsDecideEachByItsOwnCheck) {
+/// The second element has the address of the first: the result of one element must not be used for another.
+TEST(Matchers, CheckEachElementSeparately) {
     const auto made = [](double factor) { return Counted{factor}; };
     const auto matcher = testing::Each(testing::ResultOf(made, IsARightSamplerBy(one_wo())));
     EXPECT_TRUE(testing::Value(std::vector<double>{1.0, 1.0}, matcher));
@@ -88,8 +88,8 @@ TEST(SharedAlpha, SharesOfAllTestsSumToAlphaAtMost) {
     EXPECT_DOUBLE_EQ(sum, shared.spent());
 }
 
-/// Forty processes of one test each give out what one process of forty tests does.
-TEST(SharedAlpha, SharesAreThoseOfTheWholeSuiteInEveryProcess) {
+/// Forty processes of one test each use the same shares as one process of forty tests.
+TEST(SharedAlpha, SharesDoNotDependOnTheNumberOfProcesses) {
     double sum = 0;
     SharedAlpha one_process(0.01);
     for (int test = 0; test < 40; ++test) {
@@ -100,7 +100,7 @@ TEST(SharedAlpha, SharesAreThoseOfTheWholeSuiteInEveryProcess) {
     EXPECT_DOUBLE_EQ(sum, one_process.spent());
 }
 
-TEST(SharedAlpha, WithoutItAMatcherHasItsAlphaForItself) {
+TEST(SharedAlpha, DefaultsToTheAlphaOfTheSettings) {
     EXPECT_EQ(shared_alpha(), nullptr);
     EXPECT_EQ(shared_settings().alpha, TestSettings::quick().alpha);
 }

@@ -1,4 +1,4 @@
-// What writes a result, for those who include the verdicts alone.
+// The output functions of a result, for code that includes only the verdicts.
 #pragma once
 
 #include "check/report/print.h"

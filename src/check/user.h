@@ -1,23 +1,24 @@
-// Your own sampler, judged. A struct with
+// Checks of a user's sampler. The sampler is a struct with
 //
-//   sample(wo, u)   -> something with .wi and .pdf (and .weight, if it says f cos / p itself; and .delta: true, or the
-//   probability with
-//                      which a delta part was chosen, for a draw of one, whose .pdf is that probability and whose
-//                      .weight is there)
-//   pdf(wo, wi)     -> a number, 1/sr; left out: the sampler is checked by what is left
+//   sample(wo, u)   -> a struct with .wi and .pdf; optional: .weight, the value f cos / p; .delta, for a draw of a
+//   delta
+//                      part: true or its probability, which is .pdf too; .weight is then required
+//   pdf(wo, wi)     -> a number, 1/sr; optional: without it only the remaining tests are made
 //   f(wo, wi)       -> a number, 1/sr, or three, without the cosine; optional
-//   traits()        -> crescent::Traits: w_o on both sides, the index, random numbers of its own; optional
+//   traits()        -> crescent::Traits: w_o on both sides, the index, own random numbers; optional
 //
-// in plain floats or doubles: directions and u may be arrays, spans, const T* or structs that braces fill. u holds one
-// to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be written through references. An
-// environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. No SIMD, no base class:
+// in plain floats or doubles: directions and u may be arrays, spans, const T* or structs that braces initialise. u
+// holds one to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be output references.
+// An environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. SIMD or a base class is
+// not needed:
 //
 //   crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
 //
-// A pointer to one is checked as what it points to; sampler_of(sample, pdf, f) makes one of lambdas.
+// A pointer to a sampler is checked like the sampler; sampler_of(sample, pdf, f) makes a sampler from lambdas.
 //
-// Members that are const are called from many threads at once, others by one. What a sampler throws is an error, not a
-// fault of it; a std::optional that is empty, and false where wi and pdf are written through, is nothing drawn.
+// Members that are const are called by many threads at the same time, others by one. An exception of a sampler gives
+// the state "error", not "wrong". An empty std::optional, and false with output references, mean that there is no
+// sample.
 #pragma once
 
 #include <fmt/format.h>
@@ -29,13 +30,13 @@
 
 namespace crescent::user {
 
-/// Parameters that are directions alone.
+/// Whether all parameters are directions.
 template <class T> consteval bool are_directions() {
     return []<std::size_t... i>(std::index_sequence<i...>) { return (Direction<At<T, i>> && ...); }(
                std::make_index_sequence<count_of<T>>{});
 }
-/// Whether pdf takes directions and gives a number; whether f takes them and gives its channels; whether traits() is
-/// one; whether sample takes wo and random numbers; whether it gives a direction and a density.
+/// Whether pdf takes directions and returns a number; whether f takes them and returns its channels; whether traits()
+/// is valid; whether sample takes wo and random numbers; whether it returns a direction and a density.
 template <class S> consteval bool takes_directions() {
     if constexpr (!HasPdf<S>) return true;
     else {
@@ -61,7 +62,7 @@ template <class S> consteval bool traits_fit() {
 }
 template <class S> consteval bool takes_numbers() {
     using T = SampleParameters<S>;
-    if constexpr (read_of<T>() < 1 || written_of<T>() == 1 || written_of<T>() > 3) return false;
+    if constexpr (input_count<T>() < 1 || output_count<T>() == 1 || output_count<T>() > 3) return false;
     else {
         constexpr bool known = []<std::size_t... i>(std::index_sequence<i...>) {
             return ((Written<At<T, i>> || size_of<At<T, i>>() >= 0) && ...);
@@ -73,25 +74,25 @@ template <class S> consteval bool takes_numbers() {
 }
 template <class S> consteval bool gives_draws() {
     using T = SampleParameters<S>;
-    constexpr std::size_t reads = read_of<T>();
-    if constexpr (written_of<T>() > 1) return Three<Value<At<T, reads>>> && Scalar<Value<At<T, reads + 1>>>;
+    constexpr std::size_t reads = input_count<T>();
+    if constexpr (output_count<T>() > 1) return Three<Value<At<T, reads>>> && Scalar<Value<At<T, reads + 1>>>;
     else
         return requires(const Result<S> d) { direction(d.wi); } &&
             (!HasPdf<S> || requires(const Result<S> d) { number_of(d.pdf); });
 }
 template <class S> consteval bool gives_weights() {
     using T = SampleParameters<S>;
-    if constexpr (written_of<T>() > 2) return Channels<Value<At<T, read_of<T>() + 2>>>;
-    else if constexpr (written_of<T>() > 0) return true;
+    if constexpr (output_count<T>() > 2) return Channels<Value<At<T, input_count<T>() + 2>>>;
+    else if constexpr (output_count<T>() > 0) return true;
     else if constexpr (requires(const Result<S> d) { d.weight; })
         return requires(const Result<S> d) { colour(d.weight); };
     else if constexpr (requires(const Result<S> d) { d.f; }) return requires(const Result<S> d) { colour(d.f); };
     else return true;
 }
-/// Whether pdf and f, where the class names them, can be called at all.
+/// Whether pdf and f, if the class declares them, can be called.
 template <class S> consteval bool pdf_is_plain() { return HasPdf<S> || !names_pdf<S>(); }
 template <class S> consteval bool f_is_plain() { return HasF<S> || !names_f<S>(); }
-template <class S> consteval bool judgeable() {
+template <class S> consteval bool is_checkable() {
     if constexpr (!HasSample<S> || !pdf_is_plain<S>() || !f_is_plain<S>()) return false;
     else if constexpr (!takes_numbers<S>()) return false;
     else
@@ -99,26 +100,25 @@ template <class S> consteval bool judgeable() {
             gives_weights<S>();
 }
 template <class S>
-concept Judgeable = std::is_class_v<SamplerOf<S>> && judgeable<SamplerOf<S>>();
+concept Checkable = std::is_class_v<SamplerOf<S>> && is_checkable<SamplerOf<S>>();
 
-/// What a struct lacks to be judged, said in a sentence when it does not compile.
-template <class S> consteval bool must_be_judgeable() {
+/// Reports what a struct lacks for a check as a compile-time message.
+template <class S> consteval bool require_checkable() {
     static_assert(HasSample<S>,
-        "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; else hand "
-        "over crescent::sampler_of(sample, pdf, f), three lambdas that call yours");
+        "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; otherwise "
+        "pass crescent::sampler_of(sample, pdf, f), three lambdas that call yours");
     if constexpr (HasSample<S>) {
         static_assert(pdf_is_plain<S>(),
-            "pdf is private, overloaded or a template: hand over crescent::sampler_of(sample, pdf, f), three lambdas "
-            "that "
+            "pdf is private, overloaded or a template: pass crescent::sampler_of(sample, pdf, f), three lambdas that "
             "call yours");
         static_assert(f_is_plain<S>(),
-            "f is private, overloaded or a template: hand over crescent::sampler_of(sample, pdf, f), three lambdas "
-            "that "
+            "f is private, overloaded or a template: pass crescent::sampler_of(sample, pdf, f), three lambdas that "
             "call yours");
         static_assert(takes_numbers<S>(),
             "sample takes wo and then one to eight random numbers, sample(wo, u), sample(wo, uc, u) or sample(u): "
-            "directions and u are arrays, spans, const T* or structs of floats or doubles that braces fill; wi and pdf "
-            "may be written through references behind them");
+            "directions and u are arrays, spans, const T* or structs of floats or doubles that braces initialise; wi "
+            "and pdf "
+            "may be output references after them");
         if constexpr (takes_numbers<S>()) {
             static_assert(takes_directions<S>(),
                 "pdf takes (wo, wi), directions in floats or doubles, or (wi) where sample takes no wo");
@@ -129,20 +129,20 @@ template <class S> consteval bool must_be_judgeable() {
             static_assert(traits_fit<S>(), "traits() is const and returns crescent::Traits");
             static_assert(gives_draws<S>(),
                 "sample returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional of "
-                "that), or writes wi and pdf through references");
+                "that), or writes wi and pdf to references");
             static_assert(gives_weights<S>(),
                 "the .weight or .f of a draw is one number or three: {r, g, b}, {x, y, z} or an array of three");
         }
     }
-    return judgeable<S>();
+    return is_checkable<S>();
 }
 
-/// 3 where f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
-/// whether a draw comes with its weight; all this as the bench takes it.
+/// 3 if f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
+/// whether a draw includes its weight; and the resulting traits.
 template <class S> consteval int channels() {
     bool three = false;
     if constexpr (HasF<S>) three = Coloured<Bare<typename OfF<S>::Result>>;
-    if constexpr (written_of<SampleParameters<S>>() == 0) {
+    if constexpr (output_count<SampleParameters<S>>() == 0) {
         using D = Result<S>;
         if constexpr (requires(const D d) { d.weight; })
             three = three || Coloured<Bare<decltype(std::declval<D>().weight)>>;
@@ -158,8 +158,8 @@ template <class S> consteval bool all_const() {
     return out;
 }
 template <class S> consteval bool returns_weights() {
-    if constexpr (written_of<SampleParameters<S>>() > 0) return written_of<SampleParameters<S>>() > 2;
-    else return TellsWeight<Result<S>>;
+    if constexpr (output_count<SampleParameters<S>>() > 0) return output_count<SampleParameters<S>>() > 2;
+    else return HasWeight<Result<S>>;
 }
 template <class S> Traits traits_of(const S& s) {
     Traits t;
@@ -171,7 +171,7 @@ template <class S> Traits traits_of(const S& s) {
     t.channels = channels<S>();
     t.has_pdf = HasPdf<S>;
     if constexpr (without_wo<S>()) t.wo = Traits::WoDomain::none;
-    if constexpr (written_of<SampleParameters<S>>() == 0) t.delta = TellsDelta<Result<S>>;
+    if constexpr (output_count<SampleParameters<S>>() == 0) t.delta = HasDelta<Result<S>>;
     return t;
 }
 
@@ -179,12 +179,12 @@ template <class S> Traits traits_of(const S& s) {
 
 namespace crescent {
 
-/// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
+/// A user's struct as a SamplerAdapter. Members that are not const are called by one thread at a time.
 template <class Given> class UserSampler : public InProcessAdapter {
     using S = user::SamplerOf<Given>;
 
 public:
-    /// `name` is what messages call it; `sampler` may be a pointer to one.
+    /// `name` is used in messages; `sampler` may be a pointer.
     UserSampler(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler()); }
@@ -227,7 +227,7 @@ public:
 
 private:
     std::string name_;
-    mutable Given given_;  // called by one thread where a member is not const
+    mutable Given given_;  // called by one thread if a member is not const
     decltype(auto) sampler() const { return user::Sampler<Given>::of(given_); }
 
     static std::string text_of(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
@@ -249,11 +249,11 @@ private:
     }
 };
 
-/// Judges a sampler, or what a pointer points to, over a grid of w_o under an even light. TestSettings::thorough()
-/// looks harder, and takes minutes. Where `monitor` says stop, Interrupted is thrown.
+/// Checks a sampler, or the target of a pointer, over a grid of w_o under a uniform light. TestSettings::thorough()
+/// detects smaller faults and takes minutes. Throws Interrupted if `monitor` requests a stop.
 template <class S> CheckResult check_sampler(std::string name, S sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
-    if constexpr (user::must_be_judgeable<user::SamplerOf<S>>()) {
+    if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
         const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), std::move(sampler));
         ProgressMonitor alone;
         return run_checks(make_user_cases(adapter, settings.full, settings.wo), settings, monitor ? *monitor : alone);
@@ -262,7 +262,7 @@ template <class S> CheckResult check_sampler(std::string name, S sampler,
     }
 }
 
-/// A sampler of functions: lambdas, std::functions or pointers to functions in place of members.
+/// A sampler from functions: lambdas, std::functions or pointers to functions in place of members.
 template <class Sample, class Pdf> struct SampleAndPdf {
     Sample sample;
     Pdf pdf;
@@ -277,14 +277,15 @@ template <class Sample, class Pdf, class F> struct SamplePdfAndF {
     Traits known{};
     Traits traits() const { return known; }
 };
-/// For classes whose own members are overloaded, templates or of other names; what they take and give is as of members:
+/// For classes whose members are overloaded, templates or have other names; parameters and results are those of
+/// members:
 ///
 ///   check_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
 ///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
 template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits known = {}) {
     return {std::move(sample), std::move(pdf), known};
 }
-/// With f(wo, wi) as the third.
+/// The same with f(wo, wi).
 template <class Sample, class Pdf, class F>
     requires(!std::is_same_v<F, Traits>)
 SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits known = {}) {

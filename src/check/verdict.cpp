@@ -1,4 +1,4 @@
-// The words of states, and what all verdicts of a call come to: wrong before error, error before doubt.
+// The names of states, and the state of all verdicts of a call: wrong before error, error before inconclusive.
 #include "check/verdict.h"
 
 namespace crescent::inline results {

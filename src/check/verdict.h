@@ -1,4 +1,4 @@
-// Verdicts and what goes with each: a sentence, and the numbers behind it.
+// Verdicts with their messages and the numbers behind them.
 #pragma once
 
 #include <map>
@@ -11,15 +11,15 @@
 
 namespace crescent::inline results {
 
-/// error: the sampler could not be asked; it crashed, threw, spoke another language or fell silent.
+/// error: the sampler could not be evaluated; it crashed, threw, violated the protocol or did not answer.
 enum class State { right, wrong, inconclusive, skipped, error };
 std::string_view word(State state);
 
-/// What to try next about a verdict. Each front end names it by its own calls or flags (next_step.h).
+/// The next step for a verdict. Each front end describes it by its own calls or flags (report/print.h).
 struct NextStep {
     enum class Kind { none, more_draws, more_time, heavier_pdf };
     Kind kind = Kind::none;
-    double times = 0;  // how many times as many draws; 0: not known
+    double times = 0;  // required factor on the number of draws; 0: unknown
 };
 
 struct Verdict {
@@ -28,45 +28,46 @@ struct Verdict {
     std::string name;        // one of verdict_names
     State state = State::right;
     std::string message;      // what was found, how large with its interval, and where
-    std::string cause{};      // what explains it; "" where nothing does
-    std::string next_step{};  // what would settle it, where it is inconclusive and no front end has a call for it
+    std::string cause{};      // the cause; "" if unknown
+    std::string next_step{};  // for an inconclusive verdict, if no front end has a call for it
     NextStep next{};
     std::optional<std::pair<double, double>> wo{};  // theta and azimuth in degrees; none for a sampler without w_o
-    double size = 0;                         // of what is wrong, in its standard errors: orders verdicts of one name
-    std::map<std::string, double> hidden{};  // by kind of fault, of a right verdict: the size that it could hide
-    double nothing = 0;                      // of `valid`: the share of the draws that drew nothing
+    double size = 0;                                // in standard errors: orders verdicts of one name
+    std::map<std::string, double> hidden{};         // of a right verdict: the size that it could hide, by kind of fault
+    double nothing = 0;                             // of `valid`: the share of the draws without a sample
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
-    // What varies from run to run, kept apart so that equal calls give equal verdicts.
+    // Values that vary between runs are separate, so that equal calls give equal verdicts.
     double seconds = 0;
     std::string timed_message;
     nlohmann::ordered_json timing = nlohmann::ordered_json::object();
-    bool expected = true;      // of a right sampler, or of this built-in arm here
-    std::string why_expected;  // said where a wrong one is expected
-    bool waived = false;       // the caller expects it, so that it does not count
+    bool expected = true;      // expected of a right sampler, or of this built-in arm
+    std::string why_expected;  // printed if a wrong verdict is expected
+    bool waived = false;       // the caller expects it, so it does not count
 };
 
-/// Bins of one density test, for the maps of the HTML page: draws and what is due, or, where nothing is claimed that
-/// could be due (`expected` is empty), the density that the draws imply.
+/// Bins of one density test, for the maps of the HTML page: draws and expected draws, or, without a density (`expected`
+/// is empty), the density that the draws imply.
 struct BinHistogram {
     std::string arm, check_case, coordinates;
     int rings = 0, sectors = 0;
     std::vector<double> observed, expected;  // ring-major; draws, or 1/sr
-    std::vector<double> sd{};                // of observed less expected; empty: the root of what is expected
+    std::vector<double> sd{};                // of observed less expected; empty: the square root of expected
     std::vector<double> edges{};             // of the rings: 1 - cos of the angle to the axis
-    std::vector<double> sector_edges{};      // degrees about the axis; empty: even ones from 0
+    std::vector<double> sector_edges{};      // degrees about the axis; empty: uniform from 0
     double full_scale = 0;                   // of a density, 1/sr
 };
 
-/// The largest weights, a histogram of all, and p against f L cos along a grid of directions.
+/// The largest weights, a histogram of all, and p and f L cos along a grid of directions.
 struct WeightHistogram {
     std::string arm, check_case;
     std::vector<double> log10_edges, counts;  // histogram of log10 X
     double zeros = 0, k = 0, exceedances = 0;
-    double threshold = 0, sigma = 0;     // of the generalised Pareto law with that k; sigma from the median exceedance
+    double threshold = 0,
+           sigma = 0;  // of the generalised Pareto distribution with that k; sigma from the median exceedance
     std::vector<double> rose_p, rose_f;  // plane of incidence, from -90 to 90 deg of wi
 };
 
-/// What a call did not look at for want of time.
+/// Verdicts that a call skipped for lack of time.
 struct SkippedCase {
     std::string arm, check_case;
     std::vector<std::string> verdicts;
@@ -76,18 +77,18 @@ struct SkippedCase {
 struct CheckResult {
     std::vector<Verdict> verdicts;
     std::vector<SkippedCase> left_out;
-    std::vector<std::string> unmet;  // expectations of the caller that nothing meets, a sentence each
+    std::vector<std::string> unmet;  // expectations of the caller that no verdict meets, a sentence each
     std::vector<BinHistogram> maps;
     std::vector<WeightHistogram> weights;
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
-    std::uint64_t questions = 0;                           // that a sampler from outside answered
+    std::uint64_t questions = 0;                           // answers of an external sampler
     std::uint64_t evaluations = 0;                         // of sample, pdf and f
-    State state = State::right;                            // of everything together
+    State state = State::right;                            // of all verdicts
     bool as_expected = true;                               // whether every verdict is the expected one
 };
 
-/// The state of the whole: everything that the caller does not expect, and expectations that nothing meets.
+/// Sets the state of the result: verdicts that the caller does not expect, and expectations that no verdict meets.
 void next_step(CheckResult& result);
 
 }  // namespace crescent::inline results

@@ -1,6 +1,6 @@
-// The one list of verdicts with the question that each answers, in the order in which they are given. The families of
-// check/verdicts/ name the verdict that they make wrong. The list feeds `crescent check` and all that it writes,
-// --expect, `crescent list verdicts` and the tests.
+// The list of verdicts with the question that each answers, in output order. The families of check/verdicts/ name the
+// verdict that they make wrong. The list is used by `crescent check` and its output, --expect, `crescent list verdicts`
+// and the tests.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// A line is cut at its first '=' and at the ':' after it. Words are checked against the verdicts there are, arms
-// against those that are checked.
+// A line is split at its first '=' and at the next ':'. Words are compared with the known verdicts, and arms with those
+// that are checked.
 #include "check/waivers.h"
 
 #include <algorithm>
@@ -90,7 +90,7 @@ void check_waivers(std::span<const Waiver> waivers, std::span<const std::string>
         if (w.arm.empty() || std::find(arms.begin(), arms.end(), w.arm) != arms.end()) continue;
         const std::string near = nearest(w.arm, {arms.begin(), arms.end()});
         throw InputError({w.place, 0, 0},
-            fmt::format("no sampler '{}' is judged here; {}", printable(w.arm),
+            fmt::format("no sampler '{}' is checked here; {}", printable(w.arm),
                 near.empty() ? fmt::format("there is {}", fmt::join(arms, ", ")) : "did you mean '" + near + "'?"));
     }
 }
@@ -105,8 +105,8 @@ void waive(CheckResult& j, std::span<const Waiver> waivers) {
             v.why_expected = w.reason;
         }
         if (met == 0)
-            j.unmet.push_back(fmt::format("{}: {}{} is expected to be {} and is so nowhere: the expectation can go",
-                w.place, w.arm.empty() ? "" : w.arm + " ", w.verdict, word(w.state)));
+            j.unmet.push_back(fmt::format("{}: {}{} is expected to be {} but is not: the expectation can go", w.place,
+                w.arm.empty() ? "" : w.arm + " ", w.verdict, word(w.state)));
     }
     next_step(j);
 }

@@ -1,5 +1,5 @@
-// What a caller expects of a result beside "right": "phong support=wrong: it never reaches the horizon". A verdict
-// that is as expected does not count; an expectation that nothing meets any more does.
+// Verdicts other than "right" that a caller expects: "phong support=wrong: it never reaches the horizon". An expected
+// verdict does not count; an expectation that no verdict meets any more does.
 //
 //   [ARM ]VERDICT=STATE: REASON      STATE is wrong or inconclusive; without ARM, or with *, of every arm
 #pragma once
@@ -12,19 +12,19 @@
 
 namespace crescent::inline results {
 
-/// One expectation, and where it was said.
+/// One expectation, and its place in the input.
 struct Waiver {
     std::string arm, verdict, reason;  // arm "": any
     State state = State::wrong;
     std::string place;  // "--expect" or "waivers.txt:3"
 };
 
-/// Each text is a waiver, or a file of them, one a line, with comments from # on. Throws InputError with the place and
-/// the nearest word that is known.
+/// Each text is a waiver, or a file of waivers, one on each line, with comments from # on. Throws InputError with the
+/// place and the nearest known word.
 std::vector<Waiver> read_waivers(std::span<const std::string> texts);
-/// Throws InputError where a waiver names none of these arms.
+/// Throws InputError if a waiver names none of these arms.
 void check_waivers(std::span<const Waiver> waivers, std::span<const std::string> arms);
-/// Takes what is waived out of the state of the whole, and tells of waivers that nothing needs.
+/// Excludes waived verdicts from the state of the result, and lists waivers that no verdict meets.
 void waive(CheckResult& result, std::span<const Waiver> waivers);
 
 }  // namespace crescent::inline results

@@ -1,4 +1,4 @@
-// A sampler as a user would hand it over: a struct whose members take directions and const T* u in its own precision.
+// A calibration sampler as a user's struct: its members take directions and const T* u in its own precision.
 #include "tests/calibration/geometry.h"
 #include "tests/calibration/sampler.h"
 #include "check/user.h"
@@ -7,7 +7,7 @@ namespace crescent::calibration {
 
 namespace {
 
-/// `n` random numbers, with f or without.
+/// `n` random numbers, with or without f.
 template <class F, int n> struct AsStruct {
     static constexpr int numbers = n;
     Functions<F> functions;

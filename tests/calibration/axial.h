@@ -1,4 +1,4 @@
-// Lobes of revolution about an axis, given by the distribution of t = 1 - cos(theta), and mixtures of them.
+// Lobes that are symmetric about an axis, given by the distribution of t = 1 - cos(theta), and mixtures of them.
 #pragma once
 
 #include "tests/calibration/geometry.h"
@@ -17,7 +17,7 @@ template <class F> Profile<F> power_profile(F s) {
     return {[s](F u) { return -std::expm1(std::log(std::max(u, F(1e-30))) / (s + 1)); },
         [s](F t) { return t < 1 ? (s + 1) / (2 * pi_of<F>)*std::exp(s * std::log1p(-t)) : F(0); }};
 }
-/// Uniform in a cone; its rim is widened by what directions are rounded by.
+/// Uniform in a cone; the rim is widened by the rounding of directions.
 template <class F> Profile<F> cone_profile(F gap) {
     const F rim = gap + std::sqrt(2 * gap) * slack<F> + slack<F> * slack<F>, density = 1 / (2 * pi_of<F> * gap);
     return {[gap](F u) { return gap * u; }, [rim, density](F t) { return t <= rim ? density : F(0); }};
@@ -39,7 +39,7 @@ template <class F> Profile<F> greenstein_profile(F g) {
         }};
 }
 
-/// One lobe with its weight in a mixture, about an axis that may follow w_o.
+/// One lobe with its weight in a mixture, about an axis that may depend on w_o.
 template <class F> struct Lobe {
     F weight;
     std::function<Vec3<F>(Vec3<F> wo)> axis;
@@ -51,7 +51,7 @@ template <class F> std::function<Vec3<F>(Vec3<F>)> fixed(Vec3d axis) {
 template <class F> std::function<Vec3<F>(Vec3<F>)> mirror_direction() {
     return [](Vec3<F> wo) { return Vec3<F>{-wo.x, -wo.y, wo.z}; };
 }
-/// Light that goes straight on leaves along -wo.
+/// The direction of light that is not scattered, -w_o.
 template <class F> std::function<Vec3<F>(Vec3<F>)> forward() {
     return [](Vec3<F> wo) { return -wo; };
 }
@@ -66,7 +66,7 @@ template <class F> Functions<F> single(std::function<Vec3<F>(Vec3<F>)> axis, Pro
     return out;
 }
 
-/// u[2] chooses the lobe. Weights are normalised here.
+/// u[2] selects the lobe. Weights are normalised here.
 template <class F> Functions<F> mixture(std::vector<Lobe<F>> lobes, Broken broken) {
     F sum = 0;
     for (const Lobe<F>& l : lobes) sum += l.weight;

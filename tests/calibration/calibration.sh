@@ -1,6 +1,6 @@
 #!/bin/bash
-# A sample of 60 checks: right samplers are not called wrong, large faults are found, a run continues where it was
-# stopped, and samplers answer behind pipes. Rates are measured by hand, docs/error-rates.md has them.
+# A sample of 60 checks: right samplers are not reported wrong, large faults are found, an interrupted run continues,
+# and samplers work behind pipes. Error rates are measured separately and are in docs/error-rates.md.
 set -u
 calibration=$1
 [ -x "$calibration" ] || { echo "crescent_calibration is not built"; exit 77; }
@@ -16,7 +16,7 @@ run kinds --cases 6:12 --wo 1 --out "$work/kinds.jsonl"
 run hard --cases 15:19 --wo 1 --out "$work/hard.jsonl"
 run right --cases 1:5 --out "$work/pipe.jsonl" --pipe
 
-# Stopped in the middle of a line, and run again: the same lines but for their times.
+# Interrupted in the middle of a line and continued: the lines are the same except for their times.
 head -c -40 "$work/kinds.jsonl" >"$work/torn.jsonl"
 run kinds --cases 6:12 --wo 1 --out "$work/torn.jsonl"
 
@@ -29,8 +29,8 @@ def expect(holds, what):
 right, power, kinds, hard, pipe, torn = map(read, ("right", "power", "kinds", "hard", "pipe", "torn"))
 expect(len(right) + len(power) + len(kinds) + len(hard) + len(pipe) == 60, "60 checks are run")
 for r in right + hard + pipe:
-    expect(r["state"] in ("right", "inconclusive"), f"{r['family']}, right, is called {r['state']}: {r['say']}")
-expect(sum(r["state"] == "right" for r in right) >= 20, "most right samplers are called right")
+    expect(r["state"] in ("right", "inconclusive"), f"{r['family']}, right, is reported {r['state']}: {r['say']}")
+expect(sum(r["state"] == "right" for r in right) >= 20, "most right samplers are reported right")
 for r in power:
     expect(r["size"] < 0.1 or r["state"] == "wrong", f"missed: {r['kind']} {r['size']} in {r['family']}")
 expect(sum(r["state"] == "wrong" for r in power) >= 14, "14 of 20 faults by size are found")
@@ -47,5 +47,6 @@ PYTHON
 "$calibration" table "$work"/*.jsonl >"$work/table.md" || die "no table is printed"
 grep -q '| right | ' "$work/table.md" || die "the table has no right samplers"
 [ "$("$calibration" csv "$work/power.jsonl" | wc -l)" -eq 21 ] || die "the CSV has no line for each case"
-"$calibration" powr --cases 0:1 >"$work/said" 2>&1
-[ $? -eq 2 ] && grep -q "power" "$work/said" || die "an unknown set is refused without the nearest: $(cat "$work/said")"
+"$calibration" powr --cases 0:1 >"$work/printed" 2>&1
+[ $? -eq 2 ] && grep -q "power" "$work/printed" ||
+    die "an unknown set is rejected without a suggestion: $(cat "$work/printed")"

@@ -1,5 +1,5 @@
-// The sets. In `power` a case is a cell of kind and size; index / 20 counts the repetitions of a cell. Twelve families,
-// or the held-out ones, each with a parameter that can mismatch.
+// The sets. In `power` a case is a cell of kind and size; index / 20 counts the repetitions of a cell. It uses twelve
+// families, or the held-out ones, each with a parameter that can mismatch.
 #include "tests/calibration/cases.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@ namespace crescent::calibration {
 
 namespace {
 
-Rng dice_for(const CaseKey& key, std::string_view purpose) { return dice_of({key.set, key.seed, key.index, purpose}); }
+Rng rng_for(const CaseKey& key, std::string_view purpose) { return rng_of({key.set, key.seed, key.index, purpose}); }
 
 bool of_held_out_set(const CaseKey& key) { return key.set.ends_with("-held-out"); }
 
@@ -37,11 +37,11 @@ const std::vector<const Family*>& twelve() {
 Real real_of(Rng& d) { return d.whole(0, 1) ? Real::f32 : Real::f64; }
 
 std::vector<std::pair<double, double>> grid_of(const CaseKey& key, Traits::WoDomain asked) {
-    Rng d = dice_for(key, "w_o");
+    Rng d = rng_for(key, "w_o");
     return random_grid(d, asked, key.wo);
 }
 
-/// The w_o of the cases, without the samplers beside them.
+/// The w_o of the cases, without baselines.
 std::vector<Vec3d> directions_of(const std::vector<CheckCase>& check_cases) {
     std::vector<Vec3d> out;
     for (const CheckCase& t : check_cases)
@@ -64,7 +64,7 @@ Case make_right(const CaseKey& key) {
     static const std::vector<const Family*> sets[] = {families_of(false), families_of(true)};
     const auto& all = sets[of_held_out_set(key)];
     const Family& family = *all[key.index % all.size()];
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     const Member member = family.member(d);
     const Real real = key.index / all.size() % 2 ? Real::f32 : Real::f64;
     Case c = case_of(sampler_of(family, member, real), key, State::right, "right");
@@ -78,14 +78,14 @@ Case make_power(const CaseKey& key) {
     const std::uint64_t cell = key.index % 20;
     static const std::vector<const Family*> held_out = families_of(true);
     const auto& all = of_held_out_set(key) ? held_out : twelve();
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     const Family& family = *all[static_cast<std::size_t>(d.whole(0, static_cast<int>(all.size()) - 1))];
     const Real real = real_of(d);
     const Member member = family.member(d);
     return faulty_case(family, member, real, {kinds[cell / 5], sizes[cell % 5]}, key);
 }
 
-/// A fault with the families that can have it; none named: all for tuning.
+/// A fault with the families that can have it; if empty, all families for tuning.
 struct Choice {
     Fault fault;
     std::vector<std::string_view> of{};
@@ -110,7 +110,7 @@ const std::vector<Choice>& nameable() {
     return all;
 }
 
-/// Faults of every other kind.
+/// Faults of all other kinds.
 const std::vector<Choice>& other_kinds() {
     using K = FaultKind;
     const auto inner = [](Broken b) { return Fault{K::broken, 0, b}; };
@@ -129,7 +129,7 @@ const std::vector<Choice>& other_kinds() {
 Case make_choice(const CaseKey& key, const std::vector<Choice>& all) {
     static const std::vector<const Family*> tuning = families_of(false);
     const Choice& choice = all[key.index % all.size()];
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     const auto any = [&](std::size_t n) { return static_cast<std::size_t>(d.whole(0, static_cast<int>(n) - 1)); };
     const Family& family =
         choice.of.empty() ? *tuning[any(tuning.size())] : family_named(choice.of[any(choice.of.size())]);
@@ -174,7 +174,7 @@ StatedCase stated_case(const CaseKey& key) {
     StatedCase out{nullptr, {}, Real::f64, kinds[key.index % 5]};
     std::vector<const Family*> all;
     for (const Family& f : families()) {
-        // An even density has nothing to leak into, and none of its powers is another.
+        // A uniform density has no leak, and each of its powers is the same density.
         const bool even = f.name.starts_with("uniform") || f.name == "cone" || f.name == "ring";
         const bool can = out.kind == FaultKind::rotation ? f.name != "uniform sphere"
             : out.kind == FaultKind::leak                ? !f.name.starts_with("uniform")
@@ -182,7 +182,7 @@ StatedCase stated_case(const CaseKey& key) {
                                                          : true;
         if (can && f.held_out == of_held_out_set(key)) all.push_back(&f);
     }
-    Rng d = dice_for(key, "parameters");
+    Rng d = rng_for(key, "parameters");
     out.family = all[static_cast<std::size_t>(d.whole(0, static_cast<int>(all.size()) - 1))];
     out.real = real_of(d);
     out.member = out.family->member(d);
@@ -199,19 +199,19 @@ Case stated_faulty(const StatedCase& of, const CaseKey& key, double size) {
 
 const std::vector<CaseSet>& case_sets() {
     static const std::vector<CaseSet> all = {
-        {"right", "right samplers at random parameters, one w_o each", 0, 1, make_right},
+        {"right", "right samplers with random parameters, one w_o each", 0, 1, make_right},
         {"right-held-out", "the same of the held-out families", 0, 1, make_right},
         {"hard", "right samplers that are hard to integrate or to draw in single precision", count_hard(), 2,
             make_hard},
         {"power", "faults by size in twelve families: constant, leak, rotation, mismatch", 0, 0, make_power},
         {"power-held-out", "the same in the held-out families", 0, 0, make_power},
-        {"stated", "faults of the size that a right verdict says could be hidden", 0, 1, make_stated},
+        {"stated", "faults of the size that a right verdict states as possibly hidden", 0, 1, make_stated},
         {"stated-held-out", "the same in the held-out families", 0, 1, make_stated},
-        {"known", "planted faults of tests/known_samplers/faulty, those held out included", count_known(), 0,
+        {"known", "planted faults of tests/known_samplers/faulty, including those held out", count_known(), 0,
             make_known},
         {"causes", "faults whose cause can be named", 0, 0, make_causes},
         {"kinds", "faults of all other kinds: caps, NaN, negative, boundaries, lobes", 0, 0, make_kinds},
-        {"faults", "faults that users reported with their corrected samplers, and right ones called wrong",
+        {"faults", "faults that users reported with their corrected samplers, and right ones reported wrong",
             count_reported(), 0, make_reported}};
     return all;
 }

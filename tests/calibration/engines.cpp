@@ -1,5 +1,5 @@
-// The list of engines, and how a run of one is measured: CPU time of this process and of its children, calls of the
-// sampler counted on their way.
+// The list of engines, and the measurement of a run: CPU time of this process and of its children, and the number of
+// calls of the sampler.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/time.h>
@@ -92,7 +92,7 @@ Result measured(
         std::vector<CheckCase> all = check_cases();
         std::map<const SamplerAdapter*, std::shared_ptr<const SamplerAdapter>> counted;
         for (CheckCase& t : all) {
-            if (t.baseline) continue;  // it asks for f alone, of a sampler whose calls are counted elsewhere
+            if (t.baseline) continue;  // it evaluates only f of a sampler whose calls are counted already
             ++wo;
             auto& one = counted[t.adapter.get()];
             if (!one) one = std::make_shared<Counted>(t.adapter, count);

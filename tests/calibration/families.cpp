@@ -1,4 +1,4 @@
-// The list of families. A case names its family by the place in this list: append, do not reorder.
+// The list of families. A case identifies its family by the index in this list: append, do not reorder.
 #include <stdexcept>
 
 #include "tests/calibration/sampler.h"

@@ -1,5 +1,5 @@
-// Right families are right, by means that no engine uses: the density integrates to one by Gauss-Legendre panels or by
-// a mean over the family's own draws, and draws fall into bins as the density says.
+// Tests the right families without an engine: the density integrates to one by Gauss-Legendre panels or by a mean over
+// the family's own draws, and draws are distributed over bins as the density predicts.
 #include <boost/math/distributions/chi_squared.hpp>
 #include <gtest/gtest.h>
 
@@ -10,14 +10,14 @@
 namespace crescent::calibration {
 namespace {
 
-/// Every family at one member, in both precisions, at one w_o.
+/// Every family with one member, in both precisions, at one w_o.
 class EveryFamily : public testing::TestWithParam<std::tuple<std::size_t, int>> {
 protected:
     const Family& family = families()[std::get<0>(GetParam())];
     Real real = std::get<1>(GetParam()) ? Real::f32 : Real::f64;
     std::uint64_t seed = std::get<0>(GetParam()) * 2 + static_cast<std::uint64_t>(std::get<1>(GetParam()));
     Sampler sampler = [&] {
-        Rng d = dice_of({"families_test", seed, 0, "parameters"});
+        Rng d = rng_of({"families_test", seed, 0, "parameters"});
         return sampler_of(family, family.member(d), real);
     }();
     Vec3d wo = family.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
@@ -31,7 +31,7 @@ TEST_P(EveryFamily, DrawsFollowTheDensityAndTheDensityIntegratesToOne) {
         << fit.chi2 << " on " << fit.degrees;
 }
 
-TEST_P(EveryFamily, ADrawCarriesTheDensityAtIt) {
+TEST_P(EveryFamily, ADrawHasTheDensityOfItsDirection) {
     SCOPED_TRACE(family.name + " (" + sampler.parameters + ")");
     EXPECT_LT(share_of_other_pdf(sampler, wo, 1 << 14, seed), real == Real::f32 ? 2e-3 : 1e-9);
 }
@@ -44,7 +44,7 @@ TEST(Families, SinglePrecisionKeepsTheIntegralBelowTheDetectionFloor) {
     for (const Family& f : families()) {
         const Vec3d wo = f.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
         for (std::uint64_t k = 0; k < 3; ++k) {
-            Rng d = dice_of({"families_test", 100 + k, 0, f.name});
+            Rng d = rng_of({"families_test", 100 + k, 0, f.name});
             const Member member = f.member(d);
             const Sampler in_double = sampler_of(f, member, Real::f64), in_float = sampler_of(f, member, Real::f32);
             const Draws draws = draws_of(in_double, wo, 1 << 13, k);

@@ -1,5 +1,5 @@
-// A fault wraps the functions of a right sampler. Shares that need a random number of their own get one more, behind
-// the sampler's. Caps have the mass that 2^18 draws give them: a relative error of 1 / sqrt(2^18 size).
+// A fault wraps the functions of a right sampler. Shares that need a random number use an additional one after those of
+// the sampler. Caps have their mass from 2^18 draws: a relative error of 1 / sqrt(2^18 size).
 #include "tests/calibration/faults.h"
 
 #include <cstring>
@@ -47,7 +47,7 @@ template <class F> Vec3<F> uniform(Domain domain, F u1, F u2) {
     return off_axis(Vec3<F>{0, 0, 1}, (domain == Domain::sphere ? 2 : 1) * u1, u2);
 }
 
-/// Of the pdf at a pair: what is claimed in place of p.
+/// The claimed pdf of a pair, given p.
 template <class F> F claimed(const Fault& fault, Vec3<F> wo, Vec3<F> wi, F p) {
     const auto m = [&] { return unit(wo + wi); };
     switch (fault.kind) {
@@ -62,8 +62,8 @@ template <class F> F claimed(const Fault& fault, Vec3<F> wo, Vec3<F> wi, F p) {
     }
 }
 
-/// Of a draw's pdf, a share that `chosen` says of.
-template <class F> void spoil(const Fault& fault, Drawn<F>& d) {
+/// Applies a fault to the draw; only for the selected share of the draws.
+template <class F> void apply_to_draw(const Fault& fault, Drawn<F>& d) {
     if (fault.kind == FaultKind::nan) d.pdf = std::numeric_limits<F>::quiet_NaN();
     if (fault.kind == FaultKind::negative) d.pdf = -d.pdf;
     if (fault.kind == FaultKind::length) d.wi = d.wi * F(1.01);
@@ -75,7 +75,7 @@ bool needs_number(FaultKind kind) {
 }
 
 template <class F> struct FaultInjection {
-    Functions<F> draws, claims;  // those with the changed parameter, and those that pdf has
+    Functions<F> draws, claims;  // functions with the changed parameter, and functions of the pdf
     Fault fault;
     std::vector<PlaceOfFault> places;
     Domain domain;
@@ -87,14 +87,14 @@ template <class F> struct FaultInjection {
         if (fault.kind == FaultKind::nan_at_horizon && wi.z == 0) return std::numeric_limits<F>::quiet_NaN();
         return claimed(fault, wo, wi, claims.pdf(wo, wi));
     }
-    /// Faults at single places of w_o or of u.
+    /// Whether the fault occurs at this single w_o or u.
     bool breaks_at(Vec3<F> wo, const F* u) const {
         const F sin = std::hypot(wo.x, wo.y);
         return (fault.kind == FaultKind::nan_in_plane && wo.z == 0) ||
             (fault.kind == FaultKind::nan_near_pole && sin > 0 && sin < F(1e-3) && wo.z > 0) ||
             (fault.kind == FaultKind::nan_at_zero && u[0] == 0);
     }
-    /// The direction; pdf 0 where nothing is drawn.
+    /// The direction; pdf 0 for no sample.
     Drawn<F> direction(Vec3<F> wo, std::array<F, PrimarySample::most> u) const {
         if (fault.kind == FaultKind::one_number) u[1] = u[0];
         if (fault.kind == FaultKind::no_azimuth) u[1] = F(0.3125);
@@ -129,39 +129,39 @@ template <class F> struct FaultInjection {
         if (!(d.pdf > 0)) return {d.wi, 0};
         d.pdf = fault.kind == FaultKind::blind ? claims.pdf(wo, d.wi) : pdf(wo, d.wi);
         const bool share = needs_number(fault.kind) && u[numbers] < F(fault.size);
-        if (share && fault.kind != FaultKind::leak) spoil(fault, d);
+        if (share && fault.kind != FaultKind::leak) apply_to_draw(fault, d);
         return d;
     }
 };
 
-template <class F> Functions<F> bent(FaultInjection<F> bend) {
+template <class F> Functions<F> injected(FaultInjection<F> injection) {
     Functions<F> out;
-    out.f = bend.claims.f;
-    const auto all = std::make_shared<const FaultInjection<F>>(std::move(bend));
+    out.f = injection.claims.f;
+    const auto all = std::make_shared<const FaultInjection<F>>(std::move(injection));
     out.pdf = [all](Vec3<F> wo, Vec3<F> wi) { return all->pdf(wo, wi); };
     out.sample = [all](Vec3<F> wo, const F* u) { return all->sample(wo, u); };
     return out;
 }
 
-template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Rng& dice, int count) {
+template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Rng& rng, int count) {
     std::vector<Vec3d> out;
     for (int k = 0; k < count; ++k) {
         F u[PrimarySample::most];
-        for (F& v : u) v = F(std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24);
+        for (F& v : u) v = F(std::floor(rng.uniform(0, 0x1p24)) * 0x1p-24);
         const Drawn<F> d = s.sample(cast<F>(wo), u);
         if (d.pdf > 0) out.push_back(unit(widened(d.wi)));
     }
     return out;
 }
 
-PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Rng& dice) {
-    const Vec3d any = dice.direction(-1, 1);
+PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Rng& rng) {
+    const Vec3d any = rng.direction(-1, 1);
     PlaceOfFault at{wo, any, {0, 0, 1}};
     if (draws.empty()) return at;
     Vec3d mean{0, 0, 0};
     for (Vec3d w : draws) mean = mean + w * (1 / static_cast<double>(draws.size()));
     if (dot(mean, mean) > 1e-4) at.turn = unit(cross(unit(mean), any));
-    at.cap = draws[static_cast<std::size_t>(dice.uniform(0, static_cast<double>(draws.size())))];
+    at.cap = draws[static_cast<std::size_t>(rng.uniform(0, static_cast<double>(draws.size())))];
     std::vector<double> gaps;
     for (Vec3d w : draws) gaps.push_back(versine(at.cap, w));
     const auto k = static_cast<std::size_t>(fault.size * draws_for_places);
@@ -178,13 +178,13 @@ std::vector<PlaceOfFault> places_of(
     const bool capped = fault.kind == FaultKind::hole || fault.kind == FaultKind::blind;
     const bool tempered = fault.kind == FaultKind::exponent;
     if (!capped && !tempered && fault.kind != FaultKind::rotation) return {};
-    Rng dice = dice_of(key);
+    Rng rng = rng_of(key);
     std::vector<PlaceOfFault> out;
     const std::vector<Vec3d> only = {{0, 0, 1}};
     for (Vec3d o : right.wo == Traits::WoDomain::none ? std::span<const Vec3d>(only) : wo) {
         out.push_back(std::visit(
             [&](const auto& f) {
-                return place_at(drawn_at(f, o, dice, capped ? draws_for_places : 4096), o, fault, dice);
+                return place_at(drawn_at(f, o, rng, capped ? draws_for_places : 4096), o, fault, rng);
             },
             right.functions));
         if (!tempered) continue;
@@ -206,7 +206,7 @@ Sampler faulty(const Family& family, const Member& member, Real real, const Faul
     const std::vector<PlaceOfFault> places = places_of(right, fault, wo, key);
     std::visit(
         [&]<class F>(const Functions<F>& draws) {
-            right.functions = bent(FaultInjection<F>{
+            right.functions = injected(FaultInjection<F>{
                 draws, std::get<Functions<F>>(claims.functions), fault, places, family.domain, family.numbers});
         },
         other.functions);
@@ -263,7 +263,7 @@ bool is_true_of(std::string_view kind, std::string_view family, std::string_view
 }
 
 bool names_cause(std::string_view cause, const std::vector<std::string>& texts) {
-    // A text names a cause if one of the cause's words is in it.
+    // A text names a cause if it contains one of the words of the cause.
     static const std::map<std::string_view, std::vector<std::string_view>> words = {{"constant", {"constant"}},
         {"cos_i", {"cos theta_i"}}, {"sin_i", {"sin theta"}}, {"half_vector_jacobian", {"w_o.m"}},
         {"half_vector_cosine", {"n.m"}}, {"mirrored", {"mirror", "reflection in"}},

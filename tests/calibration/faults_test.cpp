@@ -1,4 +1,4 @@
-// Each fault has the size that it claims, and streams of numbers are independent.
+// Each fault has its stated size, and streams of numbers are independent.
 #include "tests/calibration/faults.h"
 
 #include <filesystem>
@@ -19,13 +19,13 @@ namespace {
 constexpr int draws = 1 << 18;
 const Vec3d wo = unit(Vec3d{0.5, -0.3, 0.6});
 
-/// A right sampler and the same with a fault.
-struct Twins {
+/// A right sampler, and the same sampler with a fault.
+struct RightAndFaulty {
     Sampler right, wrong;
     std::vector<PlaceOfFault> places;
-    Twins(std::string_view family, Fault fault, Real real = Real::f64) {
+    RightAndFaulty(std::string_view family, Fault fault, Real real = Real::f64) {
         const Family& f = family_named(family);
-        Rng d = dice_of({"faults_test", 7, 0, "parameters"});
+        Rng d = rng_of({"faults_test", 7, 0, "parameters"});
         const Member member = f.member(d);
         const StreamKey key{"faults_test", 7, 0, "fault"};
         right = sampler_of(f, member, real);
@@ -38,7 +38,7 @@ bool drawn(Vec3d w) { return dot(w, w) > 0; }
 class EveryPowerFamily : public testing::TestWithParam<const char*> {};
 
 TEST_P(EveryPowerFamily, AConstantScalesThePdfByItsSize) {
-    const Twins t(GetParam(), {FaultKind::constant, 0.03});
+    const RightAndFaulty t(GetParam(), {FaultKind::constant, 0.03});
     const Draws d = draws_of(t.wrong, wo, 1000, 1);
     for (std::size_t k = 0; k < d.wi.size(); ++k)
         if (drawn(d.wi[k])) {
@@ -48,16 +48,16 @@ TEST_P(EveryPowerFamily, AConstantScalesThePdfByItsSize) {
 }
 
 TEST_P(EveryPowerFamily, ALeakMovesItsShareOfTheDraws) {
-    const Twins t(GetParam(), {FaultKind::leak, 0.1});
+    const RightAndFaulty t(GetParam(), {FaultKind::leak, 0.1});
     EXPECT_EQ(t.wrong.numbers, t.right.numbers + 1);
-    // The same numbers go to both: what differs was leaked.
-    Rng dice = dice_of({"faults_test", 1, 0, "numbers"});
+    // Both get the same numbers, so draws that differ are leaked.
+    Rng rng = rng_of({"faults_test", 1, 0, "numbers"});
     const auto& a = std::get<Functions<double>>(t.right.functions);
     const auto& b = std::get<Functions<double>>(t.wrong.functions);
     int differ = 0;
     for (int k = 0; k < draws / 8; ++k) {
         double u[PrimarySample::most];
-        for (double& v : u) v = dice.uniform(0, 1);
+        for (double& v : u) v = rng.uniform(0, 1);
         const Drawn<double> x = a.sample(wo, u), y = b.sample(wo, u);
         differ += x.pdf > 0 && !(y.pdf > 0 && versine(x.wi, y.wi) < 1e-20);
     }
@@ -65,17 +65,17 @@ TEST_P(EveryPowerFamily, ALeakMovesItsShareOfTheDraws) {
 }
 
 TEST_P(EveryPowerFamily, ARotationTurnsDrawsByItsAngle) {
-    const Twins t(GetParam(), {FaultKind::rotation, 0.01});
+    const RightAndFaulty t(GetParam(), {FaultKind::rotation, 0.01});
     const Draws a = draws_of(t.right, wo, 4096, 3), b = draws_of(t.wrong, wo, 4096, 3);
     double most = 0;
     for (std::size_t k = 0; k < a.wi.size(); ++k)
         if (drawn(a.wi[k]) && drawn(b.wi[k])) most = std::max(most, std::sqrt(2 * versine(a.wi[k], b.wi[k])));
-    EXPECT_GT(most, 0.003);  // the axis may lie near the draws of a wide density
+    EXPECT_GT(most, 0.003);  // the axis may be near the draws of a wide density
     EXPECT_LT(most, 0.01 * (1 + 1e-6));
 }
 
 TEST_P(EveryPowerFamily, ACapIsNeverDrawnAndHasItsMass) {
-    const Twins t(GetParam(), {FaultKind::hole, 0.01});
+    const RightAndFaulty t(GetParam(), {FaultKind::hole, 0.01});
     const PlaceOfFault& at = t.places.at(0);
     const auto inside = [&](const Sampler& s) {
         const Draws d = draws_of(s, wo, draws, 5);
@@ -86,8 +86,8 @@ TEST_P(EveryPowerFamily, ACapIsNeverDrawnAndHasItsMass) {
     EXPECT_GT(pdf_at(t.wrong, wo, at.cap), 0);
 }
 
-TEST_P(EveryPowerFamily, ABlindCapIsDrawnThoughItsPdfIsZero) {
-    const Twins t(GetParam(), {FaultKind::blind, 0.01});
+TEST_P(EveryPowerFamily, ABlindCapIsDrawnWithZeroPdf) {
+    const RightAndFaulty t(GetParam(), {FaultKind::blind, 0.01});
     const Draws d = draws_of(t.wrong, wo, draws, 5);
     int blind = 0;
     for (std::size_t k = 0; k < d.wi.size(); ++k)
@@ -95,8 +95,8 @@ TEST_P(EveryPowerFamily, ABlindCapIsDrawnThoughItsPdfIsZero) {
     EXPECT_NEAR(static_cast<double>(blind) / draws, 0.01, 0.0015);
 }
 
-TEST_P(EveryPowerFamily, AMismatchDrawsAnotherMemberAndClaimsThisOne) {
-    const Twins t(GetParam(), {FaultKind::mismatch, 0.3});
+TEST_P(EveryPowerFamily, AMismatchDrawsFromAnotherMember) {
+    const RightAndFaulty t(GetParam(), {FaultKind::mismatch, 0.3});
     const Draws d = draws_of(t.wrong, wo, 4096, 9), r = draws_of(t.right, wo, 4096, 9);
     int moved = 0;
     for (std::size_t k = 0; k < d.wi.size(); ++k) {
@@ -114,13 +114,13 @@ INSTANTIATE_TEST_SUITE_P(Some, EveryPowerFamily,
 
 TEST(Faults, SharesOfBadValuesAreTheirSize) {
     for (const FaultKind kind : {FaultKind::nan, FaultKind::negative, FaultKind::length}) {
-        const Twins t("Phong", {kind, 0.01}, Real::f32);
+        const RightAndFaulty t("Phong", {kind, 0.01}, Real::f32);
         const auto adapter = make_adapter(t.wrong);
-        Rng dice = dice_of({"faults_test", 3, 0, "numbers"});
+        Rng rng = rng_of({"faults_test", 3, 0, "numbers"});
         int bad = 0;
         for (int k = 0; k < 1 << 16; ++k) {
             PrimarySample u;
-            for (int i = 0; i < t.wrong.numbers; ++i) u[i] = std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24;
+            for (int i = 0; i < t.wrong.numbers; ++i) u[i] = std::floor(rng.uniform(0, 0x1p24)) * 0x1p-24;
             Draw d;
             adapter->sample(0, wo, {&u, 1}, {&d, 1});
             bad += std::isnan(d.pdf) || d.pdf < 0 || std::fabs(dot(d.wi, d.wi) - 1) > 1e-3;
@@ -131,7 +131,7 @@ TEST(Faults, SharesOfBadValuesAreTheirSize) {
 
 TEST(Faults, FactorsOfThePdf) {
     const auto ratio = [](const char* family, Fault fault, Vec3d wi) {
-        const Twins t(family, fault);
+        const RightAndFaulty t(family, fault);
         return pdf_at(t.wrong, wo, wi) / pdf_at(t.right, wo, wi);
     };
     const Vec3d wi = unit(Vec3d{0.2, 0.4, 0.7}), m = unit(wo + wi);
@@ -146,7 +146,7 @@ TEST(Faults, FactorsOfThePdf) {
 TEST(Faults, EveryBrokenFamilyClaimsAnotherDensity) {
     for (const Family& f : families())
         for (const Broken b : f.breaks) {
-            Rng d = dice_of({"faults_test", 5, 0, f.name});
+            Rng d = rng_of({"faults_test", 5, 0, f.name});
             const Member member = f.member(d);
             const Sampler right = sampler_of(f, member, Real::f64);
             const Sampler wrong =
@@ -165,11 +165,11 @@ TEST(Streams, TwoKeysShareNoNumbers) {
         for (std::uint64_t seed : {1, 2})
             for (std::uint64_t index : {0, 1, 2, 17})
                 for (const std::string_view purpose : {"parameters", "w_o", "fault"}) {
-                    Rng d = dice_of({set, seed, index, purpose});
+                    Rng d = rng_of({set, seed, index, purpose});
                     for (int k = 0; k < 4096; ++k, ++count)
                         seen.insert(static_cast<std::uint64_t>(d.uniform(0, 0x1p53)));
                 }
-    EXPECT_GE(seen.size() + 1, count);  // 2e10 pairs of 53 bits: 2e-6 equal ones by chance
+    EXPECT_GE(seen.size() + 1, count);  // 2e10 pairs of 53 bits: expected number of equal pairs 2e-6
 }
 
 TEST(Streams, PartsOfAKeyAreSeparated) {
@@ -178,7 +178,7 @@ TEST(Streams, PartsOfAKeyAreSeparated) {
     EXPECT_EQ(hash_of({"a", 1, 2, "c"}), hash_of({"a", 1, 2, "c"}));
 }
 
-TEST(Cases, AreTheSameEachTimeAndDifferByIndexAndSeed) {
+TEST(Cases, AreReproducibleAndDifferByIndexAndSeed) {
     const auto text = [](std::uint64_t seed, std::uint64_t index) {
         const Case c = case_set("power").make({"power", seed, index, 1, false});
         return c.family + c.parameters + c.kind + (c.grid.empty() ? "" : std::to_string(c.grid[0].first));
@@ -200,7 +200,7 @@ TEST(Cases, PowerHasTenOfEachKindAndSizeInTwoHundred) {
     for (const auto& [cell, count] : cells) EXPECT_EQ(count, 10) << cell;
 }
 
-TEST(Records, CsvKeepsWhatTablesOfFaultsAreMadeOf) {
+TEST(Records, CsvRoundTripKeepsTheTables) {
     Case c;
     c.family = "glass, rough", c.kind = "leak", c.size = 0.01, c.expected = State::wrong, c.cause = "constant";
     Result result;

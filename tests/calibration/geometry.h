@@ -12,7 +12,7 @@
 namespace crescent::calibration {
 
 template <class F> constexpr F pi_of = std::numbers::pi_v<F>;
-/// Rounding of a direction's coordinates that a boundary is widened by: a few units in the last place.
+/// Tolerance for the rounding of a direction's coordinates at a boundary: a few units in the last place.
 template <class F> constexpr F slack = sizeof(F) == 4 ? F(4e-7) : F(1e-14);
 
 template <class F> Vec3<F> unit(Vec3<F> v) { return v * (F(1) / std::sqrt(dot(v, v))); }
@@ -25,12 +25,12 @@ template <class F> F versine(Vec3<F> a, Vec3<F> b) {
     const Vec3<F> d = a - b;
     return dot(d, d) / 2;
 }
-/// The direction at angle theta from `axis`, t = 1 - cos(theta), `turns` about it.
+/// The direction at angle theta from `axis`, t = 1 - cos(theta), with azimuth `turns` about it.
 template <class F> Vec3<F> off_axis(Vec3<F> axis, F t, F turns) {
     const F s = std::sqrt(std::max(t * (2 - t), F(0))), phi = 2 * pi_of<F> * turns;
     return frame_about(axis).to_world(Vec3<F>{s * std::cos(phi), s * std::sin(phi), 1 - t});
 }
-/// By the cosine about +z: x, y on the unit disk, polar.
+/// Cosine-weighted about +z: x, y on the unit disk, polar.
 template <class F> Vec3<F> cosine_weighted(F u1, F u2) {
     const F r = std::sqrt(u1), phi = 2 * pi_of<F> * u2;
     return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u1)};

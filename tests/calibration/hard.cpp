@@ -1,5 +1,5 @@
-// Right samplers that are hard: singular, thin, tiny and patchy densities, large skies in single precision, needles.
-// Parameters vary a little with the seed, within the hard range.
+// Right samplers that are difficult to check: singular, thin, tiny and discontinuous densities, large skies in single
+// precision, needles. Parameters vary slightly with the seed, within the difficult range.
 #include <fmt/format.h>
 
 #include "tests/calibration/axial.h"
@@ -62,7 +62,7 @@ Sampler needle(Rng& d) {
     const double gap = d.log(1e-8, 1e-5);
     return lobe(d, "needle", fmt::format("1 - cos {:.2g}", gap), cone_profile<double>(gap));
 }
-/// (1 + t / b)^-g, whose second moment does not exist.
+/// (1 + t / b)^-g, which has no second moment.
 Sampler heavy_tail(Rng& d) {
     const double g = d.uniform(1.05, 1.5), b = d.log(1e-7, 1e-4), whole = -std::expm1((1 - g) * std::log1p(2 / b));
     return lobe(d, "heavy tail", fmt::format("power {:.3f}, scale {:.2g}", g, b),
@@ -73,7 +73,7 @@ Sampler forward_scattering(Rng& d) {
     const double g = 1 - d.log(1e-3, 2e-2);
     return lobe(d, "forward scattering", fmt::format("g {:.5f}", g), greenstein_profile<double>(g));
 }
-/// A great circle's neighbourhood: a normal distribution of the height above a tilted plane, cut at 1.
+/// The neighbourhood of a great circle: a normal distribution of the height above a tilted plane, truncated at 1.
 Sampler band(Rng& d) {
     const double sd = d.log(1e-4, 1e-2);
     const Vec3d axis = d.direction(-1, 1);
@@ -122,7 +122,7 @@ Sampler many_disks(Rng& d) {
     return without_wo("1000 disks", "1 - cos 1e-7 to 1e-3", 3, f);
 }
 
-/// Constant in cells of t x phi that no dyadic cut meets.
+/// Constant in cells of t x phi that no dyadic cut aligns with.
 Sampler cells(std::string name, int columns, int rows, const std::function<double(int x, int y)>& value) {
     auto mass = std::make_shared<std::vector<double>>(), sums = std::make_shared<std::vector<double>>(1, 0.0);
     for (int k = 0; k < columns * rows; ++k) {
@@ -172,7 +172,7 @@ Sampler cascade(Rng&) {
         return m;
     });
 }
-/// Most draws are nothing: a cosine lobe that is drawn once in a thousand.
+/// Most draws return no sample: a cosine lobe that is drawn once in a thousand.
 Sampler mostly_nothing(Rng& d) {
     const double share = d.log(1e-3, 1e-2);
     Functions<double> f;
@@ -210,7 +210,7 @@ Sampler far_pole(Rng& d) {
     return without_wo("far pole", fmt::format("{} {:.3g}", cone ? "cone 1 - cos" : "kappa", cone ? 1 / k : k), 2,
         single<float>(axis, cone ? cone_profile<float>(float(1 / k)) : fisher_profile<float>(float(k))));
 }
-/// A sphere light in single precision: whether w meets it is asked of the rounded direction, without a margin.
+/// A sphere light in single precision: the intersection test of w uses the rounded direction, without a margin.
 Sampler sphere_rim(Rng& d) {
     const float ratio = static_cast<float>(d.log(0.02, 0.9)), s2 = ratio * ratio;
     const float gap = s2 / (1 + std::sqrt(1 - s2)), density = 1 / (2 * pi_of<float> * gap);
@@ -284,7 +284,7 @@ constexpr std::uint64_t variants = 3;
 std::uint64_t count_hard() { return variants * std::size(makers); }
 
 Case make_hard(const CaseKey& key) {
-    Rng d = dice_of({key.set, key.seed, key.index, "parameters"});
+    Rng d = rng_of({key.set, key.seed, key.index, "parameters"});
     return case_of(makers[key.index % std::size(makers)](d), key, State::right, "right");
 }
 

@@ -1,4 +1,4 @@
-// Held-out families: they measure an engine and are never used for tuning it.
+// Held-out families: they are used to measure an engine, never to tune it.
 #include <fmt/format.h>
 
 #include "tests/calibration/axial.h"
@@ -90,12 +90,12 @@ struct SphericalCaps {
 };
 
 /// The projected solid angle of a rectangle overhead, h^2 dA / r^4: columns of x by a table of their integrals, exact
-/// within a column; y within it by 40 bisections.
+/// within a column; y within a column by 40 bisections.
 struct ProjectedRectangle {
     static constexpr auto name = "projected solid angle of a rectangle", parameter = "size";
     static constexpr Wo wo = Wo::none;
     static constexpr Domain domain = Domain::hemisphere;
-    double x0, x1, y0, y1;  // over its height
+    double x0, x1, y0, y1;  // in units of its height
     static ProjectedRectangle drawn(Rng& d) {
         const double x = d.uniform(-2, 1), y = d.uniform(-2, 1), wide = d.log(0.2, 2);
         return {x, x + wide, y, y + d.log(0.2, 2)};
@@ -103,7 +103,7 @@ struct ProjectedRectangle {
     std::string text() const { return fmt::format("[{:.3f}, {:.3f}] x [{:.3f}, {:.3f}]", x0, x1, y0, y1); }
     ProjectedRectangle stretched(double by) const { return {x0, x0 + (x1 - x0) * by, y0, y0 + (y1 - y0) * by}; }
     /// Integral of 1 / (c^2 + y^2)^2 up to y, c^2 = 1 + x^2.
-    static double upto(double x, double y) {
+    static double cumulative(double x, double y) {
         const double c2 = 1 + x * x, c = std::sqrt(c2);
         return (y / (c2 * (c2 + y * y)) + std::atan(y / c) / (c2 * c)) / 2;
     }
@@ -112,8 +112,8 @@ struct ProjectedRectangle {
         std::vector<double> sums = {0};
         const double width = (x1 - x0) / n;
         const ProjectedRectangle r = *this;
-        const auto column = [r](double x) { return upto(x, r.y1) - upto(x, r.y0); };
-        for (int k = 0; k < n; ++k) {  // Simpson's rule; any positive value is a right table
+        const auto column = [r](double x) { return cumulative(x, r.y1) - cumulative(x, r.y0); };
+        for (int k = 0; k < n; ++k) {  // Simpson's rule; any positive value gives a valid table
             const double a = x0 + k * width;
             sums.push_back(sums.back() + (column(a) + 4 * column(a + width / 2) + column(a + width)) / 6);
         }
@@ -132,11 +132,11 @@ struct ProjectedRectangle {
             const auto k = std::size_t(std::clamp<std::ptrdiff_t>(
                 std::upper_bound(sums.begin(), sums.end(), at) - sums.begin() - 1, 0, n - 1));
             const double x = r.x0 + width * (double(k) + std::min((at - sums[k]) / (sums[k + 1] - sums[k]), 1.0));
-            const double target = upto(x, r.y0) + u[1] * column(x);
+            const double target = cumulative(x, r.y0) + u[1] * column(x);
             double low = r.y0, high = r.y1;
             for (int step = 0; step < 40; ++step) {
                 const double middle = (low + high) / 2;
-                (upto(x, middle) < target ? low : high) = middle;
+                (cumulative(x, middle) < target ? low : high) = middle;
             }
             const Vec3d w = unit(Vec3d{x, (low + high) / 2, 1});
             return Drawn<double>{w, pdf(o, w)};
@@ -165,8 +165,8 @@ struct Legendre {
                  F low = 0, high = 2;  // of t = 1 - c; the CDF in t
                  for (int k = 0; k < (sizeof(F) == 4 ? 26 : 54); ++k) {
                      const F t = (low + high) / 2, c = 1 - t;
-                     const F upto = t / 2 * (1 + 3 * p * (1 + c) / 2 + 5 * q * c * (1 + c) / 2);
-                     (upto < u ? low : high) = t;
+                     const F cumulative = t / 2 * (1 + 3 * p * (1 + c) / 2 + 5 * q * c * (1 + c) / 2);
+                     (cumulative < u ? low : high) = t;
                  }
                  return (low + high) / 2;
              },
@@ -177,8 +177,8 @@ struct Legendre {
     }
 };
 
-/// Clarberg, Jarosz, Akenine-Möller and Jensen 2005, "Wavelet Importance Sampling": a square of 2^levels cells warped
-/// level by level, wrapped round the sphere by equal area.
+/// Clarberg, Jarosz, Akenine-Möller and Jensen 2005, "Wavelet Importance Sampling": a square of 2^levels cells, warped
+/// level by level and mapped to the sphere with equal area.
 struct QuadTree {
     static constexpr auto name = "hierarchical warp", parameter = "power of the values";
     static constexpr Wo wo = Wo::none;

@@ -1,4 +1,4 @@
-// Planted faults whose verdict is known: all of tests/known_samplers/faulty, those held out included.
+// Planted faults with known verdicts: all of tests/known_samplers/faulty, including the held-out ones.
 #include "tests/calibration/cases.h"
 #include "tests/known_samplers/faulty/planted.h"
 

@@ -1,4 +1,4 @@
-// Lights seen from the origin, drawn by area (density r^2 / (A cos), all of what faces either way) or by solid angle.
+// Lights seen from the origin, drawn by area (density r^2 / (A cos), for both sides of a surface) or by solid angle.
 // p_area is per m^2, p per sr.
 #include <fmt/format.h>
 
@@ -12,13 +12,13 @@ using Wo = Traits::WoDomain;
 
 /// A point of a flat light: centre + x a + y b.
 struct Plane {
-    Vec3d centre, a, b;  // a and b: half sides or edges
+    Vec3d centre, a, b;  // half sides or edges
     double area;
     static Plane rectangle(Rng& d) {
         const Vec3d n = d.direction(-1, 1), c = d.direction(-0.3, 1) * d.log(0.4, 3);
         const Frame<double> f = frame_about(n);
         Plane p{c, f.t * d.log(0.05, 1.5), f.b * d.log(0.05, 1.5), 0};
-        // The light's plane keeps off the origin: a light seen edge-on has an unbounded density.
+        // The plane of the light does not contain the origin: a light seen edge-on has an unbounded density.
         const double gap = dot(c, n), least = 0.15;
         if (std::fabs(gap) < least) p.centre = c + n * ((gap < 0 ? -least : least) - gap);
         return p;
@@ -26,8 +26,8 @@ struct Plane {
     Plane scaled(double by) const { return {centre, a * by, b * by, area}; }
 };
 
-/// p = r^2 / (A cos) of what is met at r, and the place on the light in units of a and b. In double; in single
-/// precision directions and densities are rounded at the end, and edges are widened by no more than that takes.
+/// p = r^2 / (A cos) at distance r, and the place on the light in units of a and b. Computed in double; in single
+/// precision directions and densities are rounded at the end, and edges are widened by that rounding.
 struct FlatLight {
     Vec3d c, a, b, n;
     double area, rounding;
@@ -38,7 +38,7 @@ struct FlatLight {
           n(unit(cross(a, b))),
           area(area_over_ab * std::sqrt(dot(a, a) * dot(b, b))),
           rounding(round) {}
-    /// x and y in units of a and b, and the distance; distance 0: the plane is not met.
+    /// x and y in units of a and b, and the distance; distance 0: no intersection.
     struct Met {
         double x, y, r;
     };
@@ -49,7 +49,7 @@ struct FlatLight {
         return {dot(off, a) / dot(a, a), dot(off, b) / dot(b, b), t};
     }
     double density(Vec3d w, double r) const { return r * r / (area * std::fabs(dot(w, n))); }
-    /// How far an edge at 1 is widened by.
+    /// The widening of an edge at 1.
     double edge(double r, Vec3d w) const {
         return rounding * r / (std::sqrt(std::min(dot(a, a), dot(b, b))) * std::fabs(dot(w, n)));
     }
@@ -61,10 +61,10 @@ struct FlatLight {
     }
 };
 
-/// A flat light of a shape: whether (x, y) is on it but for an edge of width e, and the place of u.
+/// A flat light of a shape: whether (x, y) is inside, with a tolerance e at edges, and the place of u.
 template <class F> Functions<F> flat(const Plane& plane, double area_over_ab,
     bool (*inside)(double x, double y, double e), std::pair<double, double> (*place)(const double* u)) {
-    // Each coordinate of a direction in single precision is rounded by 2^-25 at most.
+    // Each coordinate of a direction in single precision has a rounding error of at most 2^-25.
     const FlatLight light(plane, area_over_ab, sizeof(F) == 4 ? 0x1p-24 : 1e-14);
     Functions<double> out;
     out.pdf = [light, inside](Vec3d, Vec3d w) {
@@ -119,7 +119,7 @@ struct Disk {
     }
 };
 
-/// Edges a and b from the centre; barycentric by the square root.
+/// Edges a and b from the centre; barycentric coordinates by the square root.
 struct Triangle {
     static constexpr auto name = "triangle light by area", parameter = "size";
     static constexpr Wo wo = Wo::none;
@@ -140,7 +140,7 @@ struct Triangle {
     }
 };
 
-/// The cone that a sphere fills.
+/// The cone that a sphere subtends.
 struct SphereByAngle {
     static constexpr auto name = "sphere light by solid angle", parameter = "radius";
     static constexpr Wo wo = Wo::none;
@@ -159,7 +159,7 @@ struct SphereByAngle {
     }
 };
 
-/// All of its surface, front and back: p is the sum over both places that w meets.
+/// The whole surface, front and back: p is the sum over both intersections of w.
 struct SphereByArea {
     static constexpr auto name = "sphere light by area", parameter = "radius";
     static constexpr Wo wo = Wo::none;

@@ -54,7 +54,7 @@ struct Lambert {
     }
 };
 
-/// Reflection and diffuse transmission; u[2] chooses the side.
+/// Reflection and diffuse transmission; u[2] selects the side.
 struct TwoSided {
     static constexpr auto name = "Lambert on both sides", parameter = "share that is transmitted";
     static constexpr Wo wo = Wo::both;
@@ -90,7 +90,7 @@ struct PowerCosine {
     template <class F> Functions<F> in(Broken) const { return single<F>(fixed<F>({0, 0, 1}), power_profile<F>(F(s))); }
 };
 
-/// About the mirror direction; draws under the plane are kept, f is 0 there.
+/// About the mirror direction; draws below the surface are kept, with f = 0.
 struct Phong {
     static constexpr auto name = "Phong", parameter = "exponent";
     static constexpr Wo wo = Wo::upper;
@@ -185,7 +185,7 @@ struct FisherMixture {
     }
 };
 
-/// Cosine powers about axes that a path guide would have learnt.
+/// Cosine powers about axes such as those of a path guide.
 struct FixedLobes {
     static constexpr auto name = "lobes about fixed axes", parameter = "exponent of all";
     static constexpr Wo wo = Wo::none;

@@ -1,5 +1,5 @@
-// crescent_calibration SET ...: runs cases; crescent_calibration table|csv FILE...: what came of them; --serve: a
-// case's sampler behind a pipe; --list: the sets, families and engines.
+// crescent_calibration SET ...: runs cases; crescent_calibration table|csv FILE...: reports results; --serve: serves
+// the sampler of a case over a pipe; --list: lists sets, families and engines.
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
@@ -36,7 +36,7 @@ std::uint64_t number(const std::string& text, const char* what) {
     return v;
 }
 
-/// "A:B", "B" for 0:B, or "all" of a set that has a count.
+/// "A:B", "B" for 0:B, or "all" for a set with a finite number of cases.
 std::pair<std::uint64_t, std::uint64_t> range_of(const std::string& text, const CaseSet& set) {
     const auto colon = text.find(':');
     std::uint64_t from = 0, to = set.count;
@@ -47,7 +47,7 @@ std::pair<std::uint64_t, std::uint64_t> range_of(const std::string& text, const 
     return {from, set.count ? std::min(to, set.count) : to};
 }
 
-/// The program itself, as the sampler of a case.
+/// This program as the sampler of a case.
 std::vector<CheckCase> piped(const CaseKey& key, const Case& c) {
     const std::string self = std::filesystem::read_symlink("/proc/self/exe");
     const std::string command = fmt::format("exec '{}' --serve {} {} {} --wo {} --mode {}", self, key.set, key.seed,
@@ -67,7 +67,7 @@ Result run_case(const Engine& engine, const CaseKey& key, const Case& c, const R
     }
 }
 
-/// Set `stated`: the right sampler first; then a fault of the size that its verdict says could be hidden.
+/// Set `stated`: the right sampler first; then a fault of the size that its verdict states as possibly hidden.
 nlohmann::ordered_json run_stated(
     const Engine& engine, const CaseKey& key, const RunOf& run, Request request, const StatedCase& of) {
     Case c = stated_right(of, key);
@@ -145,17 +145,17 @@ int run(int argc, char** argv) {
     app.add_option("--seed", o.seed, "of the cases")->capture_default_str();
     app.add_option("--cases", o.cases, "A:B, or all")->capture_default_str();
     app.add_option("--mode", o.mode, "quick or full")->check(CLI::IsMember({"quick", "full"}))->capture_default_str();
-    app.add_option("--wo", o.wo, "w_o a case at random; 0: those of the mode; default: the set's");
-    app.add_option("--draws", o.draws, "draws a w_o in place of the mode's");
-    app.add_option("--evaluations", o.evaluations, "evaluations a w_o in place of the mode's");
-    app.add_option("--out", o.out, "a file of JSON lines, continued where it ends");
+    app.add_option("--wo", o.wo, "random w_o for each case; 0: those of the mode; default: the set's");
+    app.add_option("--draws", o.draws, "draws for each w_o; default: the mode's");
+    app.add_option("--evaluations", o.evaluations, "evaluations for each w_o; default: the mode's");
+    app.add_option("--out", o.out, "a file of JSON lines; an interrupted run continues");
     app.add_flag("--pipe", o.pipe, "each sampler behind a pipe");
-    app.add_flag("--serve", o.serve, "be the sampler of SET SEED INDEX behind a pipe");
+    app.add_flag("--serve", o.serve, "serve the sampler of SET SEED INDEX over a pipe");
     app.add_flag("--list", o.list, "sets, families, engines");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) { return app.exit(e) == 0 ? 0 : 2; }
-    // One thread: CPU time is what is measured, and two runs may go side by side.
+    // One thread, because CPU time is measured and two runs may be made at the same time.
     const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
     if (o.serve) return serve_case(o);
     if (o.list) return list(), 0;

@@ -1,5 +1,5 @@
 // Cells are leaves of a dyadic tree over (1 - cos, phi) about the mean of a first set of draws, cut at the median of
-// these or where none of them is; a second set is counted in them. p is integrated by stratified points, 2^20 in all.
+// these or in an empty region; a second set is counted in them. p is integrated by stratified points, 2^20 in total.
 #include "tests/calibration/measures.h"
 
 #include "tests/calibration/geometry.h"
@@ -24,7 +24,8 @@ Vec3d direction_of(Place p) {
     return {s * std::cos(phi), s * std::sin(phi), 1 - p.t};
 }
 
-/// Where to cut a cell: off the emptiest side, if that is a quarter of it or more; else at the median draw.
+/// The cut of a cell: next to the largest empty margin, if it is at least a quarter of the cell; otherwise at the
+/// median draw.
 struct Cut {
     bool along_t;
     double at;
@@ -47,7 +48,7 @@ Cut cut_of(const Cell& c, bool along_t) {
     return {along_t, v[v.size() / 2]};
 }
 
-/// Cuts the fullest cell until there are `count`.
+/// Cuts the cell with the most draws until there are `count` cells.
 std::vector<Cell> cells_about(const std::vector<Place>& draws, std::size_t count) {
     std::vector<Cell> all(1);
     all[0].inside = draws;
@@ -67,15 +68,15 @@ std::vector<Cell> cells_about(const std::vector<Place>& draws, std::size_t count
     return all;
 }
 
-/// Integral of p over a cell by n x n strata with two points in each, and its variance: of the pairs, and of one point
-/// of the largest p that the points or the first draws met, for an edge of p that no pair met.
-std::pair<double, double> integral_of(const Sampler& s, Vec3d wo, const Cell& c, int n, Rng& dice) {
+/// Integral of p over a cell by n x n strata with two points in each, and its variance: that of the pairs, plus one
+/// point with the largest p of the points and the first draws, for an edge of p that no pair shows.
+std::pair<double, double> integral_of(const Sampler& s, Vec3d wo, const Cell& c, int n, Rng& rng) {
     double sum = 0, variance = 0, largest = 0;
     for (const Place& draw : c.inside) largest = std::max(largest, draw.p);
     for (int k = 0; k < n * n; ++k) {
         double v[2];
         for (double& p : v) {
-            const double x = (k % n + dice.uniform(0, 1)) / n, y = (k / n + dice.uniform(0, 1)) / n;
+            const double x = (k % n + rng.uniform(0, 1)) / n, y = (k / n + rng.uniform(0, 1)) / n;
             p = pdf_at(s, wo, direction_of({c.t0 + (c.t1 - c.t0) * x, c.f0 + (c.f1 - c.f0) * y}));
             sum += p;
             largest = std::max(largest, p);
@@ -94,13 +95,13 @@ double pdf_at(const Sampler& s, Vec3d wo, Vec3d wi) {
 }
 
 Draws draws_of(const Sampler& s, Vec3d wo, int count, std::uint64_t seed) {
-    Rng dice = dice_of({"measures", seed, 0, "draws"});
+    Rng rng = rng_of({"measures", seed, 0, "draws"});
     Draws out;
     for (int k = 0; k < count; ++k)
         std::visit(
             [&]<class F>(const Functions<F>& f) {
                 F u[PrimarySample::most];
-                for (F& v : u) v = F(std::floor(dice.uniform(0, 0x1p24)) * 0x1p-24);
+                for (F& v : u) v = F(std::floor(rng.uniform(0, 0x1p24)) * 0x1p-24);
                 const Drawn<F> d = f.sample(cast<F>(wo), u);
                 out.wi.push_back(d.pdf > 0 ? widened(d.wi) : Vec3d{0, 0, 0});
                 out.pdf.push_back(double(d.pdf));
@@ -133,17 +134,17 @@ Fit fit_of(const Sampler& s, Vec3d wo, int count, std::uint64_t seed) {
         for (std::size_t k = 0; k < cells.size(); ++k)
             if (p.t >= cells[k].t0 && p.t < cells[k].t1 && p.turns >= cells[k].f0 && p.turns < cells[k].f1) ++seen[k];
     }
-    Rng dice = dice_of({"measures", seed, 0, "points"});
+    Rng rng = rng_of({"measures", seed, 0, "points"});
     Fit fit;
     double variance = 0;
     const int n = static_cast<int>(std::sqrt(double(1 << 19) / static_cast<double>(cells.size())));
     for (std::size_t k = 0; k < cells.size(); ++k) {
-        const auto [mass, error] = integral_of(s, wo, cells[k], n, dice);
+        const auto [mass, error] = integral_of(s, wo, cells[k], n, rng);
         fit.integral += mass;
         variance += error;
-        const double due = mass * count, spread = due + error * sqr(double(count));
-        if (due < 10) continue;  // what falls where nothing is due shows in the integral
-        fit.chi2 += sqr(seen[k] - due) / spread;
+        const double expected = mass * count, spread = expected + error * sqr(double(count));
+        if (expected < 10) continue;  // draws in cells with almost no expected draws show in the integral
+        fit.chi2 += sqr(seen[k] - expected) / spread;
         ++fit.degrees;
     }
     fit.drawn = something / count;

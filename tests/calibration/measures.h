@@ -1,23 +1,23 @@
-// What the calibration's own tests measure of a sampler, apart from every engine.
+// Measurements of a sampler for the tests of the calibration, independent of every engine.
 #pragma once
 
 #include "tests/calibration/sampler.h"
 
 namespace crescent::calibration {
 
-/// Draws against the density in equal-area cells of the sphere: each cell's integral by stratified points, more of them
-/// where the draws are.
+/// Draws compared with the density in cells of the sphere: the integral over each cell by stratified points, more of
+/// them where the draws are.
 struct Fit {
-    double integral = 0, drawn = 0;  // of p; share of draws that are something
+    double integral = 0, drawn = 0;  // of p; share of draws with a sample
     double sigmas = 0;               // their difference in standard errors
     double chi2 = 0, degrees = 0;
 };
 Fit fit_of(const Sampler& sampler, Vec3d wo, int draws, std::uint64_t seed);
 
-/// Share of the draws whose pdf is off pdf(w) by more than 1e-4 (double: 1e-9) of it.
+/// Share of the draws whose pdf differs from pdf(w) by a relative error of more than 1e-4 (double: 1e-9).
 double share_of_other_pdf(const Sampler& sampler, Vec3d wo, int draws, std::uint64_t seed);
 
-/// Directions drawn at numbers from a stream, zero vectors where nothing is drawn; and their densities.
+/// Directions drawn with numbers from a stream, zero vectors for no sample; and their densities.
 struct Draws {
     std::vector<Vec3d> wi;
     std::vector<double> pdf;

@@ -127,7 +127,7 @@ struct RoughDielectric {
     }
 };
 
-/// A rough lobe over Lambert with Schlick's Fresnel at w_o as the chooser.
+/// A rough lobe over Lambert, selected with Schlick's Fresnel at w_o.
 struct Layered {
     static constexpr auto name = "rough lobe over Lambert", parameter = "roughness";
     static constexpr Wo wo = Wo::upper;

@@ -18,7 +18,7 @@ template <class F> struct Ggx2 {
         if (!(o.z > 0 && i.z > 0)) return 0;
         return D(unit(o + i)) / (1 + lambda(o) + lambda(i)) / (4 * o.z * i.z);
     }
-    /// Of directions by visible normals: D G1(o) / (4 o.z).
+    /// Density of directions by visible normals: D G1(o) / (4 o.z).
     F visible_pdf(Vec3<F> o, Vec3<F> i) const {
         const Vec3<F> m = unit(o + i);
         return o.z > 0 && dot(o, m) > 0 ? D(m) / (1 + lambda(o)) / (4 * o.z) : F(0);
@@ -46,7 +46,7 @@ template <class F> struct Ggx2 {
 };
 
 /// Half vectors drawn by `normal` with density `D` m.z per solid angle; p = D m.z / (4 w_o.m). A half vector that faces
-/// away from w_o draws nothing. f is D G / (4 cos cos) with the shadowing of V-cavities, Cook and Torrance 1982.
+/// away from w_o gives no sample. f is D G / (4 cos cos) with the shadowing of V-cavities, Cook and Torrance 1982.
 template <class F> Functions<F> by_normals(std::function<Vec3<F>(F u1, F u2)> normal, std::function<F(Vec3<F> m)> D) {
     Functions<F> out;
     out.pdf = [D](Vec3<F> o, Vec3<F> i) {

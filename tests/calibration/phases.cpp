@@ -1,4 +1,4 @@
-// Phase functions and fibres: both sides of every w_o. Axis: the direction in which light goes straight on, -w_o.
+// Phase functions and fibres, for w_o on both sides. Axis: the direction of light that is not scattered, -w_o.
 #include <fmt/format.h>
 
 #include "tests/calibration/axial.h"
@@ -83,18 +83,18 @@ struct Tabulated {
         const int n = static_cast<int>(value.size());
         std::vector<double> sums = {0};
         for (double v : value) sums.push_back(sums.back() + v);
-        std::vector<F> upto, density;  // t = 1 - cos in bins of 2 / n
+        std::vector<F> cumulative, density;  // t = 1 - cos in bins of 2 / n
         for (int k = 0; k < n; ++k) {
-            upto.push_back(F(sums[static_cast<std::size_t>(k)] / sums.back()));
+            cumulative.push_back(F(sums[static_cast<std::size_t>(k)] / sums.back()));
             density.push_back(F(value[static_cast<std::size_t>(k)] / sums.back() * n / (4 * pi_of<double>)));
         }
-        upto.push_back(1);
+        cumulative.push_back(1);
         const auto bin = [n](F t) { return std::clamp(static_cast<int>(t / 2 * F(n)), 0, n - 1); };
         return single<F>(forward<F>(),
-            {[upto, n](F u) {
-                 const auto at = std::upper_bound(upto.begin(), upto.end(), u) - 1;
-                 const auto k = std::min<std::ptrdiff_t>(at - upto.begin(), n - 1);
-                 const F low = upto[std::size_t(k)], high = upto[std::size_t(k) + 1];
+            {[cumulative, n](F u) {
+                 const auto at = std::upper_bound(cumulative.begin(), cumulative.end(), u) - 1;
+                 const auto k = std::min<std::ptrdiff_t>(at - cumulative.begin(), n - 1);
+                 const F low = cumulative[std::size_t(k)], high = cumulative[std::size_t(k) + 1];
                  return 2 * (F(k) + std::min((u - low) / (high - low), F(1))) / F(n);
              },
                 [density, bin, n, b](F t) {
@@ -106,7 +106,7 @@ struct Tabulated {
     }
 };
 
-/// A logistic distribution cut to [-half, half]: its value and its inverse. d'Eon 2013, "Importance Sampling for
+/// A logistic distribution truncated to [-half, half]: its value and its inverse. d'Eon 2013, "Importance Sampling for
 /// Physically-Based Hair Fiber Models".
 template <class F> struct CutLogistic {
     F s, half;
@@ -131,7 +131,8 @@ struct Fibre {
     std::string text() const { return fmt::format("widths {:.3f}, {:.3f}", along, across); }
     Fibre stretched(double by) const { return {along * by, across * by}; }
     template <class F> Functions<F> in(Broken) const {
-        // theta + the angle of the mirror cone may leave [-pi/2, pi/2]; such a draw is reflected at the fibre's end.
+        // theta + the angle of the mirror cone may leave [-pi/2, pi/2]; such a draw is reflected at the end of the
+        // interval.
         const CutLogistic<F> m{F(along), pi_of<F> / 2}, n{F(across), pi_of<F>};
         const auto azimuth = [](Vec3<F> w) { return std::atan2(w.z, w.y); };
         const auto elevation = [](Vec3<F> w) { return std::atan2(w.x, std::hypot(w.y, w.z)); };

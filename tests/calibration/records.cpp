@@ -1,4 +1,4 @@
-// Names of fields are short: files have thousands of lines.
+// Field names are short because files have thousands of lines.
 #include "tests/calibration/records.h"
 
 #include <cmath>
@@ -74,7 +74,7 @@ Causes causes_of(const Json& r) {
     Causes out{static_cast<int>(all.size()), names_cause(cause, all), false};
     for (const std::string& one : all) out.others = out.others || (out.named && !names_cause(cause, {one}));
     if (!cause.empty()) return out;
-    // Where none must be named, what is named should be true.
+    // If no cause must be named, a named cause must be true.
     const auto kind = r.at("kind").get<std::string>(), family = r.at("family").get<std::string>();
     const auto is_true = [&](const std::string& one) { return is_true_of(kind, family, one); };
     out.named = std::ranges::any_of(all, is_true), out.others = !std::ranges::all_of(all, is_true);
@@ -83,7 +83,7 @@ Causes causes_of(const Json& r) {
 
 namespace {
 
-/// Columns of the CSV: texts, words in a list, numbers, yes or no.
+/// Columns of the CSV: texts, words of a list, numbers, flags.
 struct Column {
     const char* name;
     enum Kind { text, list, number, flag } kind;
@@ -108,7 +108,7 @@ std::string cell_of(const Column& c, const Json& r) {
     return s.find(',') == s.npos ? s : '"' + s + '"';
 }
 
-/// The cells of a line; one in quotes may hold commas.
+/// The cells of a line; a quoted cell may contain commas.
 std::vector<std::string> cells_of(const std::string& line) {
     std::vector<std::string> out(1);
     bool quoted = false;

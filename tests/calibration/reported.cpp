@@ -1,4 +1,4 @@
-// Faults that users reported, each with its corrected sampler, and right samplers that were called wrong.
+// Faults that users reported, each with its corrected sampler, and right samplers that were reported wrong.
 #include <fmt/format.h>
 
 #include "tests/calibration/axial.h"
@@ -14,7 +14,7 @@ using Wo = Traits::WoDomain;
 
 struct Reported {
     const char* name;
-    const char* cause;  // "" where none can be named
+    const char* cause;  // "" if none can be named
     Sampler (*make)(bool faulty);
     bool has_fault = true;
 };
@@ -27,7 +27,7 @@ Sampler sampler(int numbers, Wo wo, std::variant<Functions<double>, Functions<fl
     return s;
 }
 
-/// A sphere of light whose pdf does not ask whether w meets it.
+/// A spherical light whose pdf does not test whether w intersects it.
 Sampler away(bool faulty) {
     const Vec3d axis = unit(Vec3d{-0.4, 0.3, 0.6});
     const double gap = 1 - std::sqrt(1 - 0.09), density = 1 / (2 * pi_of<double> * gap);
@@ -35,12 +35,12 @@ Sampler away(bool faulty) {
     if (faulty) f.pdf = [density](Vec3d, Vec3d) { return density; };
     return sampler(2, Wo::none, f);
 }
-/// A small sphere of light with 1 - cos in single precision.
+/// A small spherical light with 1 - cos in single precision.
 Sampler cone_in_float(bool faulty) {
     const float r = 0.002f, s2 = r * r, cos = std::sqrt(1 - s2), gap = faulty ? 1 - cos : s2 / (1 + cos);
     const float density = 1 / (2 * pi_of<float> * gap);
     const Vec3f axis = unit(Vec3f{0.3f, -0.5f, 0.81f});
-    const double rim = double(s2 / (1 + cos)) * (1 + 6e-5);  // directions are rounded by 3e-5 of the cone's angle
+    const double rim = double(s2 / (1 + cos)) * (1 + 6e-5);  // directions are rounded by 3e-5 of the angle of the cone
     Functions<float> f;
     f.pdf = [=](Vec3f, Vec3f w) { return versine(widened(axis), widened(w)) <= rim ? density : 0.0f; };
     f.sample = [=](Vec3f, const float* u) {
@@ -61,7 +61,7 @@ Sampler frame_of_zero(bool faulty) {
     f.f = f.pdf;
     return sampler(2, Wo::both, f);
 }
-/// A textured disk light: texels whose centre lies off the disk are never drawn.
+/// A textured disk light: texels whose centre is outside the disk are never drawn.
 Sampler border_texels(bool faulty) {
     constexpr int n = 16;
     constexpr double h = 1.5;
@@ -92,7 +92,7 @@ Sampler border_texels(bool faulty) {
     s.reciprocal = false;
     return s;
 }
-/// A leaf: the probability of transmission is left out of the pdf of what is transmitted.
+/// A leaf: the pdf of transmitted directions does not include the probability of transmission.
 Sampler leaf(bool faulty) {
     constexpr double through = 0.1;
     Functions<double> f;
@@ -107,7 +107,7 @@ Sampler leaf(bool faulty) {
     };
     return sampler(3, Wo::both, f);
 }
-/// A sky of 32 x 16 texels mirrored between draw and pdf, nearly the same from east to west.
+/// A sky of 32 x 16 texels mirrored between draw and pdf, with almost no variation from east to west.
 Sampler mirrored_sky(bool faulty) {
     std::vector<double> radiance;
     for (int i = 0; i < 16; ++i)
@@ -123,7 +123,7 @@ Sampler mirrored_sky(bool faulty) {
     }
     return sampler(2, Wo::none, f);
 }
-/// An azimuth whose random number is never used.
+/// An azimuth whose random number is not used.
 Sampler azimuth(bool faulty) {
     Functions<double> f = single<double>(forward<double>(), greenstein_profile<double>(0.6));
     f.f = f.pdf;
@@ -135,7 +135,8 @@ Sampler azimuth(bool faulty) {
     return sampler(2, Wo::both, f);
 }
 
-/// 512 x 256 texels, smooth but for a sun of one texel 10^4 times as bright; `normalised` of 0.1 reads .998 here.
+/// 512 x 256 texels, smooth except for a sun of one texel, 10^4 times as bright; version 0.1 gave .998 for
+/// `normalised`.
 Sampler sun_of_a_texel(bool alias, Real real) {
     std::vector<double> radiance;
     for (int i = 0; i < 256; ++i)
@@ -177,7 +178,7 @@ constexpr Reported all[] = {{"away", "", away}, {"cone32", "", cone_in_float}, {
     {"float sky 512 x 256, alias table", "", sun<true, Real::f32>, false}, {"rough glass", "", rough_glass, false},
     {"float sphere light", "", sphere_in_float, false}};
 
-/// Each fault and its corrected sampler, then the right ones.
+/// Each fault and its corrected sampler, then the right samplers.
 std::vector<std::pair<const Reported*, bool>> listed() {
     std::vector<std::pair<const Reported*, bool>> out;
     for (const Reported& r : all) {

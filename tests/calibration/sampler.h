@@ -1,5 +1,5 @@
-// A sampler of the calibration: sample, pdf and f as functions in single or double precision, and the families that
-// samplers are made from at random parameters. Densities in 1/sr; f without the cosine, in 1/sr.
+// A sampler of the calibration: sample, pdf and f as functions in single or double precision, and the families from
+// which samplers with random parameters are made. Densities in 1/sr; f without the cosine, in 1/sr.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace crescent::calibration {
 
-/// A direction and the density at it; pdf 0: nothing drawn.
+/// A direction and its density; pdf 0: no sample.
 template <class F> struct Drawn {
     Vec3<F> wi;
     F pdf;
@@ -21,17 +21,17 @@ template <class F> struct Drawn {
 template <class F> struct Functions {
     std::function<Drawn<F>(Vec3<F> wo, const F* u)> sample;
     std::function<F(Vec3<F> wo, Vec3<F> wi)> pdf;
-    std::function<F(Vec3<F> wo, Vec3<F> wi)> f{};  // empty: there is no BRDF
+    std::function<F(Vec3<F> wo, Vec3<F> wi)> f{};  // empty: no BRDF
 };
 
-/// The whole sphere, or the half above the plane: where a leak of uniform draws goes.
+/// The whole sphere, or the half above the surface: the domain of uniform draws of a leak.
 enum class Domain { sphere, hemisphere };
 enum class Real { f32, f64 };
 
-/// What can be broken inside of a family, beside what any sampler can have.
+/// Faults inside a family, besides those that any sampler can have.
 enum class Broken {
     none,
-    lobe_pdf,          // the draw carries the density of the drawn lobe alone, and so does pdf: its largest
+    lobe_pdf,          // the draw and pdf have the largest density of a single lobe
     equal_weights,     // lobes are drawn by their weights; pdf weights them equally
     no_weights,        // pdf is the sum of the lobes' densities without their weights
     transposed_table,  // rows and columns of the table are exchanged in pdf
@@ -39,7 +39,7 @@ enum class Broken {
     mirrored_table,    // pdf reads the columns in reverse
 };
 
-/// A sampler with all that the adapter and the faults need to know.
+/// A sampler with the properties that the adapter and the faults need.
 struct Sampler {
     std::string family, parameters;
     int numbers = 2;  // random numbers of a sample
@@ -51,7 +51,7 @@ struct Sampler {
     Real real() const { return functions.index() == 0 ? Real::f64 : Real::f32; }
 };
 
-/// One member of a family: its parameters are chosen. `stretch` multiplies the family's one parameter.
+/// One member of a family, with fixed parameters. `stretch` multiplies the family's mismatch parameter.
 struct Member {
     std::string text;
     std::function<Functions<double>(double stretch, Broken)> in_double;
@@ -61,7 +61,7 @@ struct Member {
 
 struct Family {
     std::string name;
-    std::string parameter;  // that a mismatch multiplies; "" where there is none
+    std::string parameter;  // multiplied by a mismatch; "" if there is none
     bool held_out = false;  // never used for tuning
     int numbers = 2;
     Traits::WoDomain wo = Traits::WoDomain::none;
@@ -82,12 +82,12 @@ Sampler sampler_of(const Family& family, const Member& member, Real real, double
 /// The same functions with inputs, directions and densities rounded to single precision.
 Functions<float> rounded(Functions<double> exact);
 
-/// As a user's struct is taken: through UserSampler, with as many numbers, f where there is one.
+/// The adapter of a user's struct, through UserSampler, with the same number of random numbers, and f if there is one.
 std::shared_ptr<const SamplerAdapter> make_adapter(const Sampler& sampler);
 
-/// What a family's struct says of itself. `drawn` chooses the parameters, `stretched` multiplies the named one.
-template <class T> Member member_of(Rng& dice) {
-    const T chosen = T::drawn(dice);
+/// The declaration of a family's struct. `drawn` chooses the parameters, `stretched` multiplies the named one.
+template <class T> Member member_of(Rng& rng) {
+    const T chosen = T::drawn(rng);
     Member m;
     m.text = chosen.text();
     m.in_double = [chosen](double by, Broken b) { return chosen.stretched(by).template in<double>(b); };
@@ -114,6 +114,6 @@ std::vector<Family> phase_families();       // of media, about the direction of 
 std::vector<Family> light_families();       // by area and by solid angle
 std::vector<Family> microfacet_families();  // through half vectors
 std::vector<Family> table_families();       // skies, tables, portals
-std::vector<Family> held_out_families();    // written to be measured with, not to be tuned on
+std::vector<Family> held_out_families();    // for measurements, not for tuning
 
 }  // namespace crescent::calibration

@@ -1,4 +1,5 @@
-// Answers are those of the adapter of users' structs, so that a case gives the same draws in process and by pipe.
+// The answers are those of the adapter of a user's struct, so that a case has the same draws in process and over a
+// pipe.
 #include "tests/calibration/serve.h"
 
 #include <cstring>

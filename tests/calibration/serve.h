@@ -1,4 +1,4 @@
-// A calibration sampler as a program behind a pipe: protocol 2 of `crescent check --exec`, by blocks.
+// A calibration sampler as a program behind a pipe: protocol 2 of `crescent check --exec`, with blocks.
 #pragma once
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 namespace crescent::calibration {
 
-/// Answers on `out` until `in` ends; false if a request cannot be read.
+/// Answers requests on `out` until `in` ends; returns false if a request cannot be read.
 bool serve(const Sampler& sampler, std::FILE* in, std::FILE* out);
 
 }  // namespace crescent::calibration

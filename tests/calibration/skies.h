@@ -1,5 +1,5 @@
-// Skies by texels in theta x phi in single and double precision, drawn by sums of rows and columns or by an alias
-// table; uniform in theta and phi within a texel, p = mass * rows * columns / (2 pi^2 sin theta).
+// Skies of texels in theta x phi in single and double precision, drawn by cumulative sums of rows and columns or by an
+// alias table; uniform in theta and phi within a texel, p = mass * rows * columns / (2 pi^2 sin theta).
 #pragma once
 
 #include "tests/calibration/geometry.h"
@@ -33,12 +33,12 @@ template <class F> struct SkyMap {
     }
 };
 
-/// u[0] chooses the row, u[1] the column.
+/// u[0] selects the row, u[1] the column.
 template <class F>
 Functions<F> sky_by_cdf(int row_count, int column_count, const std::vector<double>& radiance, Broken b) {
     const Sky s(row_count, column_count, radiance, false);
     const auto map = std::make_shared<const SkyMap<F>>(s, b);
-    // Running sums, each row's divided by its own, rounded to F.
+    // Cumulative sums, normalised for each row, rounded to F.
     std::vector<F> rows(s.row_sums.begin(), s.row_sums.end()), columns;
     for (std::size_t i = 0; i < std::size_t(s.rows); ++i)
         for (std::size_t j = 0; j <= std::size_t(s.columns); ++j) {
@@ -62,7 +62,7 @@ Functions<F> sky_by_cdf(int row_count, int column_count, const std::vector<doubl
     return out;
 }
 
-/// u[2] chooses a texel, u[3] whether it is kept.
+/// u[2] selects a texel, u[3] decides whether it is kept.
 template <class F>
 Functions<F> sky_by_alias(int row_count, int column_count, const std::vector<double>& radiance, Broken b) {
     const auto s = std::make_shared<const Sky>(row_count, column_count, radiance, true);

@@ -18,6 +18,6 @@ std::uint64_t hash_of(const StreamKey& key) {
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-Rng dice_of(const StreamKey& key) { return Rng(hash_of(key)); }
+Rng rng_of(const StreamKey& key) { return Rng(hash_of(key)); }
 
 }  // namespace crescent::calibration

@@ -9,7 +9,7 @@
 
 namespace crescent::calibration {
 
-/// Which case, and what its numbers are for.
+/// A case, and the purpose of its numbers.
 struct StreamKey {
     std::string_view set;
     std::uint64_t seed = 1, index = 0;
@@ -18,7 +18,7 @@ struct StreamKey {
 
 /// xxHash (XXH3, 64 bits) of all four parts.
 std::uint64_t hash_of(const StreamKey& key);
-/// Seeded with the whole hash: the Mersenne twister's own seeding spreads it over its 19,968 bits of state.
-Rng dice_of(const StreamKey& key);
+/// Seeded with the whole hash: the seeding of the Mersenne twister distributes it over its 19,968 bits of state.
+Rng rng_of(const StreamKey& key);
 
 }  // namespace crescent::calibration

@@ -1,4 +1,4 @@
-// Records of one engine, mode, number of w_o and way (process or pipe) are one group; sets are separated within it.
+// Records with the same engine, mode, number of w_o and transport (process or pipe) form a group, divided by set.
 #include "tests/calibration/table.h"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ std::string false_positives(const Records& all) {
     return out;
 }
 
-/// Families with a case that is not called right.
+/// Families with a case that is not reported right.
 std::string by_family(const Records& all) {
     std::string out;
     for (const auto& [run, of_run] : grouped(only(all, right), run_of))
@@ -99,7 +99,7 @@ std::string called_wrong(const Records& all) {
     return out.empty() ? "" : "| run | case | sampler | reported |\n|---|---|---|---|\n" + out;
 }
 
-/// "9 of 10" of each run, by kind and size; runs are columns. From 100 cases on with the lower bound of the rate.
+/// "9 of 10" for each run, by kind and size; runs are columns. From 100 cases on with the lower bound of the rate.
 std::string found_by_size(const Records& all, const std::set<std::string>& runs) {
     std::string out = "| set | fault | size |";
     for (const std::string& run : runs) out += " " + run + " |";
@@ -142,12 +142,12 @@ std::string missed(const Records& all) {
     return out.empty() ? "" : "| run | case | fault | reported |\n|---|---|---|---|\n" + out;
 }
 
-/// Cases that two runs of different engines share: found by both, by one alone, by none.
+/// Cases that two runs of different engines share: found by both, by one only, by none.
 std::string paired(const Records& all, const std::set<std::string>& runs) {
     std::string out;
     for (auto a = runs.begin(); a != runs.end(); ++a)
         for (auto b = std::next(a); b != runs.end(); ++b) {
-            std::map<std::string, std::pair<int, int>> both;  // of a and of b: 1 found, 0 not, -1 not run
+            std::map<std::string, std::pair<int, int>> both;  // of a and of b: 1 found, 0 not found, -1 not run
             for (const Json* r : all) {
                 auto& [of_a, of_b] = both.emplace(fmt::format("{} {} {} {}", text(*r, "set"), r->at("seed").dump(),
                                                       r->at("index").dump(), r->at("wo").dump()),
@@ -167,7 +167,7 @@ std::string paired(const Records& all, const std::set<std::string>& runs) {
         : "| A | B | found by both | by A only | by B only | by none |\n|---|---|---|---|---|---|\n" + out;
 }
 
-/// Of the faults that are found: what is named where the cause is known, and where it has no name.
+/// The causes of the faults that are found: named causes where the cause is known, and where it has no name.
 std::string causes(const Records& all) {
     std::string out =
         "| run | set | found, with a cause | cause named | with others | only another | none | "
@@ -222,7 +222,8 @@ std::string cost(const Records& all) {
     return out;
 }
 
-/// Shares of p-values of right samplers at random parameters below each level; a test that is exact has as many there.
+/// Shares of p-values of right samplers with random parameters below each level; for an exact test the share is the
+/// level.
 std::string p_values(const Records& all) {
     std::string out;
     const Records at_random = only(all, [](const Json& j) { return text(j, "set").starts_with("right"); });

@@ -10,7 +10,7 @@ namespace {
 using Wo = Traits::WoDomain;
 constexpr Broken of_tables[] = {Broken::transposed_table, Broken::shifted_table, Broken::mirrored_table};
 
-/// Radiance of a sky: noise over a smooth gradient, and at times a sun of one to four texels.
+/// Radiance of a sky: noise over a smooth gradient, and sometimes a sun of one to four texels.
 struct Radiance {
     int rows, columns;
     std::vector<double> value;
@@ -53,7 +53,7 @@ struct SkyByCdf {
     template <class F> Functions<F> in(Broken b) const { return sky_by_cdf<F>(sky.rows, sky.columns, sky.value, b); }
 };
 
-/// u[2] chooses a texel, u[3] whether it is kept.
+/// u[2] selects a texel, u[3] decides whether it is kept.
 struct SkyByAlias {
     static constexpr auto name = "sky by alias table", parameter = "power of the radiance";
     static constexpr Wo wo = Wo::none;
@@ -102,7 +102,8 @@ struct Portal {
     }
 };
 
-/// A disk of texels overhead: a texel by its radiance, a place on it; places off the disk draw nothing.
+/// A disk of texels overhead: selects a texel by its radiance, and a place in it; places outside the disk give no
+/// sample.
 struct TexturedDisk {
     static constexpr auto name = "textured disk", parameter = "power of the radiance";
     static constexpr Wo wo = Wo::none;
@@ -128,8 +129,8 @@ struct TexturedDisk {
     template <class F> Functions<F> in(Broken broken) const {
         std::vector<double> sums = {0};
         for (double v : value) sums.push_back(sums.back() + v);
-        std::vector<F> upto, mass;
-        for (std::size_t k = 0; k < sums.size(); ++k) upto.push_back(F(sums[k] / sums.back()));
+        std::vector<F> cumulative, mass;
+        for (std::size_t k = 0; k < sums.size(); ++k) cumulative.push_back(F(sums[k] / sums.back()));
         for (double v : value) mass.push_back(F(v / sums.back()));
         const int n = side;
         const F h = F(height), texel = 4 / F(n * n);
@@ -144,12 +145,11 @@ struct TexturedDisk {
             return mass[std::size_t(i * n + j)] / texel * h * h / (w.z * w.z * w.z);
         };
         out.f = [h](Vec3<F>, Vec3<F> w) {
-            return w.z > 0 && sqr(w.x / w.z * h) + sqr(w.y / w.z * h) < 1
-                ? F(0.3)
-                : F(0);  // so that no more than all is reflected
+            return w.z > 0 && sqr(w.x / w.z * h) + sqr(w.y / w.z * h) < 1 ? F(0.3)
+                                                                          : F(0);  // limits the reflected power
         };
         out.sample = [=, pdf = out.pdf](Vec3<F> o, const F* u) {
-            const auto at = std::upper_bound(upto.begin(), upto.end(), u[2]) - upto.begin() - 1;
+            const auto at = std::upper_bound(cumulative.begin(), cumulative.end(), u[2]) - cumulative.begin() - 1;
             const int k = int(std::clamp<std::ptrdiff_t>(at, 0, n * n - 1));
             const F x = 2 * (F(k % n) + u[0]) / F(n) - 1, y = 2 * (F(k / n) + u[1]) / F(n) - 1;
             const Vec3<F> w = unit(Vec3<F>{x, y, h});
@@ -159,8 +159,7 @@ struct TexturedDisk {
     }
 };
 
-/// One of the families of tests/known_samplers/correct that no struct here repeats; it has no parameter to be
-/// multiplied.
+/// One of the families of tests/known_samplers/correct that no struct here repeats; it has no mismatch parameter.
 template <int index> struct OfTable {
     static constexpr auto name = index == 0 ? "cells" : index == 1 ? "even texels" : "bilinear", parameter = "";
     static constexpr Wo wo = Wo::none;

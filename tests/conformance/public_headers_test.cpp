@@ -116,17 +116,17 @@ private:
     float f(V3, V3) const { return 1; }
 };
 
-static_assert(user::Judgeable<std::unique_ptr<Base>> && user::Judgeable<const Derived*> && user::all_const<Base>());
-static_assert(user::Judgeable<OfFunctions> && !user::all_const<OfFunctions>(), "a std::function may hold what changes");
+static_assert(user::Checkable<std::unique_ptr<Base>> && user::Checkable<const Derived*> && user::all_const<Base>());
+static_assert(user::Checkable<OfFunctions> && !user::all_const<OfFunctions>(), "a std::function may hold what changes");
 static_assert(
-    !user::Judgeable<Overloaded> && !user::Judgeable<Hidden>, "a pdf or f that cannot be called is not left out");
-static_assert(user::Judgeable<Own> && user::numbers<Own>() == 2);
-static_assert(user::Judgeable<Three> && user::numbers<Three>() == 3);
+    !user::Checkable<Overloaded> && !user::Checkable<Hidden>, "a pdf or f that cannot be called is not left out");
+static_assert(user::Checkable<Own> && user::numbers<Own>() == 2);
+static_assert(user::Checkable<Three> && user::numbers<Three>() == 3);
 static_assert(user::numbers<ChooserFirst>() == 3 && user::shares<ChooserFirst>()[1].first == 2);
 static_assert(user::numbers<Written>() == 4 && !user::all_const<Written>() && user::all_const<Own>());
 static_assert(user::without_wo<Sky>() && !user::without_wo<Own>());
 static_assert(user::channels<Coat>() == 3 && user::numbers<Coat>() == 3);
-static_assert(!user::Judgeable<V3>);
+static_assert(!user::Checkable<V3>);
 
 TestSettings few() {
     TestSettings r;

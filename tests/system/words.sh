@@ -56,7 +56,7 @@ $(cat found)"
 
 # Comments and docstrings of these folders, except of some files and folders in them.
 folders="include src apps python tests bench examples tools cmake"
-unchecked="src/check src/compare tests/calibration python/crescent/__main__.py python/crescent/compare
+unchecked="src/compare python/crescent/__main__.py python/crescent/compare
     python/crescent/compare.py python/crescent/pytest_plugin.py"
 comments=$CRESCENT_SOURCE/tests/system/docs/comments.py
 

@@ -1,5 +1,6 @@
-// Stage 1 looks at a share of its draws, then at all; a family below its level is put again, the same member with the
-// same sign, to fresh draws and fresh points on the same tree. Streams differ by stage, so no number is used twice.
+// Stage 1 looks at a part of its draws, then at all of them. A family below its level is tested again on the same tree
+// with fresh draws and fresh points: the same member, with the same sign. The streams of the stages differ, so no
+// number is used twice.
 #include "check/decide/check_at.h"
 
 #include <algorithm>
@@ -21,8 +22,8 @@ struct Stage {
     Observations observations;
     Look done;
 
-    /// The share of evaluations that f takes where it is looked at: at the points of the first pass, and at the first
-    /// draws, where it may be compared with what it ought to be.
+    /// The number of evaluations of f: at the points of the first pass and at the first draws, where f may also be
+    /// compared with its reference value.
     static double of_f(const Source& source, const Look& first, double draws) {
         if (!source.has_f()) return 0;
         return first.points + draws * (source.adapter.has_true_f() ? 2 : 1);
@@ -32,7 +33,7 @@ struct Stage {
         to.independent = std::max(to.independent, done.independent);
         key.purpose = Purpose::points;
         key.part = static_cast<std::uint16_t>(look);
-        const bool with_f = done.points == 0 && of_f > 0;  // in the first pass alone
+        const bool with_f = done.points == 0 && of_f > 0;  // only in the first pass
         integrate(source, plan, to.points - done.points, with_f, key, integrals);
         done = to;
         key.part = 0;
@@ -56,11 +57,11 @@ auto least_of(const Evidence& e) {
     return least_by_family<Answer>([&](const Visit& visit) { test_all(e, visit); });
 }
 
-/// A count that has failed is not a matter of chance for numbers that cannot be used.
-bool needs_no_second(Family f) { return f == Family::values || f == Family::corners; }
+/// Unusable numbers are a fault by themselves and need no second test.
+bool is_deterministic(Family f) { return f == Family::values || f == Family::corners; }
 
-/// The same member again, one-sided in the direction of the first.
-Answer put_again(const Evidence& e, const Answer& first) {
+/// Tests the same member again, one-sided in the direction of the first result.
+Answer retest(const Evidence& e, const Answer& first) {
     Answer out = same_member([&](const Visit& visit) { test_all(e, visit); }, first);
     const bool two_sided = out.p > 0 && first.family != Family::depth;
     if (two_sided) out.p = one_sided(first, out);
@@ -108,18 +109,18 @@ private:
 
     double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
-    double left() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
+    double remaining() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
 
-    /// What this look has: a share of all that stage 1 may still evaluate, with what it has evaluated.
+    /// The size of this look: a part of all that stage 1 may still evaluate, including what it has evaluated.
     Look next(int look) const {
-        const double all = left() - budget_.cost_of_sizes() + first_.done.cost();
+        const double all = remaining() - budget_.cost_of_sizes() + first_.done.cost();
         const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
         Look last = look_of(all);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
         begin.points = std::max(begin.points, 2 * static_cast<std::uint32_t>(out_.plan->tree.leaves().size()));
         const double of_f = Stage::of_f(source_, begin, budget_.of_f());
-        const double paid = first_.observations.weighed + first_.integrals.light.points;
-        last = look_of(all - std::max(of_f - paid, 0.0));
+        const double evaluated = first_.observations.weighted_draws + first_.integrals.light.points;
+        last = look_of(all - std::max(of_f - evaluated, 0.0));
         return last.divided_by(parts);
     }
 
@@ -137,9 +138,10 @@ private:
         return budget_.stop_when_conclusive && !out_.inconclusive;
     }
 
-    /// Of each family below the level the member that is to be tested again: of all that are below it by themselves the
-    /// one whose difference exceeds its standard error, that of the draws which make it included, the most. The least p
-    /// may be of two draws where none was expected, of which the next stage has none with a probability of 13 %.
+    /// For each family below the level, the member to test again. Among all members that are below the level by
+    /// themselves it is the one with the largest ratio of difference to standard error, where the standard error
+    /// includes that of the draws that cause the difference. The member with the least p may have two draws where none
+    /// was expected; the next stage has none of these with a probability of 13 %.
     std::vector<Least> suspects_of(const Evidence& e, double level) const {
         std::map<Family, std::pair<double, Least>> most;
         for (const auto& [family, least] : least_)
@@ -158,8 +160,8 @@ private:
         return out;
     }
 
-    /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is
-    /// used for nothing else then.
+    /// If p has regions that the tree does not resolve, builds the tree once more from all points and draws so far.
+    /// These are then used for nothing else.
     bool regrown() {
         const Estimate& claimed = first_.integrals.sums[mass];
         const double worse = regrow_from * regrow_points / first_.integrals.points;
@@ -176,14 +178,14 @@ private:
 
     Sizes sizes(const Evidence& e, double level) {
         const bool drawn = e.observations.checks.directions > 0 || e.integrals.sums[mass].value > 0;
-        if (!drawn) return {};  // delta parts alone, or nothing: no density that could hide a fault
+        if (!drawn) return {};  // only delta parts or no samples: no density that could hide a fault
         StreamKey key = key_;
         key.purpose = Purpose::pairs;
         return sizes_of(source_, e, level, budget_.of_sizes(), key);
     }
 
-    /// The same questions on as many fresh draws and points as they were first put to. After an early look on twice as
-    /// many: a clear fault is then explained by them.
+    /// Repeats the tests on as many fresh draws and points. After an early look it uses twice as many: a clear fault is
+    /// then explained from them.
     void confirm(const std::vector<Least>& suspects, int look) {
         const Look to = look < budget_.looks - 1 ? first_.done.times(2) : first_.done;
         const double before = static_cast<double>(source_.evaluations());
@@ -196,36 +198,36 @@ private:
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
-            const Answer again = needs_no_second(b.answer.family) ? b.answer : put_again(e, b.answer);
+            const Answer again = is_deterministic(b.answer.family) ? b.answer : retest(e, b.answer);
             if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
         confirming_ += static_cast<double>(source_.evaluations()) - before;
-        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) take(std::move(second));
+        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) use_second_stage(std::move(second));
     }
 
     void note_answers(const Evidence& e) { least_ = least_of(e); }
 
-    /// More to explain a finding by than the first stage has.
-    void take(Stage&& second) {
+    /// Uses the second stage for the explanation, since it has more draws than the first.
+    void use_second_stage(Stage&& second) {
         first_ = std::move(second);
         note_answers(first_.evidence(source_, *out_.plan));
     }
 
-    /// Where delta parts lead: no matter of chance.
-    void look_at_deltas() {
+    /// Tests the directions of delta parts, which do not depend on chance.
+    void test_delta_directions() {
         const Observations& o = first_.observations;
         if (o.deltas.empty() || o.deltas.scattered()) return;
         StreamKey key = key_;
         key.purpose = Purpose::light, key.part = 2;
         const std::vector<DeltaPart>& parts = o.deltas.parts(o.independent);
         std::optional<SmallFault> fault = refraction(source_, parts, key);
-        if (!fault) fault = way_back(source_, parts, key);
+        if (!fault) fault = reverse_path(source_, parts, key);
         if (fault) out_.small.push_back(*fault);
     }
 
     void finish() {
-        look_at_deltas();
+        test_delta_directions();
         for (const auto& [family, least] : least_) {
             out_.answers.push_back(least.answer);
             out_.answers.back().p = least.p();

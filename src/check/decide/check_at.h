@@ -1,4 +1,4 @@
-// One technique of a sampler at one w_o: estimates, questions, two stages, findings.
+// One technique of a sampler at one w_o: estimates, tests, two stages, findings.
 #pragma once
 
 #include <memory>
@@ -13,37 +13,37 @@
 
 namespace crescent::check {
 
-/// What surrounds a sampler at one w_o.
+/// The inputs of a check at one w_o besides the sampler.
 struct CaseData {
     CaseLighting light{};
-    std::uint16_t place = 0;  // number of the case in its call: names its random streams
+    std::uint16_t place = 0;  // index of the case in its call: selects its random streams
     Levels levels{};
 };
 
-/// A question that failed at both stages, or at the only one for what needs no second (a NaN is a NaN).
+/// A test that failed at both stages, or at one if it needs no second stage (a NaN is not a matter of chance).
 struct Finding {
     Answer first, second;
-    double members = 1;  // that shared alpha1
+    double members = 1;  // number of members that share alpha1
 };
 
-/// Everything about one w_o. Evidence is kept for the explanation.
+/// The result at one w_o. Evidence is kept for the explanation.
 struct CheckAt {
     Vec3d wo{};
-    int technique = 0, numbers = 2, channels = 1;  // as traits have them
+    int technique = 0, numbers = 2, channels = 1;  // from the traits
     std::vector<Finding> findings;
     std::vector<SmallFault> small;
     std::vector<Answer> suspected;  // failed at stage 1 and passed at stage 2
-    std::vector<Answer> answers;    // by family, the least p times the number of members, at the last look
+    std::vector<Answer> answers;    // by family, at the last look: the least p times the number of members
     Sizes sizes;
     bool inconclusive = false;
-    EvaluationNoise scatter;  // of pdf(w) and f(w), where they are random estimates
+    EvaluationNoise scatter;  // of pdf(w) and f(w), if they are random estimates
     int looks = 0;
     std::uint64_t evaluations = 0;
     double seconds = 0;
     std::shared_ptr<const Plan> plan;
     Integrals integrals;
     Observations observations;
-    /// Times its target, beyond which a size leaves a verdict open.
+    /// The ratio of a size to its target above which a verdict is inconclusive.
     double most_ratio() const;
     bool wrong() const { return !findings.empty() || !small.empty(); }
 };

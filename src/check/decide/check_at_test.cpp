@@ -8,10 +8,10 @@
 namespace crescent::check {
 namespace {
 
-/// A cosine sampler that can be broken in one way.
+/// A cosine sampler with one fault.
 struct Cosine : SamplerAdapter {
-    double factor = 1, leak = 0, hole = 0;  // of pdf; share of draws that are uniform; mass of a cap never drawn
-    double turn = 1;                        // azimuths are drawn over this share of the circle
+    double factor = 1, leak = 0, hole = 0;  // factor on pdf; share of uniform draws; mass of a cap that is never drawn
+    double turn = 1;                        // share of the circle over which azimuths are drawn
     bool nothing = false, elsewhere = false;
     std::string name() const override { return "cosine"; }
     Traits traits() const override {
@@ -47,7 +47,7 @@ bool has(const CheckAt& c, std::string_view verdict) {
     return false;
 }
 
-TEST(CheckAtOneWo, CallsARightSamplerRightAndStatesSizes) {
+TEST(CheckAtOneWo, ReportsARightSamplerWithSizes) {
     const CheckAt c = checked({});
     EXPECT_FALSE(c.wrong());
     EXPECT_FALSE(c.inconclusive);
@@ -81,14 +81,14 @@ TEST(CheckAtOneWo, FindsAnArcThatIsNeverDrawn) {
     const CheckAt c = checked(arc);
     const auto band = std::ranges::find(c.findings, Family::band, [](const Finding& f) { return f.first.family; });
     ASSERT_NE(band, c.findings.end());
-    // The last of 64: 5.625 degrees, of which 2 are missing.
+    // The last of 64 bands covers 5.625 degrees, of which 2 are missing.
     const ChartRect where = rect_of_band(band->first.member);
     EXPECT_EQ(where.phi1, two_pi);
     EXPECT_NEAR(where.phi0, two_pi * 63 / 64, 1e-12);
     EXPECT_NEAR(-band->second.difference / band->second.expected, 2.0 / 5.625, 0.1);
 }
 
-/// A fault of a stated size is found in nine of ten checks.
+/// Number of checks of ten that find a fault of this size.
 template <class Break> int found(double size, Break break_by) {
     int out = 0;
     for (std::uint32_t seed = 10; seed < 20; ++seed) {
@@ -98,14 +98,14 @@ template <class Break> int found(double size, Break break_by) {
     }
     return out;
 }
-TEST(CheckAtOneWo, FindsWhatARightVerdictSaysItWouldHaveFound) {
+TEST(CheckAtOneWo, FindsFaultsOfTheStatedSizes) {
     const Sizes s = checked({}).sizes;
     EXPECT_GE(found(*s.constant, [](Cosine& c, double e) { c.factor = 1 + e; }), 7);
     EXPECT_GE(found(*s.leak, [](Cosine& c, double e) { c.leak = e; }), 7);
     EXPECT_GE(found(*s.cap, [](Cosine& c, double e) { c.hole = e; }), 7);
 }
 
-/// Counts every call. p: a noisy sky, a spike of 1/10 of the draws in a cosine, or a cosine; f = p pi where it has one.
+/// Counts every call. p: a noisy sky, a cosine with a spike of 1/10 of the draws, or a cosine; f = p pi if it has one.
 struct Counted : SamplerAdapter {
     enum Shape { cosine, noise, spike } shape;
     bool with_f, leaks;
@@ -153,7 +153,7 @@ TEST(CheckAtOneWo, EvaluatesNoMoreThanItsBudget) {
                     const Counted s(shape, with_f, leaks);
                     const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, budget, 5);
                     EXPECT_NEAR(static_cast<double>(c.evaluations), static_cast<double>(s.calls), 1000);
-                    // A leak is confirmed, by as many evaluations again.
+                    // A leak is confirmed, which takes as many evaluations again.
                     EXPECT_LE(static_cast<double>(s.calls), (leaks ? 2 : 1) * budget.evaluations)
                         << shape << with_f << leaks;
                     EXPECT_GE(static_cast<double>(s.calls), 0.1 * budget.evaluations) << shape << with_f << leaks;

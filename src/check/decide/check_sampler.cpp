@@ -1,6 +1,6 @@
-// Results do not depend on threads: each case has streams of its own, named by its place in the call. A program has a
-// limited time: a few draws at every w_o come first, then the middle of the hemisphere and the most grazing w_o, then
-// the others as far as the time goes.
+// Results do not depend on the number of threads: each case has its own streams, selected by its index in the call. A
+// program has a limited time: a few draws at every w_o come first, then the w_o nearest to 45 degrees and the most
+// grazing one, then the others while time is left.
 #include "check/decide/check_sampler.h"
 
 #include <algorithm>
@@ -38,13 +38,13 @@ std::vector<CheckOutcome> grouped(std::span<const CheckCase> check_cases) {
     return out;
 }
 
-/// Built-in arms are made for one w_o each, under one light: special w_o are for samplers that take any.
+/// Built-in arms are made for one w_o and one light. Special w_o are tested only for samplers that take any.
 bool takes_any_wo(std::span<const CheckCase> check_cases, const CheckOutcome& o) {
     return std::ranges::all_of(
         o.check_cases, [&](std::size_t i) { return check_cases[i].adapter == check_cases[o.check_cases[0]].adapter; });
 }
 
-/// An estimate of f is not reciprocal. Of a sampler that is checked in turn, no w_o has been looked at yet.
+/// An estimate of f is not reciprocal. If a sampler is checked serially, no w_o has been checked before this call.
 bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const StreamKey& key) {
     if (std::ranges::all_of(o.at, [](const auto& at) { return at.empty(); })) {
         Source source(*check_case.adapter, 0, check_case.wo, check_case.light);
@@ -54,7 +54,7 @@ bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const Strea
     return std::ranges::any_of(o.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); });
 }
 
-void look_at_whole(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
+void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
     const SamplerAdapter& adapter = *check_cases[out.check_cases[0]].adapter;
     StreamKey key{settings.seed, static_cast<std::uint16_t>(out.check_cases[0]), 0, 1, Purpose::light, 0};
     const auto add = [&](std::optional<SmallFault> fault) {
@@ -78,24 +78,24 @@ void look_at_whole(std::span<const CheckCase> check_cases, const CheckSettings& 
 /// One w_o of one sampler.
 struct Job {
     CheckOutcome* outcome;
-    std::size_t index;  // into its cases
+    std::size_t index;  // index into its cases
 };
 
-/// What `work` throws of a sampler from outside.
+/// Runs `work` and returns the error of an external sampler.
 template <class Work> std::optional<Cut> cut_of(const Work& work) {
     try {
         work();
     } catch (const SamplerTimeout& fault) {
         return Cut{Cut::Why::too_slow, fault.what(), false};
     } catch (const SamplerExited& fault) {
-        return Cut{Cut::Why::gone, fault.what(), false};
+        return Cut{Cut::Why::exited, fault.what(), false};
     } catch (const SamplerError& fault) { return Cut{Cut::Why::fault, fault.what(), false}; }
     return {};
 }
 
-/// Numbers that cannot be used among a few draws.
-std::optional<SmallFault> look_first(const CheckCase& check_case, const StreamKey& key) {
-    constexpr std::uint32_t few = 256;  // a program of 10 answers/s gives them at 12 w_o within five minutes
+/// Unusable numbers among a few draws.
+std::optional<SmallFault> fault_of_first_draws(const CheckCase& check_case, const StreamKey& key) {
+    constexpr std::uint32_t few = 256;  // a program with 10 answers per second needs less than five minutes for 12 w_o
     SmallFault out{Family::values};
     const std::vector<PrimarySample> u = first_numbers(key, few, check_case.adapter->traits());
     std::vector<Draw> draws(u.size());
@@ -123,7 +123,7 @@ public:
 
     std::vector<CheckOutcome> run() {
         if (std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); })) {
-            in_turn();
+            run_serially();
         } else {
             parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
             check_whole();
@@ -150,7 +150,8 @@ private:
         monitor_.check();
         const CheckCase& check_case = case_of(job);
         CheckBudget budget = check_case.adapter->limited() && settings_.limited ? *settings_.limited : settings_.budget;
-        if (check_case.theory.wrong) budget.stop_when_conclusive = false;  // a fault that is known is looked for
+        if (check_case.theory.wrong)
+            budget.stop_when_conclusive = false;  // a known fault is searched with the full budget
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {
@@ -160,15 +161,15 @@ private:
         });
         if (cut) at.clear();
         job.outcome->tails[job.index] = tail_of(at);
-        for (CheckAt& c : at) forget(c, check_case.adapter->traits().has_pdf);
+        for (CheckAt& c : at) release_unused(c, check_case.adapter->traits().has_pdf);
         monitor_.advance(1);
     }
 
-    /// What neither the explanation nor the report needs, of which there are megabytes at each w_o: of a right w_o all
-    /// but the numbers, unless pictures are drawn or the draws are all that is known of the density.
-    void forget(CheckAt& c, bool has_density) const {
+    /// Frees memory that neither the explanation nor the report needs, several megabytes at each w_o. A right w_o keeps
+    /// only its numbers, unless pictures are drawn or the draws are the only evidence of the density.
+    void release_unused(CheckAt& c, bool has_density) const {
         const auto free = [](auto&... all) { (std::remove_reference_t<decltype(all)>().swap(all), ...); };
-        free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighed);
+        free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighted_points);
         if (settings_.keep_evidence) return;
         free(c.observations.weights);
         if (c.wrong() || !has_density) return;
@@ -177,19 +178,19 @@ private:
     }
 
     void check_whole() {
-        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { look_at_whole(check_cases_, settings_, o); });
+        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { test_whole_sampler(check_cases_, settings_, o); });
     }
 
-    /// The middle first, then the most grazing one: between them they meet most faults.
-    void order() {
+    /// Moves the w_o nearest to 45 degrees to the front, then the most grazing one: together they show most faults.
+    void order_jobs() {
         std::ranges::sort(
             jobs_, {}, [&](const Job& j) { return std::tuple(std::fabs(case_of(j).theta_deg - 45), index_of(j)); });
         const auto grazing = std::ranges::find_if(jobs_, [&](const Job& j) { return case_of(j).theta_deg == 85; });
         if (grazing != jobs_.end() && grazing > jobs_.begin()) std::rotate(jobs_.begin() + 1, grazing, grazing + 1);
     }
 
-    /// What the first draws show is kept where nothing else is known, or where the draws after them do not show it.
-    void keep(const Job& job, const std::optional<SmallFault>& fault) {
+    /// Keeps the fault of the first draws if the later draws do not show it or are missing.
+    void keep_first_fault(const Job& job, const std::optional<SmallFault>& fault) {
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         if (cut) cut->first_draws = true;
@@ -203,28 +204,29 @@ private:
         at.front().small.push_back(*fault);
     }
 
-    bool affords(const Job& job, std::uint64_t dearest) const {
+    bool has_time_for(const Job& job, std::uint64_t largest_cost) const {
         const QueryUsage now = case_of(job).adapter->spending();
-        if (now.allowed <= 0 || dearest == 0) return true;
+        if (now.allowed <= 0 || largest_cost == 0) return true;
         const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
-        return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
+        return now.seconds + static_cast<double>(largest_cost) / rate < now.allowed;
     }
 
-    /// By one thread: first few draws at every w_o and what belongs to none, then each w_o that there is time for, as
-    /// far as the dearest one so far tells; the first is tried in any case.
-    void in_turn() {
-        order();
-        std::vector<std::optional<SmallFault>> looks(jobs_.size());
+    /// Runs on one thread: first a few draws at every w_o and the tests of the whole sampler, then each w_o while time
+    /// is left. The cost of the most expensive w_o so far predicts the next one. The first w_o is always tried.
+    void run_serially() {
+        order_jobs();
+        std::vector<std::optional<SmallFault>> first_faults(jobs_.size());
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             monitor_.check();
             const CheckCase& check_case = case_of(jobs_[j]);
             const StreamKey key{
                 settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
             if (check_case.adapter->can_draw())
-                jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(check_case, key); });
+                jobs_[j].outcome->cut[jobs_[j].index] =
+                    cut_of([&] { first_faults[j] = fault_of_first_draws(check_case, key); });
         }
         check_whole();
-        std::uint64_t dearest = 0;
+        std::uint64_t largest_cost = 0;
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
             if (cut) {
@@ -232,10 +234,10 @@ private:
                 continue;
             }
             const std::uint64_t before = case_of(jobs_[j]).adapter->spending().answers;
-            if (affords(jobs_[j], dearest)) check(jobs_[j]);
+            if (has_time_for(jobs_[j], largest_cost)) check(jobs_[j]);
             else cut = Cut{Cut::Why::too_slow, "no time is left", true}, monitor_.advance(1);
-            keep(jobs_[j], looks[j]);
-            dearest = std::max(dearest, case_of(jobs_[j]).adapter->spending().answers - before);
+            keep_first_fault(jobs_[j], first_faults[j]);
+            largest_cost = std::max(largest_cost, case_of(jobs_[j]).adapter->spending().answers - before);
         }
     }
 };

@@ -1,5 +1,5 @@
-// A sampler over all its w_o: each w_o by itself on any thread, a program by one in an order of its own, and the tests
-// that need no w_o or several.
+// A check of a sampler at all its w_o, and the tests that need no w_o or several. The w_o run on any thread; a program
+// is called by one thread, in an order of its own.
 #pragma once
 
 #include <functional>
@@ -15,57 +15,57 @@
 
 namespace crescent::check {
 
-/// What a call asks for.
+/// The settings of a call.
 struct CheckSettings {
     CheckBudget budget = CheckBudget::quick();
-    /// Where each answer costs something; empty: `budget`.
+    /// For samplers whose answers are expensive; empty: `budget`.
     std::optional<CheckBudget> limited{};
     std::uint32_t seed = 1;
     double alpha = 1e-3;
-    /// Samplers and w_o in the whole call; beyond `questions_covered` families the second level is divided.
+    /// Samplers times w_o in the whole call; beyond `questions_covered` families the second level is divided.
     double cases = 1;
-    bool keep_evidence = false;  // of right w_o too, and the weights: for pictures
+    bool keep_evidence = false;  // also of right w_o, with the weights: for pictures
 };
 
-/// Why a sampler was not examined to the end at some w_o.
+/// The reason why the check of a sampler at some w_o ended early.
 struct Cut {
-    enum class Why { fault, gone, too_slow } why = Why::fault;
+    enum class Why { fault, exited, too_slow } why = Why::fault;
     std::string what;
-    bool first_draws = false;  // whether the first draws were examined before, see CheckOutcome::at
+    bool first_draws = false;  // whether the first draws were examined, see CheckOutcome::at
 };
 
-/// Of one sampler.
+/// The outcome for one sampler.
 struct CheckOutcome {
     std::string arm;
     std::vector<std::size_t> check_cases;  // indices into the call's cases
-    std::vector<std::vector<CheckAt>> at;  // by case and technique; cut short: what the first draws showed
+    std::vector<std::vector<CheckAt>> at;  // by case and technique; if cut short, the faults of the first draws
     std::vector<WeightTail> tails;         // by case
-    std::vector<SmallFault> small;         // of the sampler as a whole
+    std::vector<SmallFault> small;         // faults of the sampler as a whole
     std::uint64_t evaluations = 0;
     std::vector<std::optional<Cut>> cut;  // by case
-    std::optional<Cut> whole_cut{};       // of what belongs to no w_o
+    std::optional<Cut> whole_cut{};       // of the tests of the whole sampler
     bool wrong() const;
 };
 
-/// CheckCases of one or of several samplers; those of one name and sampler belong together. Baselines are left out.
-/// Faults of a sampler from outside (samplers/faults.h) are kept with the w_o at which they occurred.
+/// Checks the cases of one or several samplers, grouped by name and sampler, without baselines. Faults of an external
+/// sampler (samplers/faults.h) are stored with the w_o at which they occurred.
 std::vector<CheckOutcome> check_samplers(
     std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor);
 
-// ---- Tests of a sampler that belong to no single w_o: w_o and w_i exactly on axes, planes and the horizon and next to
-// them; f in both directions; weights of combined techniques.
+// ---- Tests of a sampler that belong to no single w_o: w_o and w_i exactly on axes, planes and the horizon and one
+// rounding step next to them; f in both directions; weights of combined techniques.
 
-/// Directions on axes and planes, and one rounding of single precision beside them.
+/// Directions on axes and planes, and directions one rounding of single precision next to them.
 std::vector<Vec3d> special_directions();
-/// Draws at special w_o, pdf and f at special w_i; of one technique.
+/// Draws at special w_o, pdf and f at special w_i, for one technique.
 std::optional<SmallFault> special_places(const SamplerAdapter& adapter, int technique, std::span<const Vec3d> ordinary);
 /// f(a, b) against f(b, a), with eta^2 across the surface.
 std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key);
-/// Weights of two techniques that are combined sum to 1 wherever one of them draws.
+/// Tests that the weights of two combined techniques sum to 1 wherever one of them draws.
 std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key);
 
-/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and
-/// one over that for importance (Veach 1997, (5.14)).
+/// The ratio f(b, a) / f(a, b): 1 on one side of the surface; across it eta^2 from above to below for radiance, and the
+/// reciprocal for importance (Veach 1997, (5.14)).
 double reciprocal_ratio(const Traits& traits, const Pair& p, int channel);
 
 }  // namespace crescent::check

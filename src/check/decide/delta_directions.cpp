@@ -1,4 +1,5 @@
-// That a boundary lies flat is seen from where it mirrors to, or, if nothing is mirrored, by turning w_o about n.
+// A boundary is flat if it reflects to the mirror direction or, if it reflects nothing, if its refracted direction
+// rotates with w_o about n.
 #include "check/decide/small_tests.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 bool near(Vec3d a, Vec3d b) { return length(a - b) < delta_direction; }
 Vec3d mirrored(Vec3d wo) { return {-wo.x, -wo.y, wo.z}; }
 
-/// Where an index refracts w_o to; none where it reflects totally.
+/// The direction into which w_o is refracted; none for total reflection.
 std::optional<Vec3d> refracted(Vec3d wo, double below_over_above) {
     const double e = wo.z > 0 ? below_over_above : 1 / below_over_above, x = -wo.x / e, y = -wo.y / e,
                  rest = 1 - x * x - y * y;
@@ -40,9 +41,9 @@ std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, cons
     return out;
 }
 
-/// A flat boundary sends a turned w_o to where it sends w_o, turned.
+/// Whether the direction rotates with w_o about n, as at a flat boundary.
 bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
-    constexpr double angle = 2.4;  // radians: no symmetry of a pattern
+    constexpr double angle = 2.4;  // radians; no symmetry of a pattern
     if (!source.adapter.can_draw()) return false;
     const math::SinCos by = math::sincos(angle);
     const auto turned = [&](Vec3d w) { return Vec3d{by.cos * w.x - by.sin * w.y, by.sin * w.x + by.cos * w.y, w.z}; };
@@ -62,39 +63,40 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
     if (!source.traits.eta) return {};
     const Vec3d wo = source.wo, eta = *source.traits.eta;
     std::vector<const DeltaPart*> across;
-    const DeltaPart* askew = nullptr;  // reflected, but not to the mirror direction of a flat boundary
+    const DeltaPart* off_mirror = nullptr;  // reflected, but not to the mirror direction of a flat boundary
     bool mirrors = false;
     for (const DeltaPart& p : parts) {
         const bool through = p.wi.z * wo.z < 0;
         if (!through) {
             if (near(p.wi, mirrored(wo))) mirrors = true;
-            else if (!near(p.wi, wo)) askew = &p;
+            else if (!near(p.wi, wo)) off_mirror = &p;
         } else if (std::ranges::none_of(across, [&](const DeltaPart* q) { return near(q->wi, p.wi); })) {
             across.push_back(&p);
         }
     }
     const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
-    if (across.size() > indices) return {};  // a boundary with another shape
-    if (askew) {                             // a boundary that refracts as a flat one mirrors as it, too
+    if (across.size() > indices) return {};  // a boundary of another shape
+    if (off_mirror) {                        // a boundary that refracts as a flat one must also reflect as one
         const bool flat = std::ranges::any_of(
             across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
         if (!flat) return {};
-        return fault_at(*askew, "a delta part is not reflected to where the boundary that refracts mirrors w_o to");
+        return fault_at(*off_mirror,
+            "a delta part is not reflected to the mirror direction, although the boundary refracts as a flat one");
     }
     for (const DeltaPart* p : across) {
         if (near(p->wi, -wo) || is_refracted(wo, p->wi, eta, false)) continue;
         if (!mirrors && !turns_with_wo(source, p->wi, key)) continue;
         return fault_at(*p,
-            is_refracted(wo, p->wi, eta, true) ? "a delta part goes to where 1 / eta in place of eta refracts to"
-                                               : "a delta part goes elsewhere than the stated index refracts to");
+            is_refracted(wo, p->wi, eta, true) ? "a delta part is refracted by 1 / eta in place of eta"
+                                               : "a delta part is not refracted by the stated index");
     }
     return {};
 }
 
 namespace {
 
-/// q times the weight by channel, of the first channel alone where there is one.
-Vec3d carried(const Source& source, const Draw& d) {
+/// q times the weight by channel; a single channel is used three times.
+Vec3d power_of(const Source& source, const Draw& d) {
     const double w = d.weight.value_or(0);
     return d.delta * (source.channels() == 3 ? d.weights : Vec3d{w, w, w});
 }
@@ -104,9 +106,9 @@ bool alike_power(double a, double b) {
 }
 bool alike_power(Vec3d a, Vec3d b) { return alike_power(a.x, b.x) && alike_power(a.y, b.y) && alike_power(a.z, b.z); }
 
-/// What the way back carries over what comes: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach 1997, 5.2), and radiance is
-/// scaled by 1 / eta^2 either way. None where it is not known.
-std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
+/// The ratio of the power of the reverse path to that of the forward path: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach
+/// 1997, 5.2), and radiance is scaled by 1 / eta^2 in both directions. None if it is not known.
+std::optional<Vec3d> reverse_power_ratio(const Source& source, Vec3d wi) {
     const Vec3d wo = source.wo;
     if (wi.z * wo.z > 0) return near(wi, mirrored(wo)) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
     if (!source.traits.eta || near(wi, -wo) || !is_refracted(wo, wi, *source.traits.eta, false)) return {};
@@ -115,30 +117,31 @@ std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
     return Vec3d{of(source.traits.eta->x), of(source.traits.eta->y), of(source.traits.eta->z)};
 }
 
-/// The power of a part and that of its way back, where both come in one piece.
-std::optional<SmallFault> power_back(
+/// Compares the power of a part with that of its reverse path, if each is a single part.
+std::optional<SmallFault> reverse_power_fault(
     const Source& source, const std::vector<DeltaPart>& all, const DeltaPart& p, const std::vector<Draw>& back) {
-    const std::optional<Vec3d> due = due_back(source, p.wi);
+    const std::optional<Vec3d> due = reverse_power_ratio(source, p.wi);
     const auto in_one_piece = std::ranges::count_if(all, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
     if (!due || in_one_piece != 1 || p.otherwise > 0) return {};
-    const Vec3d first = carried(source, back[0]), come = p.q * p.weight,
-                expected = {come.x * due->x, come.y * due->y, come.z * due->z};
-    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(carried(source, d), first); })) return {};
+    const Vec3d first = power_of(source, back[0]), forward_power = p.q * p.weight,
+                expected = {forward_power.x * due->x, forward_power.y * due->y, forward_power.z * due->z};
+    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(power_of(source, d), first); })) return {};
     if (alike_power(first, expected)) return {};
-    SmallFault out = fault_at(p, "the way back of a delta part carries another share of the light: not reciprocal");
-    out.first.p = first.x, out.first.due = expected.x;
+    SmallFault out = fault_at(p, "the reverse path of a delta part has another power: not reciprocal");
+    out.first.p = first.x, out.first.expected = expected.x;
     out.size = expected.x > 0 ? first.x / expected.x - 1 : 0;
     return out;
 }
 
 }  // namespace
 
-std::optional<SmallFault> way_back(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
+std::optional<SmallFault> reverse_path(
+    const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
     const Traits& traits = source.traits;
     if (!traits.reciprocal || traits.wo == Traits::WoDomain::none || !source.adapter.can_draw()) return {};
     for (const DeltaPart& p : parts) {
         if (p.wi.z < grazing_cosine && (traits.wo != Traits::WoDomain::both || p.wi.z > -grazing_cosine)) continue;
-        // Of the same kind: mirrored as w_o is to w_i, or passed on.
+        // Of the same kind: reflected if w_i is a reflection of w_o, else transmitted.
         const Vec3d wi = normalize(p.wi);
         std::vector<Draw> back = drawn_at(source, wi, 512, key);
         std::erase_if(
@@ -146,9 +149,9 @@ std::optional<SmallFault> way_back(const Source& source, const std::vector<Delta
         const bool often = back.size() >= 8;
         std::erase_if(back, [&](const Draw& d) { return !near(d.wi, source.wo); });
         if (!back.empty()) {
-            if (std::optional<SmallFault> fault = power_back(source, parts, p, back)) return fault;
+            if (std::optional<SmallFault> fault = reverse_power_fault(source, parts, p, back)) return fault;
         } else if (often) {
-            return fault_at(p, "a delta part sends w_o to a direction that is never sent back to w_o");
+            return fault_at(p, "no delta part returns from the direction of a delta part to w_o");
         }
     }
     return {};

@@ -1,4 +1,5 @@
-// Samplers with delta parts: right ones stay right, and each fault of a part is found under its verdict.
+// Samplers with delta parts: right samplers have right verdicts, and each fault of a part makes the expected verdict
+// wrong.
 #include "check/decide/small_tests.h"
 
 #include <gtest/gtest.h>
@@ -8,11 +9,11 @@
 namespace crescent::check {
 namespace {
 
-/// A mirroring coat that is chosen with probability q over Lambert of albedo `base`.
+/// A specular coat that is chosen with probability q, over Lambert of albedo `base`.
 struct Coat : SamplerAdapter {
     double q = 0.3, chosen = 0.3, base = 0.5, mirrored_share = 0.2;
     double of_other_draws = 1;  // factor on the weight of every second draw of the part
-    Vec3d turned{-1, -1, 1};    // where it mirrors to, times w_o
+    Vec3d turned{-1, -1, 1};    // reflected direction in units of w_o
     std::string name() const override { return "coat"; }
     Traits traits() const override {
         Traits t;
@@ -52,14 +53,14 @@ bool names(const CheckAt& c, std::string_view verdict) {
         std::ranges::any_of(c.small, [&](const SmallFault& f) { return info(f.family).verdict == verdict; });
 }
 
-TEST(DeltaPartsOfASampler, AreRightWhereTheyComeAsTheySay) {
+TEST(DeltaPartsOfASampler, AreRightIfDrawnWithTheStatedProbability) {
     const CheckAt c = checked_delta(Coat{});
     EXPECT_FALSE(c.wrong());
     ASSERT_EQ(c.observations.deltas.parts(c.observations.independent).size(), 1u);
     EXPECT_NEAR(c.observations.delta_power[0], 0.2, 1e-9);
 }
 
-TEST(DeltaPartsOfASampler, DrawnLessOftenThanTheySayMakeTheDensityWrong) {
+TEST(DeltaPartsOfASampler, WithAWrongProbabilityMakeTheDensityWrong) {
     Coat coat;
     coat.chosen = 0.27;
     EXPECT_TRUE(names(checked_delta(coat), "density"));
@@ -73,7 +74,7 @@ TEST(DeltaPartsOfASampler, WithSeveralWeightsBreakIdentity) {
     EXPECT_FALSE(names(c, "density"));
 }
 
-TEST(DeltaPartsOfASampler, CountInTheAlbedo) {
+TEST(DeltaPartsOfASampler, AreIncludedInTheAlbedo) {
     Coat coat;
     coat.mirrored_share = 0.51;
     EXPECT_TRUE(names(checked_delta(coat), "physics"));
@@ -81,10 +82,10 @@ TEST(DeltaPartsOfASampler, CountInTheAlbedo) {
     EXPECT_FALSE(names(checked_delta(coat), "physics"));
 }
 
-TEST(DeltaPartsOfASampler, GoBackTheWayTheyCame) {
+TEST(DeltaPartsOfASampler, ReturnAlongTheReversePath) {
     Coat flipped;
     flipped.turned = {-1, 1, 1};
-    EXPECT_FALSE(checked_delta(flipped).wrong());  // an odd mirror, and its own inverse
+    EXPECT_FALSE(checked_delta(flipped).wrong());  // an unusual mirror that is its own inverse
     struct OneWay : Coat {
         void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
             Coat::sample(t, wo, u, out);
@@ -95,7 +96,7 @@ TEST(DeltaPartsOfASampler, GoBackTheWayTheyCame) {
     EXPECT_TRUE(names(checked_delta(OneWay{}), "physics"));
 }
 
-/// Smooth glass that reflects 0.1, bent by `drawn` where 1.5 is stated.
+/// Smooth glass that reflects 0.1 and refracts by the index `drawn`, where 1.5 is stated.
 struct Boundary : SamplerAdapter {
     double drawn = 1.5;
     std::string name() const override { return "boundary"; }

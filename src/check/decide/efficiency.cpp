@@ -1,4 +1,4 @@
-// Intervals are two standard errors in the logarithm. Times differ from run to run and are kept apart from the rest.
+// Intervals are two standard errors of the logarithm. Times vary between runs and are stored separately.
 #include "check/decide/efficiency.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ double Efficiency::high() const { return value() * math::exp(2 * math::hypot(rel
 
 namespace {
 
-/// Draws of a baseline. Of a program each costs an evaluation of f, and a variance to 3 % ranks well enough.
+/// Draws of a baseline. For a program each costs an evaluation of f, and a variance known to 3 % is enough for a rank.
 constexpr std::uint32_t baseline_draws = 1u << 15, baseline_draws_of_program = 1u << 12;
 
 std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKey& key) {
@@ -56,7 +56,7 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
 }
 
 void note_variance(const WeightTail& t, Efficiency& e) {
-    e.weighed = t.weighed, e.whole = t.whole;
+    e.has_weights = t.has_weights, e.whole = t.whole;
     e.variance = sqr(t.spread.sd), e.relative_se = t.variance_error;
     e.heavy = t.heavy() || t.open() || t.has_unseen();
 }
@@ -98,7 +98,7 @@ std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std
 
 namespace {
 
-/// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
+/// The time of one sample in one turn, ns; none if the sampler does not answer any more.
 std::optional<double> time_once(
     const CheckCase& check_case, std::span<const PrimarySample> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
@@ -126,7 +126,7 @@ void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, s
         for (std::size_t i = 0; i < all.size(); ++i) {
             monitor.check();
             const CheckCase& check_case = check_cases[all[i].check_case];
-            if (!all[i].weighed || times[i].size() < turn || !check_case.adapter->can_draw()) continue;
+            if (!all[i].has_weights || times[i].size() < turn || !check_case.adapter->can_draw()) continue;
             const std::size_t n = check_case.adapter->limited() ? of_a_program : most;
             if (const std::optional<double> ns = time_once(check_case, std::span(u).first(n), draws, all[i]))
                 times[i].push_back(*ns);
@@ -141,25 +141,25 @@ void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, s
 
 namespace {
 
-/// What samplers that are ranked beside each other have in common.
-std::string company_of(const CheckCase& t) {
+/// The surface, light and w_o that ranked samplers share.
+std::string group_of(const CheckCase& t) {
     std::string key = fmt::format("{:g} {:g} {} {}", t.theta_deg, t.azimuth_deg, t.brdf, t.lighting);
     for (const auto& [name, value] : t.parameters) key += fmt::format(" {}={:g}", name, value);
     return key;
 }
 
-/// Samplers by variance times time.
+/// Samplers ranked by variance times time.
 struct Ranks {
-    std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
+    std::vector<std::string> better, worse,
+        tied;  // samplers with a smaller value, a larger value, and those that are not distinguished
 };
 
-Ranks ranks_of(
-    const Efficiency& e, std::span<const CheckCase> check_cases, std::span<const Efficiency* const> company) {
+Ranks ranks_of(const Efficiency& e, std::span<const CheckCase> check_cases, std::span<const Efficiency* const> group) {
     Ranks out;
-    for (const Efficiency* o : company) {
+    for (const Efficiency* o : group) {
         if (o->check_case == e.check_case || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
-        const bool level = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
-        (level ? out.level : e.high() < o->low() ? out.better : out.worse).push_back(check_cases[o->check_case].arm);
+        const bool tied = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
+        (tied ? out.tied : e.high() < o->low() ? out.better : out.worse).push_back(check_cases[o->check_case].arm);
     }
     return out;
 }
@@ -169,18 +169,18 @@ std::string ranks_text(const Efficiency& e, const Ranks& ranks) {
     if (!ranks.better.empty())
         message += fmt::format("; variance x time is lower than that of {}", fmt::join(ranks.better, ", "));
     if (!ranks.worse.empty()) message += fmt::format("; higher than that of {}", fmt::join(ranks.worse, ", "));
-    if (!ranks.level.empty())
+    if (!ranks.tied.empty())
         message +=
-            fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(ranks.level, ", "));
+            fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(ranks.tied, ", "));
     return message + ".";
 }
 
-void test_one_efficiency(const Efficiency& e, std::span<const CheckCase> check_cases,
-    std::span<const Efficiency* const> company, Verdict& v) {
+void test_one_efficiency(
+    const Efficiency& e, std::span<const CheckCase> check_cases, std::span<const Efficiency* const> group, Verdict& v) {
     if (!e.fault.empty()) {
         v.state = State::error;
         v.evidence["first_fault"] = e.fault;
-        v.message = "The sampler broke off: " + e.fault + ".";
+        v.message = "The sampler failed: " + e.fault + ".";
         return;
     }
     v.evidence["variance"] = e.variance;
@@ -194,26 +194,26 @@ void test_one_efficiency(const Efficiency& e, std::span<const CheckCase> check_c
     }
     v.state = State::right;
     v.message = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
-    if (e.nanoseconds > 0) v.timed_message = ranks_text(e, ranks_of(e, check_cases, company));
+    if (e.nanoseconds > 0) v.timed_message = ranks_text(e, ranks_of(e, check_cases, group));
 }
 
 }  // namespace
 
 std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> all) {
     std::vector<Verdict> out(check_cases.size());
-    std::map<std::string, std::vector<const Efficiency*>> companies;
+    std::map<std::string, std::vector<const Efficiency*>> groups;
     for (const Efficiency& e : all)
-        if (e.weighed) companies[company_of(check_cases[e.check_case])].push_back(&e);
+        if (e.has_weights) groups[group_of(check_cases[e.check_case])].push_back(&e);
     std::size_t checked = 0;
     for (const Efficiency& e : all) {
         if (!check_cases[e.check_case].baseline) checked = e.check_case;
         Verdict& v = out[e.check_case];
         v.arm = check_cases[e.check_case].arm, v.check_case = check_cases[e.check_case].text(), v.name = "efficiency";
         v.state = State::skipped;
-        v.message = "There are no weights to take a variance of.";
-        if (e.weighed || !e.fault.empty())
-            test_one_efficiency(e, check_cases, companies[company_of(check_cases[e.check_case])], v);
-        // A program that broke off while its f was evaluated for a baseline: said where it would be ranked.
+        v.message = "There are no weights, so there is no variance.";
+        if (e.has_weights || !e.fault.empty())
+            test_one_efficiency(e, check_cases, groups[group_of(check_cases[e.check_case])], v);
+        // A program failed while its f was evaluated for a baseline: reported where it would be ranked.
         if (check_cases[e.check_case].baseline && !e.fault.empty())
             out[checked].state = State::error, out[checked].message = v.message;
     }

@@ -1,5 +1,5 @@
-// efficiency: variance of X times the time of one sample, beside every other sampler of the same surface, light and w_o
-// and beside the baselines (uniform and cosine).
+// efficiency: variance of X times the time of one sample, compared with every other sampler of the same surface, light
+// and w_o and with the baselines (uniform and cosine).
 #pragma once
 
 #include <span>
@@ -12,27 +12,28 @@
 
 namespace crescent::check {
 
-/// Of one case, with what it is known to.
+/// The variance and time of one case with their errors.
 struct Efficiency {
     std::size_t check_case = 0;
     double variance = 0, relative_se = 0;  // of X; relative standard error of the variance
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error; 0: not measured
-    bool weighed = false;                  // there are weights
-    bool heavy = false;                    // the tail does not let the variance be known
-    bool whole = false;                    // over the sphere, not its upper half
-    std::string fault;                     // how the sampler broke off meanwhile
+    bool has_weights = false;
+    bool heavy = false;  // whether the tail is too heavy for a variance
+    bool whole = false;  // over the sphere, not only the upper hemisphere
+    std::string fault;   // the error if the sampler failed meanwhile
     double value() const { return variance * nanoseconds; }
     double low() const;
     double high() const;
 };
 
-/// Variances of all cases: of what the check has drawn, or, of a baseline, of a few draws of its own.
+/// Variances of all cases: from the draws of the check or, for a baseline, from a few draws of its own.
 std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const CheckSettings& settings, const ProgressMonitor& monitor);
-/// The time of one sample of each, by one thread, all in turn: a slow moment of the machine falls on all alike.
+/// Measures the time of one sample of each on one thread, in turns, so that a slow phase of the machine affects all
+/// equally.
 void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> all,
     const ProgressMonitor& monitor);
-/// A verdict by case. Two samplers whose intervals overlap are not ranked.
+/// One verdict for each case. Two samplers whose intervals overlap are not ranked.
 std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> all);
 
 }  // namespace crescent::check

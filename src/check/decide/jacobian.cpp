@@ -1,7 +1,8 @@
-// p against the derivatives of the sampling map, at a few points of u. Near w(u) a sampler of two numbers draws with
-// density 1 / |dw/du| at least (other u may lead there too), so p |dw/du| >= 1 wherever p is what is drawn; of a
-// sampler of three numbers, one of which only chooses a branch, p |dw/du| is at least the length of that choice. It
-// shows parameters that differ between sample and pdf by less than the draws of a quick check can.
+// Compares p with the derivatives of the sampling map at a few points of u. Near w(u) a sampler with two numbers draws
+// with density at least 1 / |dw/du| (other u may map to the same direction), so p |dw/du| >= 1 if p is the density of
+// the draws. With three numbers, one of which only selects a branch, p |dw/du| is at least the length of the interval
+// of that branch. The test detects parameters that differ between sample and pdf by less than the draws of a quick
+// check can show.
 #include <algorithm>
 #include <cmath>
 
@@ -15,12 +16,12 @@ namespace {
 constexpr std::uint32_t points = 64;
 constexpr int coarsest = 6;  // steps from 2^-6 to 2^-21
 constexpr std::size_t steps = 16;
-constexpr double smooth = 1.1;  // how much the pdf may vary within a difference
-constexpr int bisections = 24;  // of the ends of a branch, to 2^-24
+constexpr double smooth = 1.1;  // largest ratio of pdf values within a difference
+constexpr int bisections = 24;  // for the ends of a branch, to 2^-24
 
 struct Point {
     PrimarySample u;
-    double branch = 1;          // probability of the branch that u lies in
+    double branch = 1;          // probability of the branch that contains u
     int first = 0, second = 1;  // the numbers that move w
     Vec3d w{};
     double area = 0, error = 1;  // |dw/du| and its relative error
@@ -38,7 +39,7 @@ std::vector<Draw> draws_at(Source& source, const std::vector<PrimarySample>& u) 
     return out;
 }
 
-/// The ends of the interval of number k about u in which the draw stays the same, by bisection.
+/// The length of the interval of number k about u in which the draw does not change, by bisection.
 std::vector<double> branch_lengths(
     Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at, int k) {
     std::vector<double> length(u.size());
@@ -62,25 +63,25 @@ std::vector<double> branch_lengths(
     return length;
 }
 
-/// The number that only chooses a branch, of three; none where every number moves w.
+/// The one of three numbers that only selects a branch; none if every number moves w.
 std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at) {
-    constexpr double little = 0x1p-16;
+    constexpr double small_move = 0x1p-16;
     for (int k = 2; k >= 0; --k) {
         std::vector<PrimarySample> v = u;
-        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? little : -little;
+        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? small_move : -small_move;
         const std::vector<Draw> d = draws_at(source, v);
-        int moved = 0, looked = 0;
+        int moved = 0, tested = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (drawn(at[i])) ++looked, moved += !same_direction(d[i], at[i]);
-        if (looked >= 16 && moved * 20 <= looked) return k;
+            if (drawn(at[i])) ++tested, moved += !same_direction(d[i], at[i]);
+        if (tested >= 16 && moved * 20 <= tested) return k;
     }
     return {};
 }
 
-/// w(u + h) - w(u - h) along both numbers, and the range of the pdf with these draws.
+/// w(u + h) - w(u - h) along both numbers, and the range of the pdf of these draws.
 struct Difference {
     Vec3d along[2]{};
-    double area = -1, least_pdf = 0, most_pdf = 0;  // |dw/du|; -1 where a draw is missing
+    double area = -1, least_pdf = 0, most_pdf = 0;  // |dw/du|; -1 if a draw is missing
 };
 using CentralDifferences = std::array<Difference, steps>;
 
@@ -110,9 +111,9 @@ std::vector<CentralDifferences> differences(Source& source, const std::vector<Po
     return out;
 }
 
-/// Whether all differences of finer steps are parts of that of step s, up to `jacobian_error` of it. Rounding moves
-/// each by up to the sampler's own step; three of a few such steps each, in the ratio of the steps in
-/// u, would agree exactly. Across the pieces of a table they are not parts of one difference either.
+/// Whether all differences of finer steps are proportional to that of step s, up to `jacobian_error` of it. Rounding
+/// moves each by up to the sampler's own step; three differences of a few such steps each, in the ratio of the steps in
+/// u, would agree exactly. Differences across the pieces of a table are not proportional either.
 bool is_linear_below(const CentralDifferences& d, std::size_t s) {
     for (std::size_t k = s + 1; k < steps; ++k) {
         if (!(d[k].area >= 0)) return false;
@@ -124,12 +125,11 @@ bool is_linear_below(const CentralDifferences& d, std::size_t s) {
     return true;
 }
 
-/// Central differences over all steps, the finest of which three in a row agree and the pdf with the draws is about the
-/// same.
+/// Uses the finest central differences of which three successive steps agree and whose pdf values are nearly equal.
 void differentiate(Source& source, std::vector<Point>& all) {
     const std::vector<CentralDifferences> of = differences(source, all);
     for (std::size_t i = 0; i < all.size(); ++i)
-        for (std::size_t s = steps - 2; s-- > 0;) {  // the finest first
+        for (std::size_t s = steps - 2; s-- > 0;) {  // finest first
             const Difference *a = &of[i][s], *b = a + 1, *c = a + 2;
             if (!(a->area > 0 && b->area > 0 && c->area > 0)) continue;
             const double least = std::min({a->least_pdf, b->least_pdf, c->least_pdf});
@@ -142,15 +142,15 @@ void differentiate(Source& source, std::vector<Point>& all) {
 }
 
 struct Round {
-    int looked = 0, broken = 0;
+    int tested = 0, broken = 0;
     double worst = 1;
     Example first{};
 };
 
-Round look(Source& source, const StreamKey& key) {
+Round test_points(Source& source, const StreamKey& key) {
     Round out;
     for (const MapDensity& x : map_densities(source, key)) {
-        ++out.looked;
+        ++out.tested;
         const double ratio = x.p / x.drawn;
         if (ratio >= 1 - jacobian_tolerance - 4 * x.error) continue;
         if (out.broken++ == 0) out.first = {x.u, x.draw, x.p, x.drawn};
@@ -196,13 +196,13 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
     if (!source.has_density()) return {};
     StreamKey key = given;
-    const Round one = look(source, key);
+    const Round one = test_points(source, key);
     if (one.broken < jacobian_breaks) return {};
     key.part = 1;
-    const Round two = look(source, key);
+    const Round two = test_points(source, key);
     if (two.broken < jacobian_breaks) return {};
     return SmallFault{Family::jacobian, static_cast<double>(one.broken + two.broken),
-        static_cast<double>(one.looked + two.looked), std::min(one.worst, two.worst) - 1, one.first,
+        static_cast<double>(one.tested + two.tested), std::min(one.worst, two.worst) - 1, one.first,
         "p is less than what is drawn"};
 }
 

@@ -1,6 +1,6 @@
-// A fault of size e shifts a question's difference by e times its effect, and adds e times the variance of its draws.
-// It is found if the difference passes both stages. The second has as many draws and points as the first and asks for
-// a less extreme p-value of one member, so nearly all that pass the first pass it too.
+// A fault of size e shifts the difference of a test by e times its effect, and adds e times the variance of its draws.
+// It is found if the difference passes both stages. The second stage has as many draws and points as the first and a
+// less extreme level for one member, so nearly all differences that pass the first stage pass it too.
 #include "check/decide/sizes.h"
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace crescent::check {
 
 namespace {
 
-/// Standard errors beyond what a test asks for: P(Z < 2.05) = 0.98. The least size of several tests is stated, each
-/// known to the 13 % that 32 replicates know their standard deviation to. Measured by planting faults of these sizes:
-/// the least of them is found with `stated_power` only if each by itself is found with 0.98.
+/// Standard errors beyond the critical value: P(Z < 2.05) = 0.98. The least size of several tests is stated, and each
+/// has an uncertainty of 13 %, that of a standard deviation from 32 replicates. Measured by planting faults of these
+/// sizes: the least of them is found with `stated_power` only if each by itself is found with 0.98.
 constexpr double power_of_each = 2.05;
 
-/// The difference d for which Bennett's exponent is z2: Bernstein's bound, which is above it, and Newton's steps.
+/// The difference d for which Bennett's exponent is z2: Newton's method from Bernstein's bound, which is above it.
 double bennett_difference(double z2, double v, double b) {
     v = std::max(v, 1e-30);
     const double by = b * z2 / 6, c = z2 * b * b / (2 * v);
@@ -32,21 +32,21 @@ double bennett_difference(double z2, double v, double b) {
     return x * v / b;
 }
 
-/// Variance of a question's difference: of its draws, and of its integrals.
+/// Variance of the difference of a test: of its draws, and of its integrals.
 struct Variances {
     double drawn, claimed;
     double all() const { return drawn + claimed; }
 };
 
-/// One question: what its difference must be to be found.
+/// The difference that one test needs to detect a fault.
 class Needed {
 public:
-    /// largest: of one term, for Bennett's inequality.
+    /// largest: largest single term, for Bennett's inequality.
     static Needed by_bennett(double floor, Variances v, double largest, double freedom, double level) {
         const double z2 = -2 * math::log(level / 2) / freedom;
         return {floor, v.all(), largest, z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300, 0};
     }
-    /// The quantile of Student's t, for many tests of one number of degrees of freedom.
+    /// The quantile of Student's t, shared by many tests with the same degrees of freedom.
     static double quantile(double freedom, double level) {
         return statistics::student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
     }
@@ -54,22 +54,24 @@ public:
         return {floor, v.all(), 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
     }
 
-    /// `tested` is variance that the fault adds and the test takes from its draws; `beside` is not known to the test.
-    double difference(double tested = 0, double beside = 0, double errors = power_of_each) const {
+    /// `tested`: variance that the fault adds and that the test estimates from its draws; `untested`: variance that the
+    /// test does not include.
+    double difference(double tested = 0, double untested = 0, double errors = power_of_each) const {
         const double v = variance_ + tested;
-        // One draw alone shows nothing, however little is expected: it may be what the points have not met.
+        // A single draw is never significant, for any small expectation: it may be in a region that the points have
+        // missed.
         const double critical = largest_ > 0 ? std::max(bennett_difference(critical_, v, largest_), 2 * largest_)
                                              : critical_ * std::sqrt(v);
-        // A standard deviation of nu degrees of freedom is known to 1 / sqrt(2 nu) of itself: the one that is tested
-        // against, t times, and the one by which the size is stated, t + the quantile times.
+        // A standard deviation with nu degrees of freedom has a relative error of 1 / sqrt(2 nu). It enters through the
+        // critical value, t times, and through the stated size, t + the quantile times.
         const double more = largest_ > 0 ? 0 : unknown_ * (sqr(critical_) + sqr(critical_ + errors));
-        return floor_ + critical + errors * std::sqrt(v * (1 + more) + beside);
+        return floor_ + critical + errors * std::sqrt(v * (1 + more) + untested);
     }
-    /// The size of a fault of this effect and these variances of a share 1.
-    double size(double effect, double tested = 0, double beside = 0) const {
+    /// The size of a detectable fault from its effect and its added variances, both per unit of size.
+    double size(double effect, double tested = 0, double untested = 0) const {
         if (!(effect > 0)) return 1e300;
         double e = difference() / effect;
-        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested, e * beside) / effect;
+        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested, e * untested) / effect;
         return e;
     }
 
@@ -81,12 +83,12 @@ private:
 };
 
 struct SumTest {
-    std::size_t of;  // which sum
+    std::size_t of;  // index of the sum
     Needed needed;
     double draws;
 };
 
-/// The whole sums, by both kinds of draws.
+/// The tests of whole sums, with both kinds of draws.
 std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
     std::vector<SumTest> out;
     const double n = e.observations.independent;
@@ -114,12 +116,13 @@ std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
 struct NodeTest {
     std::size_t node;
     double share;  // of h p in the first half
-    double h;      // what one draw counts for
+    double h;      // weight of one draw
     Needed needed;
-    double draws;  // that it is by; 0: its variance is predicted from the claim, not taken from the draws
+    double
+        draws;  // number of draws; 0: the variance is predicted from the claimed density, not estimated from the draws
 };
 
-/// The nodes that are tested, by both kinds of draws.
+/// The nodes that are tested, with both kinds of draws.
 std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, double level) {
     std::vector<Answer> tested;
     test_nodes(e, [&](const Answer& a) {
@@ -171,7 +174,7 @@ std::optional<double> leak_of(const Evidence& e, const std::vector<SumTest>& who
     return out;
 }
 
-/// Total variation between p and an even density, by the leaves.
+/// Total variation between p and a uniform density, from the leaves.
 double distance_from_even(const Evidence& e) {
     double sum = 0;
     for (const Leaf& leaf : e.plan.tree.leaves()) {
@@ -181,7 +184,7 @@ double distance_from_even(const Evidence& e) {
     return std::min(sum, 1.0);
 }
 
-/// A few thousand draws on streams of their own, with p there.
+/// A few thousand draws from separate streams, and p at them.
 struct Sample {
     std::vector<Vec3d> w;
     std::vector<double> p;
@@ -200,7 +203,7 @@ Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
     return out;
 }
 
-/// The noncentrality with which chi^2 of so many degrees passes this level half of the time.
+/// The noncentrality at which chi^2 with these degrees of freedom exceeds this level half of the time.
 double noncentrality(double degrees, double level) {
     double low = 0, high = degrees + 1000;
     for (int k = 0; k < 50; ++k) {
@@ -210,15 +213,15 @@ double noncentrality(double degrees, double level) {
     return high - degrees;
 }
 
-/// Caps about draws: leaves are taken away in the order of their distance from the centre until a node shows it, or all
-/// nodes of one depth together do.
+/// Caps about draws: removes leaves in order of their distance from the centre until a node, or all nodes of one depth
+/// together, detect it.
 class Caps {
 public:
     Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests, double level)
         : e_(e),
           sums_(sums),
           parent_(sums.size(), -1),
-          gone_(sums.size()),
+          removed_(sums.size()),
           least_(sums.size(), 1e300),
           variance_(sums.size()),
           shift_(static_cast<std::size_t>(e.plan.tree.depth()) + 1),
@@ -247,7 +250,7 @@ public:
         }
         cosine_.resize(leaves_.size());
     }
-    /// p: the density there, by which the first ring about it is about as wide as a cap that is found.
+    /// p: the density at the centre. It sets the width of the first ring to about that of a detectable cap.
     double mass_about(Vec3d centre, double p) {
         constexpr double first = 2e-3;
         for (std::size_t l = 0; l < leaves_.size(); ++l)
@@ -268,13 +271,13 @@ public:
                 for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
                     const auto i = static_cast<std::size_t>(at);
                     const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
-                    gone_[i] += leaf.claimed, touched.push_back(at);
+                    removed_[i] += leaf.claimed, touched.push_back(at);
                     found = found || shows(i, before);
                 }
             }
             inner = outer;
         }
-        for (int i : touched) gone_[static_cast<std::size_t>(i)] = 0;
+        for (int i : touched) removed_[static_cast<std::size_t>(i)] = 0;
         std::ranges::fill(shift_, 0);
         return found ? std::min(mass, 1.0) : 1;
     }
@@ -287,21 +290,21 @@ private:
     const Evidence& e_;
     const std::vector<NodeSums>& sums_;
     std::vector<int> parent_;
-    std::vector<double> gone_, least_;         // by node: of h p that is gone; the least difference that is found
-    std::vector<double> variance_;             // by node, of those that a depth counts
-    std::vector<double> shift_, least_shift_;  // by depth: of chi^2, and the least that is found
+    std::vector<double> removed_, least_;      // by node: removed mass of h p; least detectable difference
+    std::vector<double> variance_;             // by node, for nodes that enter the sum of a depth
+    std::vector<double> shift_, least_shift_;  // by depth: shift of chi^2, and the least detectable one
     std::vector<Piece> leaves_;
-    std::vector<double> x_, y_, z_, cosine_;  // of their middles; of those to a centre
+    std::vector<double> x_, y_, z_, cosine_;  // centres of the leaves; their cosines to the centre of the cap
 
     double difference(std::size_t i) const {
         const int child = e_.plan.tree.nodes()[i].child;
         if (child < 0) return 0;
         const auto a = static_cast<std::size_t>(child);
-        return std::fabs(gone_[a] - sums_[a].claimed / sums_[i].claimed * gone_[i]);
+        return std::fabs(removed_[a] - sums_[a].claimed / sums_[i].claimed * removed_[i]);
     }
-    /// Of node i, whose difference had this square before. What is left of its draws has less variance.
+    /// Whether node i, whose squared difference was `before`, detects the cap. The remaining draws have less variance.
     bool shows(std::size_t i, double before) {
-        const double now = difference(i), left = std::max(1 - gone_[i] / sums_[i].claimed, 1e-3);
+        const double now = difference(i), left = std::max(1 - removed_[i] / sums_[i].claimed, 1e-3);
         if (variance_[i] > 0) {
             double& shift = shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)];
             shift += (sqr(now) - before) / variance_[i];
@@ -311,8 +314,8 @@ private:
     }
 };
 
-/// The mass of a cap that is found half of the time at nine of ten centres: about some it is found at a fifth of that,
-/// so that over all centres nine of ten are found.
+/// The mass of a cap that is detected half of the time at nine of ten centres. About some centres a fifth of that mass
+/// is detected, so that nine of ten caps over all centres are found.
 std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes,
     const Sample& sample, double level) {
     constexpr std::size_t centres = 256;
@@ -326,25 +329,26 @@ std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sum
     return sizes[static_cast<std::size_t>(at)];
 }
 
-/// A direction on the chart, with h there.
+/// A place on the chart with the values of h.
 struct Place {
     ChartPoint at;
     Values values{};
 };
 Place place_of(const Evidence& e, Vec3d w, double p) {
     Place out{to_chart(w)};
-    // Where p is 0 the estimator takes it for nothing.
+    // The estimator ignores draws where p is 0.
     if (p > 0) out.values = e.plan.values(e.plan.tree.leaves()[e.plan.tree.find(out.at)], w, p);
     return out;
 }
 
 struct Estimated {
-    double mean = 0, variance = 0;  // of the mean
+    double mean = 0, variance = 0;  // variance of the mean
 };
 
-/// What a rotation of the draws by `angle` about one axis changes, by question: as draws that are moved, and as p there
-/// over p where they were, which is the same but for the sign. The first is exact at edges of p, the second has less
-/// noise where p is smooth; of each effect the larger of the low ends of both counts.
+/// The change of each test by a rotation of the draws by `angle` about one axis. It is computed twice: from the moved
+/// draws, and from the ratio of p at the moved and the original directions, which gives the same except for the sign.
+/// The first is exact at edges of p, the second has less noise where p is smooth. Each effect is the larger of the
+/// lower bounds of both.
 class Turned {
 public:
     Turned(Source& source, const Evidence& e, const Sample& sample, const std::vector<Place>& places, Vec3d axis,
@@ -369,14 +373,14 @@ public:
         }
     }
 
-    /// Total variation between p and p turned.
+    /// Total variation between p and the rotated p.
     double distance = 0;
 
-    /// What a question's mean changes by, with its standard error, both times.
+    /// The change of the mean of a test, with its standard error, by both methods.
     struct Effect {
         Estimated moved, weighted;
     };
-    /// Of all whole sums, then of all nodes.
+    /// The effects on all whole sums, then on all nodes.
     std::vector<Effect> effects(const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) const {
         std::vector<Effect> out;
         for (const SumTest& t : whole) out.push_back({mean_of(moved_.sums[t.of]), mean_of(weighted_.sums[t.of])});
@@ -391,7 +395,7 @@ public:
         }
         return out;
     }
-    /// What their questions need, in the same order.
+    /// The differences that these tests need, in the same order.
     static std::vector<double> needed(
         const Tree& tree, const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) {
         std::vector<double> out;
@@ -412,7 +416,7 @@ private:
     double of_;
     Change moved_, weighted_;
 
-    /// What is gained at one place and lost at another, as one difference in each node that both are in.
+    /// Adds the gain at one place and the loss at another, as one difference in each node that contains both.
     void add(Change& to, const Place& gain, const Place& loss) const {
         for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(gain.values[q] - loss.values[q]);
         std::size_t i = 0, j = 0;
@@ -426,7 +430,7 @@ private:
             in_a = in_a && step(i, gain.at), in_b = in_b && step(j, loss.at);
         }
     }
-    /// To the half that a place is in; false at the end.
+    /// Descends to the half that contains the place; false at the end.
     bool step(std::size_t& i, ChartPoint at) const {
         const TreeNode& x = e_.plan.tree.nodes()[i];
         if (x.child < 0 || x.depth == depth) return false;
@@ -439,11 +443,11 @@ private:
     }
 };
 
-/// Effects over what is needed, of a turn about c times one axis and s times another: to first order in the angle it is
-/// the sum of both turns.
+/// Ratios of the effects to the needed differences for a rotation about c times one axis plus s times another: to first
+/// order in the angle, the sum of both rotations.
 std::vector<double> ratios_about(const std::vector<Turned::Effect>& one, const std::vector<Turned::Effect>& other,
     double c, double s, const std::vector<double>& needed, std::size_t whole) {
-    // One-sided 90 %; of hundreds of nodes the largest error is of three standard errors.
+    // One-sided 90 %; the largest error among hundreds of nodes is three standard errors.
     constexpr double of_one = 1.2816, of_largest = 3.0;
     const auto low_end = [&](const Estimated& a, const Estimated& b, double errors) {
         return std::fabs(c * a.mean + s * b.mean) - errors * std::sqrt(c * c * a.variance + s * s * b.variance);
@@ -458,9 +462,9 @@ std::vector<double> ratios_about(const std::vector<Turned::Effect>& one, const s
     return out;
 }
 
-/// The least angle at which one question shows enough; 1 where none does. `ratios` are at angles from `first` on that
-/// grow by `growth`. Between two of them, and below the first, an effect is taken for a power of the angle, linear at
-/// least.
+/// The least angle at which one test detects the rotation; 1 if none does. `ratios` are given at angles from `first` on
+/// that grow by the factor `growth`. Between two angles, and below the first, an effect is interpolated as a power of
+/// the angle with an exponent of at least one.
 constexpr double growth = 4;
 double least_angle(double first, const std::vector<std::vector<double>>& ratios) {
     double out = 1;
@@ -478,7 +482,8 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
     return out;
 }
 
-/// Of eight axes across the mean direction those about which a rotation changes something.
+/// The detectable rotation: of eight axes across the mean direction, those about which a rotation changes the density
+/// are used.
 void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& whole,
     const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
     if (sample.w.size() < 64) return;
@@ -506,7 +511,7 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
             if (by == 1) changed[at] = math::hypot(c * one.distance, s * other.distance);
         }
     }
-    // About an axis of symmetry, or next to it, nothing is turned.
+    // About an axis of symmetry, or near it, a rotation changes nothing.
     const double least_change = std::max(detection_floor, 0.1 * *std::ranges::max_element(changed));
     struct Size {
         double angle, changed;
@@ -515,14 +520,15 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     for (std::size_t k = 0; k < axes; ++k)
         if (changed[k] >= least_change) sizes.push_back({least_angle(target_rotation, ratios[k]), changed[k]});
     if (sizes.empty()) return;
-    // What one question shows of a turn vanishes about some axis: about seven axes of eight no more is needed.
+    // The effect of a rotation on a single test vanishes about some axis, so the stated size covers about seven of
+    // eight axes.
     std::ranges::sort(sizes, std::greater<>(), &Size::angle);
     const Size& stated = sizes[sizes.size() > axes / 2 ? 1 : 0];
     out.rotation = stated.angle, out.by_rotation = stated.changed / target_rotation;
 }
 
-/// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are taken for draws of p of
-/// which (p / c)^e are kept: some 3 e standard deviations of ln p are drawn again.
+/// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are modelled as draws of p
+/// that are kept with probability (p / c)^e: about 3 e standard deviations of ln p are drawn again.
 void by_exponent(const Evidence& e, const std::vector<SumTest>& whole, Sizes& out) {
     const Observations& o = e.observations;
     const double n = o.independent;

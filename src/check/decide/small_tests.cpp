@@ -1,5 +1,5 @@
-// Tests beside the identity E[h(w)] = integral of h p: numbers that cannot be used, corners of u and of w_o, and calls
-// that must agree with each other (the same u twice, in other batches, without one of its numbers).
+// Tests other than the identity E[h(w)] = integral of h p: unusable numbers, corners of u and of w_o, and calls that
+// must agree with each other (the same u twice, in other batches, without one of its numbers).
 #include "check/decide/small_tests.h"
 
 #include <algorithm>
@@ -55,7 +55,8 @@ std::vector<PrimarySample> some_numbers(const Source& source, StreamKey key, std
 
 bool same_to(double a, double b) { return std::fabs(a - b) <= same_number * std::max(std::fabs(a), std::fabs(b)); }
 
-/// The same draw, to the rounding of a text format of seven digits; its pdf and weight too where they are no estimates.
+/// Whether two draws are equal to the rounding of a text format of seven digits, including pdf and weight unless they
+/// are random estimates.
 bool same_draw(const Draw& a, const Draw& b, bool random = false) {
     constexpr double near = 1e-6;
     if ((a.pdf > 0) != (b.pdf > 0) || (a.delta != 0) != (b.delta != 0)) return false;
@@ -192,10 +193,10 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
 }
 
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
-    // With more numbers than two, one may choose a texel and others the place in it.
+    // With more than two numbers, one may choose a texel and others the place in it.
     if (source.traits.numbers > 2 || source.traits.own_random || !source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
-    const auto draws_beside = [&](int k, double by) {
+    const auto draws_moved_by = [&](int k, double by) {
         std::vector<PrimarySample> v = u;
         for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? by : -by;
         std::vector<Draw> out(v.size());
@@ -209,8 +210,8 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
         return a.pdf > 0 && b.pdf > 0 ? std::sqrt(dot(d, d)) : -1;
     };
     for (int k = 0; k < source.traits.numbers; ++k) {
-        const std::vector<Draw> far = draws_beside(k, 0x1p-10), near = draws_beside(k, 0x1p-11),
-                                least = draws_beside(k, few_bits_step);
+        const std::vector<Draw> far = draws_moved_by(k, 0x1p-10), near = draws_moved_by(k, 0x1p-11),
+                                least = draws_moved_by(k, few_bits_step);
         SmallFault out{Family::repeats, 0, 0, 0, {}, "only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double a = moved(at[i], far[i]), b = moved(at[i], near[i]);

@@ -1,5 +1,5 @@
-// Tests beside the principle, at one w_o: numbers at the corners of u, the same u again, p against the derivatives of
-// sample(u). Nothing in them is left to chance but where they look.
+// Tests at one w_o other than the identity E[h(w)] = integral of h p: numbers at the corners of u, repeated u, p
+// against the derivatives of sample(u). Only the test points are random.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,21 @@
 
 namespace crescent::check {
 
-/// What is wrong with a draw, in words; none where it can be used.
+/// A description of the fault of a draw; none if it is usable.
 std::optional<const char*> fault_of(const Draw& d);
 
 /// A small test that failed.
 struct SmallFault {
     Family family = Family::corners;
-    double times = 0, of = 0;  // how often, of how many
-    double size = 0;           // relative, where it has one
+    double times = 0, of = 0;  // number of failures, number of tests
+    double size = 0;           // relative, if it has one
     Example first{};
     const char* what = "";
-    std::optional<Vec3d> wo{};  // of the first, where it is none of the call's
+    std::optional<Vec3d> wo{};  // of the first, if it is not a w_o of the call
     std::string place{};        // of the first in a file
 };
 
-/// Every row of a file of draws, whichever question it serves.
+/// All rows of a file of draws, independent of the test that uses them.
 std::optional<SmallFault> rows_of_file(const Source& source);
 /// u at 0, next to 0, at quarters and next to 1, in every two numbers and in every corner: samplers divide by 0 there.
 std::optional<SmallFault> corners_of_u(Source& source);
@@ -32,17 +32,18 @@ std::optional<SmallFault> corners_of_u(Source& source);
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key);
 /// pdf(w) and f(w) of the same directions in blocks of other sizes: a program may mix up the rows of a block.
 std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key);
-/// What the map draws at a few points where its derivatives are known to `jacobian_error`, and p there, both 1/sr.
-/// Other u may lead to the same direction, so `drawn` is a part of what is drawn there.
+/// The density of the map at a few points where its derivatives are known to `jacobian_error`, and p there, both in
+/// 1/sr. Other u may map to the same direction, so `drawn` is a part of the density there.
 struct MapDensity {
     PrimarySample u;
     Draw draw;
-    double p = 0, drawn = 0, error = 0;  // error: of `drawn`, relative
+    double p = 0, drawn = 0, error = 0;  // error: relative error of `drawn`
 };
 std::vector<MapDensity> map_densities(Source& source, const StreamKey& key);
-/// p |dw/du| of the branch that a draw takes is at least the probability of that branch.
+/// Tests that p |dw/du| of the branch of a draw is at least the probability of that branch.
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
-/// Numbers of which few bits are used: a draw moves with u at large, and does not move at all with its last bits.
+/// Random numbers of which few bits are used: a draw moves with large changes of u, and does not move with its last
+/// bits.
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key);
 /// Random numbers that change no draw.
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key);
@@ -50,12 +51,12 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key);
 /// All of them.
 std::vector<SmallFault> small_tests(Source& source, const StreamKey& key);
 
-// ---- Where delta parts lead: a smooth boundary mirrors and refracts by the index that is stated (Snell), a thin wall
-// lets straight through, and light goes back the way that it came with as much of it (Helmholtz).
+// ---- Directions of delta parts: a smooth boundary reflects, and refracts by the stated index (Snell); a thin wall
+// transmits straight; the reverse path returns to w_o with the same power (Helmholtz).
 
-/// Against the stated index, where there is one.
+/// Compares the directions with the stated index, if there is one.
 std::optional<SmallFault> refraction(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key);
-/// Draws at w_i of a part lead back to w_o, with the power that reciprocity gives.
-std::optional<SmallFault> way_back(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key);
+/// Tests that draws at w_i of a part return to w_o with the power that reciprocity requires.
+std::optional<SmallFault> reverse_path(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key);
 
 }  // namespace crescent::check

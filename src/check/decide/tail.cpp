@@ -1,4 +1,4 @@
-// A tail is heavy where its index is at least 1/2 with its interval, open where the interval contains 1/2.
+// A tail is heavy if the interval of its index is at or above 1/2, and open if the interval contains 1/2.
 #include "check/decide/tail.h"
 
 #include <algorithm>
@@ -41,25 +41,25 @@ std::optional<statistics::Tail> fit_of(std::span<const double> x) {
     return upper && !may_be_heavy(*upper) ? upper : tail;
 }
 
-/// Points of one technique with weights beyond the largest drawn are appended; what all points hold of the integral.
-double find_unseen(const CheckAt& c, std::vector<WeighedPoint>& unseen) {
+/// Appends the points of one technique whose weights exceed the largest drawn; returns the integral over all points.
+double find_unseen(const CheckAt& c, std::vector<WeightedPoint>& unseen) {
     const std::vector<double>& x = c.observations.weights;
     if (x.empty() || c.plan->estimates) return 0;
     const double largest = *std::ranges::max_element(x) * (1 + alike_weights);
-    double due = 0;
-    for (const WeighedPoint& w : c.integrals.light.weighed) {
-        due += w.light;
+    double integral = 0;
+    for (const WeightedPoint& w : c.integrals.light.weighted_points) {
+        integral += w.light;
         if (w.x > largest) unseen.push_back(w);
     }
-    return due;
+    return integral;
 }
 
-void note_unseen(std::vector<WeighedPoint> unseen, WeightTail& to) {
+void note_unseen(std::vector<WeightedPoint> unseen, WeightTail& to) {
     double square = 0;
-    for (const WeighedPoint& w : unseen)
+    for (const WeightedPoint& w : unseen)
         to.unseen += w.light, to.unseen_chance += w.chance, square += w.light * w.light;
     to.unseen_error = std::sqrt(square);
-    std::ranges::sort(unseen, std::greater<>(), &WeighedPoint::x);
+    std::ranges::sort(unseen, std::greater<>(), &WeightedPoint::x);
     double light = 0;
     for (std::size_t i = 0; i < unseen.size() && light < to.unseen / 2; ++i)
         light += unseen[i].light, to.half_chance += unseen[i].chance;
@@ -67,12 +67,12 @@ void note_unseen(std::vector<WeighedPoint> unseen, WeightTail& to) {
 
 double standard_error(const statistics::Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
 
-/// Draws whose mean has a standard error of 1 %.
+/// Number of draws whose mean has a standard error of 1 %.
 double draws_for_1_percent(const statistics::Spread& s) {
     return s.mean > 0 ? std::max(s.sd * s.sd / (s.mean * s.mean) / 1e-4, 1.0) : 1;
 }
 
-/// The fit to the largest weights, or that there is nothing to fit.
+/// Describes the fit to the largest weights, or why there is none.
 void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) {
     if (!t.fit) {
         v.evidence["times_largest"] = t.times_largest;
@@ -89,18 +89,18 @@ void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) 
 }
 
 void describe_unseen(const WeightTail& t, Verdict& v) {
-    const double share = t.unseen / t.due;
+    const double share = t.unseen / t.integral;
     v.state = State::inconclusive;
     v.evidence["unmet_share"] = share;
-    v.evidence["unmet_share_error"] = t.unseen_error / t.due;
+    v.evidence["unmet_share_error"] = t.unseen_error / t.integral;
     v.evidence["unmet_chance_of_a_draw"] = t.unseen_chance;
     v.evidence["largest_drawn_weight"] = t.spread.largest;
     v.evidence["unmet_half_chance"] = t.half_chance;
     v.message += fmt::format(
         "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
         "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
-        100 * share, 196 * t.unseen_error / t.due, t.spread.n, t.spread.largest, t.half_chance);
-    constexpr double within_reach = 64;  // times as many draws; a thorough check makes twelve times as many
+        100 * share, 196 * t.unseen_error / t.integral, t.spread.n, t.spread.largest, t.half_chance);
+    constexpr double within_reach = 64;  // times the number of draws; a thorough check has twelve times as many
     const double times = t.half_chance > 0 ? 1 / (t.half_chance * t.spread.n) : 1e300;
     if (times <= within_reach) v.next = {NextStep::Kind::more_draws, std::max(times, 2.0)};
     else v.next.kind = NextStep::Kind::heavier_pdf;
@@ -123,7 +123,8 @@ bool has_weights(std::span<const CheckAt> techniques) {
 }  // namespace
 
 bool WeightTail::has_unseen() const {
-    return due > 0 && unseen - 2 * unseen_error > unseen_errors * standard_error(spread) + detection_floor * due &&
+    return integral > 0 &&
+        unseen - 2 * unseen_error > unseen_errors * standard_error(spread) + detection_floor * integral &&
         spread.n * unseen_chance < -math::log(missed_by_chance);
 }
 
@@ -140,7 +141,7 @@ std::vector<double> weights_of(std::span<const CheckAt> techniques) {
 
 WeightTail tail_of_weights(std::span<const double> x) {
     WeightTail out;
-    out.weighed = !x.empty();
+    out.has_weights = !x.empty();
     out.spread = statistics::spread(x);
     double fourth = 0;
     for (double v : x) fourth += sqr(sqr(v - out.spread.mean)) / out.spread.n;
@@ -155,15 +156,15 @@ WeightTail tail_of_weights(std::span<const double> x) {
 WeightTail tail_of(std::span<const CheckAt> techniques) {
     if (!has_weights(techniques)) return {};
     WeightTail out = tail_of_weights(weights_of(techniques));
-    std::vector<WeighedPoint> unseen;
-    for (const CheckAt& c : techniques) out.due += find_unseen(c, unseen);
+    std::vector<WeightedPoint> unseen;
+    for (const CheckAt& c : techniques) out.integral += find_unseen(c, unseen);
     note_unseen(std::move(unseen), out);
     out.whole = std::ranges::any_of(techniques, draws_below);
     return out;
 }
 
 void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
-    if (!t.weighed) {
+    if (!t.has_weights) {
         v.state = State::skipped;
         v.message = "There are no weights f L cos / p.";
         return;
@@ -181,13 +182,13 @@ void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
     } else if (t.heavy()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
-        v.message += "Heavy tail: the variance is infinite or looks so, and no interval of the mean means anything.";
+        v.message += "Heavy tail: the variance is infinite or appears to be, so no interval of the mean is valid.";
         v.next.kind = NextStep::Kind::heavier_pdf;
     } else if (t.open()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
-        v.message += "Heavy tail or not: the interval of k contains 1/2, from where on the variance is infinite.";
-        // The tail of n draws has 3 sqrt(n): the error of k falls with the fourth root of n.
+        v.message += "Heavy tail or not: the interval of k contains 1/2, and from 1/2 on the variance is infinite.";
+        // The tail of n draws has 3 sqrt(n) weights, so the error of k falls with the fourth root of n.
         const double tails = 4 * t.fit->se * t.fit->se / std::max(sqr(t.fit->k - heavy_index), 1e-4);
         v.next = {NextStep::Kind::more_draws, std::max(sqr(tails), 2.0)};
     } else {
@@ -199,15 +200,15 @@ void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
 }
 
 void test_plain_mean(const WeightTail& t, Verdict& v) {
-    if (!t.weighed) return;
+    if (!t.has_weights) return;
     v.evidence["draws"] = t.spread.n;
     v.evidence["mean"] = t.spread.mean;
     v.evidence["standard_error"] = standard_error(t.spread);
-    if (t.due > 0) v.evidence["quadrature"] = t.due;
+    if (t.integral > 0) v.evidence["quadrature"] = t.integral;
     if (v.state != State::right) return;
     if (t.has_unseen()) {
         v.message = fmt::format(
-            "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}. ", t.spread.n, t.spread.mean, t.due);
+            "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}. ", t.spread.n, t.spread.mean, t.integral);
         describe_unseen(t, v);
     } else if (t.heavy()) {
         v.state = State::inconclusive;

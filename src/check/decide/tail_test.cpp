@@ -1,4 +1,4 @@
-// Cosine powers on Lambert have a known Pareto index; lobes that leave Lambert's light to directions they never draw
+// Cosine powers on Lambert have a known Pareto index; lobes that leave Lambert's light to directions they rarely draw
 // have an unseen tail.
 #include "check/decide/tail.h"
 
@@ -9,8 +9,8 @@
 namespace crescent::check {
 namespace {
 
-/// p ~ cos^s about n, with a share of cosine beside it; f is Lambert of albedo 1, whose weights without that share are
-/// u^-k, k = (s - 1) / (s + 1).
+/// p ~ cos^s about n, mixed with a share of cosine; f is Lambert of albedo 1. Without the cosine the weights are u^-k,
+/// k = (s - 1) / (s + 1).
 struct PowerLobe : SamplerAdapter {
     double s = 1, share = 0;
     std::string name() const override { return "power"; }
@@ -68,14 +68,14 @@ TEST(TailOfWeights, HasTheIndexOfTheory) {
     }
 }
 
-TEST(TailOfWeights, IsRightWhereWeightsAreAlike) {
+TEST(TailOfWeights, IsRightForEqualWeights) {
     const CheckedTail t = tail_at({});
     EXPECT_EQ(t.tail.state, State::right);
     EXPECT_FALSE(t.of.has_unseen());
     EXPECT_NEAR(t.tail.evidence["samples_for_1_percent"].get<double>(), 1, 1e-9);
 }
 
-TEST(TailOfWeights, TellsThePlainMeanAndItsError) {
+TEST(TailOfWeights, ReportsThePlainMeanAndItsError) {
     PowerLobe lobe;
     lobe.s = 2;
     const nlohmann::ordered_json e = tail_at(lobe).mean.evidence;
@@ -86,8 +86,8 @@ TEST(TailOfWeights, TellsThePlainMeanAndItsError) {
     EXPECT_NEAR(e["quadrature"].get<double>(), 1, 1e-3);  // the albedo
 }
 
-/// One draw in 1e6 is of the cosine, which carries nearly all of the light: no draw meets it.
-TEST(TailOfWeights, ThatNoDrawMetIsSeenByThePoints) {
+/// One draw in 1e6 comes from the cosine, which contributes nearly all of the light; the draws contain none of them.
+TEST(TailOfWeights, IsFoundByThePointsIfNoDrawShowsIt) {
     PowerLobe lobe;
     lobe.s = 1e4, lobe.share = 1e-6;
     const CheckedTail t = tail_at(lobe);
@@ -97,11 +97,11 @@ TEST(TailOfWeights, ThatNoDrawMetIsSeenByThePoints) {
     EXPECT_GT(t.tail.evidence["unmet_share"].get<double>(), 0.9);
     EXPECT_NEAR(t.tail.evidence["unmet_half_chance"].get<double>(), 5e-7, 2e-7);
     EXPECT_NE(t.tail.message.find("Heavy tail that no draw met"), std::string::npos);
-    EXPECT_EQ(t.tail.next.kind, NextStep::Kind::heavier_pdf);  // 120 times as many draws would do
+    EXPECT_EQ(t.tail.next.kind, NextStep::Kind::heavier_pdf);  // 120 times as many draws would be enough
 }
 
-/// The same cosine, drawn often enough: a step of weights, no tail.
-TEST(TailOfWeights, ThatIsDrawnOftenIsNone) {
+/// The same cosine, drawn often enough: a step of the weights, not a tail.
+TEST(TailOfWeights, IsAbsentForAFrequentStep) {
     PowerLobe lobe;
     lobe.s = 1e4, lobe.share = 0.02;
     EXPECT_EQ(tail_at(lobe).tail.state, State::right);

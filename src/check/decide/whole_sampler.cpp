@@ -1,5 +1,5 @@
 // Directions exactly on axes, planes and the horizon, and one ulp next to them, as w_o and as w_i: a few calls at each,
-// whose numbers must be usable.
+// which must return usable numbers.
 #include "check/decide/check_sampler.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 bool answers_for(const Traits& traits, Vec3d wo) { return traits.wo != Traits::WoDomain::upper || wo.z > 0; }
 
-/// Some u at each special w_o: the middle, and spread over the cube.
+/// Some u at each special w_o: the centre, and others spread over the cube.
 std::vector<PrimarySample> few_numbers(int count) {
     std::vector<PrimarySample> out;
     for (int i = 0; i < 16; ++i) {
@@ -89,7 +89,7 @@ std::optional<SmallFault> special_places(
 
 namespace {
 
-/// f |cos|^k by channel for pairs, k = 1 for phase functions.
+/// f |cos|^k by channel for pairs; k = 1 for phase functions.
 std::vector<Vec3d> f_of(const SamplerAdapter& adapter, std::span<const Pair> pairs) {
     std::vector<Vec3d> out(pairs.size());
     if (adapter.traits().channels == 3) {
@@ -139,9 +139,9 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
             Draw at;
             at.wi = p.wi;
             if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance))
-                note(out, {}, at, a, out.what), out.first.due = b;
+                note(out, {}, at, a, out.what), out.first.expected = b;
         }
-    // A pair or two in 256 may be where f ends: a rounding of the half vector.
+    // A few of 256 pairs may be at the edge of the support of f, where the half vector is rounded.
     if (out.times <= tolerated_breaks || both_ways(adapter, key) == BothWays::phase_function) return {};
     return out;
 }

@@ -1,5 +1,5 @@
-// A chart of the sphere in which areas are solid angles: t = 1 - cos(theta) in [0, 2], phi in [0, 2 pi). No Jacobian
-// appears anywhere.
+// A chart of the sphere in which areas are solid angles: t = 1 - cos(theta) in [0, 2], phi in [0, 2 pi). No Jacobian is
+// needed.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,12 @@ namespace crescent::check {
 
 inline constexpr double two_pi = 6.283185307179586477;
 
-/// A place on the chart.
+/// A point on the chart.
 struct ChartPoint {
     double t = 0, phi = 0;
 };
 
-/// t = r^2 / (|w| + |z|) does not cancel at the poles. w need not have length 1.
+/// t = r^2 / (|w| + |z|) has no cancellation at the poles. w need not have length 1.
 inline ChartPoint to_chart(Vec3d w) {
     const double r2 = w.x * w.x + w.y * w.y, length = std::sqrt(r2 + w.z * w.z);
     const double a = r2 / (length * (length + std::fabs(w.z)));
@@ -49,16 +49,16 @@ struct ChartRect {
     }
     double width(bool along_phi) const { return along_phi ? phi_width() : theta_width(); }
     double middle(bool along_phi) const { return along_phi ? (phi0 + phi1) / 2 : (t0 + t1) / 2; }
-    /// The place at fractions x and y of the rectangle.
+    /// The point at fractions x and y of the rectangle.
     ChartPoint at(double x, double y) const { return {t0 + (t1 - t0) * x, phi0 + (phi1 - phi0) * y}; }
 };
 
 // ---- Bands of the chart: 64 of equal width in t = 1 - cos(theta) and 64 in azimuth. The leaves of the tree divide
-// both at once, so a thin band, such as an arc of azimuths that is never drawn, is a small part of every leaf that it
-// crosses.
+// both axes at once, so a thin band, such as an arc of azimuths that is never drawn, is a small part of every leaf that
+// it crosses.
 
-/// Bands along each axis: a power of 2, so that pairs of bands make wider ones. Chosen: as fine as the leaves that a
-/// density without detail gets, twice over.
+/// Bands along each axis: a power of 2, so that pairs of bands form wider ones. Chosen: twice as fine as the leaves of
+/// a density without detail.
 inline constexpr std::size_t bands = 64;
 
 /// The axes: t, then phi.
@@ -74,7 +74,8 @@ inline std::size_t band_of(ChartPoint at, std::size_t axis) {
     return axis * bands + std::min(static_cast<std::size_t>(std::max(x, 0.0)), bands - 1);
 }
 
-/// One number for `width` bands of an axis from `first` on, width a power of 2 that divides first; and what they cover.
+/// One number that encodes `width` bands of an axis from `first` on, where width is a power of 2 that divides first;
+/// and the rectangle of these bands.
 constexpr int band_member(std::size_t axis, std::size_t first, std::size_t width) {
     return static_cast<int>(2 * bands * axis + (bands + first) / width);
 }

@@ -15,7 +15,7 @@ namespace {
 bool same_value(double a, double b) { return std::fabs(a - b) <= same_number * std::max(std::fabs(a), std::fabs(b)); }
 bool same_weight(Vec3d a, Vec3d b) { return same_value(a.x, b.x) && same_value(a.y, b.y) && same_value(a.z, b.z); }
 
-/// False where there are too many.
+/// Returns false if there are too many.
 bool add_to(std::vector<DeltaPart>& parts, const Draw& d, Vec3d weight, bool by_weight) {
     const auto at = std::ranges::find_if(parts, [&](const DeltaPart& p) {
         return length(p.wi - d.wi) < same_number && same_value(p.q, d.delta) &&
@@ -31,7 +31,7 @@ bool add_to(std::vector<DeltaPart>& parts, const Draw& d, Vec3d weight, bool by_
     return true;
 }
 
-/// Each comes as often as q says, but for six standard deviations.
+/// Whether each part is drawn as often as its q, within six standard deviations.
 bool all_come_by_q(const std::vector<DeltaPart>& parts, double n) {
     return std::ranges::all_of(parts, [n](const DeltaPart& p) {
         return std::fabs(static_cast<double>(p.drawn) - n * p.q) <= 6 * std::sqrt(n * p.q * (1 - p.q)) + 2;
@@ -52,10 +52,10 @@ const std::vector<DeltaPart>& DeltaParts::parts(double of) const {
 
 namespace {
 
-constexpr double straight_on = unit_length;  // of a direction, to rounding
-constexpr double beside_normal = 0.01;       // radians; refraction bends less than that there
+constexpr double straight_on = unit_length;  // tolerance of a direction
+constexpr double near_normal = 0.01;         // radians; refraction bends less than that there
 
-/// Of the first delta part that goes straight on at a w_o at which an index would bend it.
+/// Power of the first delta part that is transmitted straight at an oblique w_o, where refraction would bend it.
 Vec3d through_holes(Source& source) {
     constexpr std::uint32_t tried = 512;
     Source slanted(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
@@ -85,13 +85,14 @@ std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& p
             else out[c] += carried * flux_factor(source, p.wi, channel);
         }
     if (std::ranges::all_of(onward, [](double v) { return v == 0; })) return out;
-    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < beside_normal && source.adapter.can_draw();
+    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < near_normal && source.adapter.can_draw();
     const Vec3d slanted = at_normal ? through_holes(source) : Vec3d{};
     for (std::size_t c = 0; c < channels; ++c) {
         const int channel = static_cast<int>(c);
-        const double seen = channel_of(slanted, channel);
-        // A pane lets through other shares at other angles: all of it is a hole if half of it goes on there.
-        const double holes = !at_normal || seen > onward[c] / 2 ? onward[c] : seen;
+        const double through_hole = channel_of(slanted, channel);
+        // A pane transmits other shares at other angles: all of it counts as a hole if half of it is transmitted
+        // straight there.
+        const double holes = !at_normal || through_hole > onward[c] / 2 ? onward[c] : through_hole;
         out[c] += holes + (onward[c] - holes) * flux_factor(source, -source.wo, channel);
     }
     return out;

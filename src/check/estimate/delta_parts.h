@@ -1,4 +1,4 @@
-// Delta parts of what is drawn: one direction with one stated probability each, which draws show exactly.
+// Delta parts of the draws: single directions with a stated probability each.
 #pragma once
 
 #include <array>
@@ -9,7 +9,8 @@
 
 namespace crescent::check {
 
-/// q: the probability that its draws state. otherwise: its draws whose weight is not that of the first.
+/// q: the probability stated with its draws. otherwise: number of its draws whose weight differs from that of the
+/// first.
 struct DeltaPart {
     Vec3d wi{};
     double q = 0;
@@ -17,26 +18,26 @@ struct DeltaPart {
     std::uint64_t drawn = 0, otherwise = 0;
 };
 
-/// Gathered from draws one at a time.
+/// Collects delta parts from draws.
 class DeltaParts {
 public:
     void add(const Draw& d, Vec3d weight);
-    /// By direction and q, of `of` draws in all. A direction and q that come with several weights are several parts if
-    /// each comes as often as q says: along the normal three indices refract three channels, chosen alike, to one
-    /// direction.
+    /// The parts by direction and q, among `of` draws in all. A direction and q with several weights are several parts
+    /// if each is drawn as often as q: along the normal three indices refract three channels, chosen with equal
+    /// probability, to one direction.
     const std::vector<DeltaPart>& parts(double of) const;
-    /// There are more than `most_delta_parts`: what has a density is no delta part.
+    /// Whether there are more than `most_delta_parts`, as for a distribution that has a density.
     bool scattered() const { return scattered_; }
     bool empty() const { return alike_.empty(); }
 
 private:
-    std::vector<DeltaPart> alike_, apart_;  // by direction and q; by weight too
+    std::vector<DeltaPart> alike_, apart_;  // by direction and q; also by weight
     bool scattered_ = false, many_weights_ = false;
 };
 
-/// Power by channel that delta parts return of an even light, q times weight, with eta^2 for what is refracted. What
-/// goes straight on, as through a hole, no index scales; along the normal, where a boundary refracts straight on too,
-/// draws at another w_o tell how much of it that is.
+/// Power by channel that delta parts return from a uniform light: q times weight, with eta^2 for refracted parts. A
+/// part that is transmitted straight, as through a hole, is not scaled by an index. Along the normal, where a boundary
+/// also refracts straight, draws at another w_o measure the share of holes.
 std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& parts);
 
 }  // namespace crescent::check

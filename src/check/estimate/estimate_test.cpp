@@ -1,4 +1,4 @@
-// Streams, Sobol nets, the chart, the tree and the integrals, against closed forms.
+// Streams, Sobol nets, the chart, the tree and the integrals, compared with closed forms.
 #include <gtest/gtest.h>
 #include <set>
 
@@ -26,7 +26,7 @@ struct CosinePower : SamplerAdapter {
     double value(double z) const { return z > 0 ? (s + 1) / (2 * pi_value) * std::pow(z, s) : 0; }
 };
 
-TEST(CheckStreams, ShareNoBlockWhicheverFieldOfTheirKeysDiffers) {
+TEST(CheckStreams, KeysThatDifferInAnyFieldShareNoBlock) {
     const StreamKey base{7, 3, 0, 1, Purpose::draws, 2};
     std::vector<StreamKey> keys(7, base);
     keys[1].seed = 8, keys[2].place = 4, keys[3].technique = 1, keys[4].stage = 2, keys[5].purpose = Purpose::points;
@@ -40,13 +40,13 @@ TEST(CheckStreams, ShareNoBlockWhicheverFieldOfTheirKeysDiffers) {
     EXPECT_EQ(blocks.size(), keys.size() * 4096);
 }
 
-TEST(CheckStreams, GiveNumbersThatNoFloatRoundsToOne) {
+TEST(CheckStreams, NumbersDoNotRoundToOneInFloat) {
     EXPECT_LT(static_cast<float>(unit_number(0xffffffffu)), 1.0f);
     EXPECT_GT(unit_number(0), 0);
     EXPECT_EQ(single_number(unit_number(0)), 0x1p-24);
 }
 
-/// Points per cell of all elementary intervals of one shape of a net of 2^m points.
+/// Largest number of points in a cell over all elementary intervals of one shape, for a net of 2^m points.
 int most_in_a_cell(int d0, int d1, int bits0, int bits1, int m, std::uint32_t seed0, std::uint32_t seed1) {
     std::vector<int> count(std::size_t{1} << (bits0 + bits1));
     int most = 0;
@@ -75,7 +75,7 @@ TEST(CheckSobol, PairsOfDimensionsHaveNoMoreThanEightPointsInACell) {  // t <= 3
         for (int b = 0; b < a; ++b) EXPECT_LE(most_in_a_cell(a, b, 5, 5, 10, 1u, 2u), 8) << a << " " << b;
 }
 
-TEST(CheckChart, GoesThereAndBackToARounding) {
+TEST(CheckChart, RoundTripIsExactToRounding) {
     for (double t : {1e-18, 1e-9, 0.3, 1.0, 1.7, 2 - 1e-9})
         for (double phi : {0.0, 1e-9, 2.0, 6.28}) {
             const ChartPoint back = to_chart(from_chart({t, phi}));

@@ -1,4 +1,4 @@
-// Points go through the sampler in batches of whole cells.
+// The points are evaluated in batches of whole cells.
 #include "check/estimate/integrals.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ void LightIntegrals::scale(double by) {
     lost.scale(by), lost_again.scale(by), lit.scale(by), largest_lost *= by;
     for (auto& by_channel : leaves)
         for (Estimate& e : by_channel) e.scale(by);
-    for (WeighedPoint& w : weighed) w.light *= by, w.chance *= by;
+    for (WeightedPoint& w : weighted_points) w.light *= by, w.chance *= by;
 }
 
 void LightIntegrals::add(const LightIntegrals& o) {
@@ -23,19 +23,20 @@ void LightIntegrals::add(const LightIntegrals& o) {
     largest_lost = std::max(largest_lost, o.largest_lost);
     for (std::size_t l = 0; l < leaves.size(); ++l)
         for (std::size_t c = 0; c < 3; ++c) leaves[l][c].add(o.leaves[l][c]);
-    weighed.insert(weighed.end(), o.weighed.begin(), o.weighed.end());
+    weighted_points.insert(weighted_points.end(), o.weighted_points.begin(), o.weighted_points.end());
 }
 
 double flux_factor(const Source& source, Vec3d wi, int channel) {
     if (source.wo.z * wi.z >= 0 || source.traits.importance) return 1;
-    if (!source.traits.eta) return source.unscaled ? 1 : 0;  // 0: not known: what is reflected alone is compared with 1
+    if (!source.traits.eta)
+        return source.unscaled ? 1 : 0;  // 0: unknown, so only the reflected part is compared with 1
     const double eta = channel_of(*source.traits.eta, channel);
     return source.wo.z > 0 ? eta * eta : 1 / (eta * eta);
 }
 
 namespace {
 
-/// The grid of one leaf: rows x columns cells of two points each.
+/// The grid of one leaf: rows x columns cells with two points each.
 struct Grid {
     std::uint32_t leaf = 0;
     int rows = 1, columns = 1;
@@ -43,26 +44,26 @@ struct Grid {
     int cells() const { return rows * columns; }
 };
 
-/// How the points of a pass are shared out: two or four to each leaf, then a part evenly, the rest by the spread of p,
-/// edges worth more. No more than `points` in all where there are two for each leaf.
+/// Distributes the points of a pass: two or four to each leaf, a part evenly, and the rest by the spread of p, with
+/// more points at edges. At most `points` in all if that is at least two for each leaf.
 std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     const std::vector<Leaf>& leaves = plan.tree.leaves();
-    const auto worth = [&](const Leaf& leaf) {
+    const auto weight_of = [&](const Leaf& leaf) {
         return leaf.spread + worth_of_score * leaf.score + (leaf.edge ? plan.tree.rect(leaf).area() * leaf.q / 4 : 0);
     };
     double sum = 1e-300;
-    for (const Leaf& leaf : leaves) sum += worth(leaf);
-    const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs a leaf
+    for (const Leaf& leaf : leaves) sum += weight_of(leaf);
+    const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs in each leaf
     const double rest = std::max(points / 2.0 - least * static_cast<double>(leaves.size()), 0.0);
     std::vector<Grid> out(leaves.size());
-    double due = 0;  // what is left of parts of a pair
+    double carry = 0;  // accumulated fractions of a pair
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const ChartRect& rect = plan.tree.rect(leaves[l]);
         const double share =
-            even_points / static_cast<double>(leaves.size()) + (1 - even_points) * worth(leaves[l]) / sum;
-        due += rest * share;
-        const int pairs = least + static_cast<int>(due);
-        due -= static_cast<int>(due);
+            even_points / static_cast<double>(leaves.size()) + (1 - even_points) * weight_of(leaves[l]) / sum;
+        carry += rest * share;
+        const int pairs = least + static_cast<int>(carry);
+        carry -= static_cast<int>(carry);
         Grid& g = out[l];
         g.leaf = static_cast<std::uint32_t>(l);
         const double square = std::sqrt(pairs * rect.theta_width() / (rect.phi_width() + 1e-300));
@@ -76,7 +77,7 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
 
 class Pass {
 public:
-    /// lost_in: leaves where light was found lost before.
+    /// lost_in: leaves in which lost light was found before.
     Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key, std::vector<std::size_t> lost_in)
         : source_(source), plan_(plan), of_f_(of_f && source.has_f()), stream_(key) {
         out_.light.lost_in = std::move(lost_in);
@@ -89,14 +90,14 @@ public:
         while (first < grids.size()) {
             w_.clear(), chart_.clear();
             std::size_t last = first;
-            for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place(grids[last]);
+            for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place_points(grids[last]);
             p_.resize(w_.size()), f_.assign(w_.size(), {});
             source_.density(w_, p_);
             if (of_f_) source_.f_cos(w_, f_, source_.adapter.has_true_f());
             mis_.assign(w_.size(), 1);
             if (of_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
             std::size_t at = 0;
-            for (std::size_t g = first; g < last; ++g) take(grids[g], at);
+            for (std::size_t g = first; g < last; ++g) add_points(grids[g], at);
             first = last;
         }
         if (of_f_) measure_lost();
@@ -113,20 +114,20 @@ private:
     std::vector<Vec3d> w_, f_;
     std::vector<double> p_, mis_;
 
-    /// f |cos| L there, of three channels their sum; 0 where p or another technique reaches.
-    double lit_at(std::size_t at) const {
+    /// f |cos| L at a point, summed over three channels.
+    double light_at(std::size_t at) const {
         const Vec3d f = f_[at];
         const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
         return y > 0 ? y * source_.radiance(w_[at]) : 0;
     }
     double lost_at(std::size_t at) {
         if (p_[at] > 0) return 0;
-        const double lit = lit_at(at);
+        const double lit = light_at(at);
         return lit > 0 && source_.reached_otherwise(w_[at]) ? 0 : lit;
     }
 
-    /// A thin region where p is 0 is met by a few points, too few to test. In the leaves where p was 0 somewhere,
-    /// points of their own measure what is lost.
+    /// A thin region where p is 0 contains only a few points, too few for a test. Separate points measure the lost
+    /// light in the leaves that have a point with p = 0.
     void measure_lost() {
         std::vector<std::size_t>& in = out_.light.lost_in;
         std::sort(in.begin(), in.end());
@@ -154,7 +155,7 @@ private:
         }
     }
 
-    void place(const Grid& g) {
+    void place_points(const Grid& g) {
         const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[g.leaf]);
         for (int j = 0; j < g.cells(); ++j)
             for (int pair = 0; pair < 2; ++pair) {
@@ -165,7 +166,7 @@ private:
             }
     }
 
-    void take(const Grid& g, std::size_t& at) {
+    void add_points(const Grid& g, std::size_t& at) {
         const Leaf& leaf = plan_.tree.leaves()[g.leaf];
         LeafIntegral& to = out_.leaves[g.leaf];
         const double k = to.per_point = g.per_point;
@@ -178,7 +179,7 @@ private:
                 const double p = p_[at + a];
                 h[a] = plan_.values(leaf, w_[at + a], p);
                 least = std::min(least, p), most = std::max(most, p);
-                lit = lit || (of_f_ && lit_at(at + a) > 0);
+                lit = lit || (of_f_ && light_at(at + a) > 0);
                 if (k * p > heavy_point) out_.heavy.push_back({chart_[at + a], p});
                 second[a] = k * h[a][bridge] * h[a][bridge] * p;
                 to.second += second[a];
@@ -202,7 +203,7 @@ private:
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
     }
 
-    /// Of a pair: values of h p, and of h^2 p times k.
+    /// For a pair of points: values of h p, and of h^2 p times k.
     void add_to_bands(std::size_t at, std::array<double, 2> value, const double (&second)[2], double k) {
         for (std::size_t axis = 0; axis < chart_axes; ++axis) {
             const std::size_t i = band_of(chart_[at], axis), j = band_of(chart_[at + 1], axis);
@@ -221,8 +222,8 @@ private:
         for (std::size_t q = 0; q < integrands; ++q) out_.known_to[q] += unknown * std::fabs(h[q]);
     }
 
-    /// Where the points of a leaf look alike beside another density, their pairs cannot show a strip of it; one point
-    /// in K_l may be of it and not have been met (the rule of succession).
+    /// If the points of a leaf have similar values and the leaf is next to another density, their pairs cannot show a
+    /// strip of that density; one of K_l points may lie in such a strip (the rule of succession).
     void allow_strip(const Leaf& leaf, LeafIntegral& to) {
         const double k = to.per_point, v = k * k * leaf.q * leaf.q / 2;
         const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), off = middle - plan_.middle;
@@ -248,7 +249,7 @@ private:
             if (!l.leaves.empty()) l.leaves[leaf][channel].add_pair(f[0], f[1], k);
         }
         const double lost[2] = {lost_at(at), lost_at(at + 1)};
-        l.lit.add_pair(lit_at(at), lit_at(at + 1), k);
+        l.lit.add_pair(light_at(at), light_at(at + 1), k);
         l.lost.add_pair(lost[0], lost[1], k);
         l.points += 2;
         for (std::size_t a = 0; a < 2; ++a) note_weight(at + a, k);
@@ -257,7 +258,8 @@ private:
     void note_weight(std::size_t at, double k) {
         const double p = p_[at], f = source_.channels() == 3 ? luminance(f_[at]) : f_[at].x;
         const double share = mis_[at] * f * source_.radiance(w_[at]);
-        if (source_.has_density() && p > 0 && share > 0) out_.light.weighed.push_back({share / p, k * share, k * p});
+        if (source_.has_density() && p > 0 && share > 0)
+            out_.light.weighted_points.push_back({share / p, k * share, k * p});
     }
 };
 

@@ -1,5 +1,5 @@
 // The right side of E[h(draw)] = integral of h p: stratified points in the leaves, two in each cell of a grid, so that
-// every cell has a variance of its own. Passes of a staged budget are merged by their numbers of points.
+// each cell has its own variance. Passes of a staged budget are combined in proportion to their numbers of points.
 #pragma once
 
 #include <array>
@@ -14,43 +14,43 @@ namespace crescent::check {
 struct Estimate {
     double value = 0, variance = 0, doubt = 0;
 
-    /// Two points of one cell, each of weight k.
+    /// Adds two points of one cell, each with weight k.
     void add_pair(double a, double b, double k) {
         value += k * (a + b);
         const double v = k * k * (a - b) * (a - b);
         variance += v;
-        doubt += 2.0 / 3 * v * v;  // of v = x^2, x normal: var(v) = 2 E[v]^2, of which v^2 2/3 is an unbiased estimate
+        doubt += 2.0 / 3 * v * v;  // for v = x^2, x normal: var(v) = 2 E[v]^2, of which v^2 2/3 is an unbiased estimate
     }
     void scale(double by) { value *= by, variance *= by * by, doubt *= by * by * by * by; }
     void add(const Estimate& other) { value += other.value, variance += other.variance, doubt += other.doubt; }
 };
 
-/// Of one leaf.
+/// The integrals over one leaf.
 struct LeafIntegral {
     Estimate bridge;         // of h p
-    double second = 0;       // integral of h^2 p: what one draw counts for
-    double solid_angle = 0;  // integral of h where p > 0: what draws spread evenly would give
-    double top = 0;          // the largest p that its points have met
+    double second = 0;       // integral of h^2 p: weight of one draw in the variance
+    double solid_angle = 0;  // integral of h where p > 0: for draws spread uniformly
+    double top = 0;          // largest p at its points
     double per_point = 0;    // weight of one point
-    double known_to = 0;     // what the error of a tabulated p makes of it at most
+    double known_to = 0;     // largest effect of the error of a tabulated p
 };
 
-/// A point where light is: the weight X = f L cos / p of a draw there (of three channels the luminance), with the MIS
-/// weight of the technique, and what the point holds of the integrals of X p and of p.
-struct WeighedPoint {
+/// A point with light: the weight X = f L cos / p of a draw there (the luminance for three channels), with the MIS
+/// weight of the technique, and its contributions to the integrals of X p and of p.
+struct WeightedPoint {
     double x = 0, light = 0, chance = 0;
 };
 
 /// Integrals of f |cos| by channel.
 struct LightIntegrals {
-    std::array<Estimate, 3> all, mean, albedo;    // as it is; bridged with p for `mean`; as flux
+    std::array<Estimate, 3> all, mean, albedo;    // plain; bridged with p for `mean`; as flux
     Estimate lost;                                // times the light, where p is 0
     Estimate lit;                                 // times the light
-    std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, where there is no density to divide the draws by
-    std::vector<WeighedPoint> weighed;            // where p > 0 and X > 0
-    Estimate lost_again;                          // of the leaves where p was 0, by points of their own
-    double largest_lost = 0;                      // what one of these points holds, at most
-    std::vector<std::size_t> lost_in;             // these leaves; those given before a pass are among them
+    std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, if no density divides the draws
+    std::vector<WeightedPoint> weighted_points;   // where p > 0 and X > 0
+    Estimate lost_again;                          // of the leaves with p = 0 at a point, from separate points
+    double largest_lost = 0;                      // largest contribution of one of these points
+    std::vector<std::size_t> lost_in;             // these leaves, including those given before a pass
     double points = 0;
     void scale(double by);
     void add(const LightIntegrals& other);
@@ -63,25 +63,25 @@ struct Integrals {
     ByBand<double> second_by_band{};  // of h^2 p
     LightIntegrals light;
     std::array<double, integrands> even{}, even_square{};  // integrals of h and h^2 where p > 0
-    std::array<double, integrands> known_to{};             // what the error of a tabulated p makes of `sums` at most
-    double domain = 0;  // solid angle of the upper half, and of the lower where p > 0
+    std::array<double, integrands> known_to{};             // largest effect of the error of a tabulated p on `sums`
+    double domain = 0;  // solid angle of the upper hemisphere, and of the lower where p > 0
     double points = 0;
-    std::vector<DensityPoint> heavy;  // points that hold much of the mass each: the tree has missed something there
+    std::vector<DensityPoint> heavy;  // points with a large share of the mass, which the tree does not resolve
 };
 
-/// Adds a pass of about `points` points. of_f: evaluate f at them too.
+/// Adds a pass of about `points` points. of_f: also evaluates f at them.
 void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to);
 
-/// h of the mean: f cos bridged with p, so that no weight counts for more than the usual one; 1 where that cannot be.
+/// h of the mean: f cos bridged with p, so that no weight exceeds the usual one; 1 if that is not possible.
 inline double mean_bridge(double f_cos, double p, double usual, bool bridged) {
     if (!bridged) return 1;
     return p > 0 && usual > 0 ? usual * p / (usual * p + f_cos) : 0;
 }
-/// Whether the mean is bridged: not without a density, nor where h would depend on random answers.
+/// Whether the mean is bridged: not without a density, and not if h would depend on random estimates.
 inline bool is_bridged(const Source& source) {
     return source.has_density() && !source.estimates && !source.f_estimates;
 }
-/// What turns f across the surface from radiance into power; 0 where the index is not known.
+/// The factor from f across the surface, for radiance, to power; 0 if the index is not known.
 double flux_factor(const Source& source, Vec3d wi, int channel);
 
 }  // namespace crescent::check

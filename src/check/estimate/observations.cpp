@@ -1,4 +1,4 @@
-// In batches: draws, then p at the directions, then f where weights are looked at, then what does not agree once more
+// Evaluates in batches: draws, then p at their directions, then f if weights are used, then values that disagree again
 // at neighbouring directions.
 #include "check/estimate/observations.h"
 
@@ -11,13 +11,13 @@
 
 namespace crescent::check {
 
-// ---- A weight that a sampler gives itself counts before f cos / pdf.
+// ---- A weight returned by the sampler has precedence over f cos / pdf.
 
 namespace {
 
 double own_weight(const Source& source, const Draw& d, const Vec3d* f_cos) {
     if (d.weight) return *d.weight;
-    if (!source.has_density()) return 0;  // the pdf of a draw is 1 or 0 then
+    if (!source.has_density()) return 0;  // the pdf of a draw is then 1 or 0
     if (!f_cos) return d.f.value_or(0) * std::fabs(d.wi.z) / d.pdf;
     return (source.channels() == 3 ? luminance(*f_cos) : f_cos->x) / d.pdf;
 }
@@ -43,10 +43,10 @@ void append_weights(
 
 namespace {
 
-/// Draws that are compared with neighbours, nine evaluations each; where there are more, the share counts.
+/// Largest number of draws compared with neighbours, nine evaluations each. Of more draws only the share is used.
 constexpr std::uint64_t most_compared = 1024;
 
-/// A direction moved by a few roundings: eight of them, by 2 and by 8 ulp.
+/// Eight directions within a few roundings of w: moved by 2 and by 8 ulp.
 std::array<Vec3d, 8> neighbours(Vec3d w) {
     std::array<Vec3d, 8> out;
     for (int k = 0; k < 8; ++k) {
@@ -69,25 +69,25 @@ public:
     Observer(Source& source, const Plan& plan, Integrals& integrals, Observations& to)
         : source_(source), plan_(plan), integrals_(integrals), to_(to) {}
 
-    /// Whether every independent draw so far had the pdf that pdf(w) gives: then scrambled draws need not be followed
-    /// by another evaluation.
+    /// Whether the pdf of every independent draw so far equals pdf(w): then scrambled draws need no evaluation of
+    /// pdf(w).
     bool pdf_is_confirmed() const {
         const DrawChecks& c = to_.checks;
         return source_.has_density() && !plan_.estimates && to_.independent > 0 &&
             c.pointwise.times + c.zero.times + c.null_below == 0;
     }
 
-    /// Independent draws.
+    /// Adds independent draws.
     void batch(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, bool with_f) {
         draws_.assign(u.size(), {});
         source_.draw(key, from, u, draws_);
-        look_at(u, -1, with_f);
+        process(u, -1, with_f);
     }
-    /// Draws of one scrambled set.
+    /// Adds draws of one scrambled set.
     void batch(std::span<const PrimarySample> u, int set) {
         draws_.assign(u.size(), {});
         source_.draw(u, draws_);
-        look_at(u, set, false);
+        process(u, set, false);
     }
 
 private:
@@ -97,10 +97,10 @@ private:
     Observations& to_;
     std::vector<Draw> draws_;
     std::vector<Vec3d> w_, f_, true_f_;
-    std::vector<std::size_t> at_;  // of the draws that w_ are of
+    std::vector<std::size_t> at_;  // indices of the draws of w_
     std::vector<double> p_;
 
-    void look_at(std::span<const PrimarySample> u, int set, bool with_f) {
+    void process(std::span<const PrimarySample> u, int set, bool with_f) {
         w_.clear(), at_.clear();
         for (std::size_t i = 0; i < u.size(); ++i)
             if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
@@ -109,28 +109,28 @@ private:
             for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
         } else {
             source_.density(w_, p_);
-            if (source_.estimates) skip_zeros();
+            if (source_.estimates) restore_zeros();
             compare_pdf(u);
         }
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set, u[at_[k]]);
+            if (is_direction(draws_[at_[k]], p_[k])) add_direction(w_[k], p_[k], set, u[at_[k]]);
             else if (set < 0) ++to_.checks.nothing;
     }
 
-    /// A draw below the surface is not nothing because an estimate of p came out as 0 once, where others there do not.
-    void skip_zeros() {
+    /// Restores draws below the surface whose estimated p happens to be 0, if other draws there have p > 0.
+    void restore_zeros() {
         bool below = false;
         for (std::size_t k = 0; k < w_.size(); ++k) below = below || (w_[k].z <= 0 && p_[k] > 0);
         for (std::size_t k = 0; below && k < w_.size(); ++k)
             if (w_[k].z <= 0 && p_[k] == 0) p_[k] = draws_[at_[k]].pdf;
     }
 
-    /// A draw of the density with finite numbers; others are counted.
+    /// Whether the draw is a direction of the density with finite numbers; counts the others.
     bool usable(const PrimarySample& u, const Draw& d, int set) {
         DrawChecks& c = to_.checks;
-        if (set < 0) ++c.looked_at;
+        if (set < 0) ++c.tested;
         if (d.delta != 0) {
             if (set < 0) ++c.deltas, take_delta(d);
             const bool chosen = d.delta > 0 && d.delta <= 1;
@@ -162,37 +162,38 @@ private:
         if (d.delta > 0) to_.deltas.add(d, source_.channels() == 3 ? d.weights : Vec3d{one, one, one});
     }
 
-    /// The draw's own pdf must lie in the range of p over a few roundings of w; p must not be 0 all around.
+    /// Tests that the pdf of a draw is within the range of p over a few roundings of w, and that p is not 0 at all of
+    /// them.
     void compare_pdf(std::span<const PrimarySample> u) {
         if (!source_.has_density() || plan_.estimates) return;
-        std::vector<std::size_t> odd;
+        std::vector<std::size_t> differing;
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
                     same_number * p_[k] + 2 * source_.adapter.tabulation_error(w_[k])))
-                odd.push_back(k);
-        to_.checks.followed += w_.size(), to_.checks.odd += odd.size();
-        if (to_.checks.odd_compared >= most_compared) return;
-        odd.resize(std::min<std::size_t>(odd.size(), most_compared - to_.checks.odd_compared));
-        if (odd.empty()) return;
-        to_.checks.odd_compared += odd.size();
+                differing.push_back(k);
+        to_.checks.followed += w_.size(), to_.checks.differing += differing.size();
+        if (to_.checks.differing_compared >= most_compared) return;
+        differing.resize(std::min<std::size_t>(differing.size(), most_compared - to_.checks.differing_compared));
+        if (differing.empty()) return;
+        to_.checks.differing_compared += differing.size();
         std::vector<Vec3d> around, here;
-        for (std::size_t k : odd) {
+        for (std::size_t k : differing) {
             here.push_back(w_[k]);
             for (Vec3d v : neighbours(w_[k])) around.push_back(v);
         }
         std::vector<double> q(around.size()), stated(here.size());
         source_.density(around, q);
         source_.stated_pdf(here, stated);
-        for (std::size_t j = 0; j < odd.size(); ++j) {
-            const std::size_t k = odd[j];
+        for (std::size_t j = 0; j < differing.size(); ++j) {
+            const std::size_t k = differing[j];
             const Draw& d = draws_[at_[k]];
             const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
             const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
             const double high = std::max({*std::max_element(first, last), p_[k], stated[j]});
-            const bool null_below = d.wi.z <= 0 && high == 0;  // nothing is drawn there
+            const bool null_below = d.wi.z <= 0 && high == 0;  // no density there
             to_.checks.null_below += null_below;
             if (null_below) continue;
-            // Next to an edge beyond which p is 0 it may have a pole there, as of a sphere by its area.
+            // At an edge beyond which p is 0 the density may have a pole, such as that of a sphere sampled by area.
             const bool at_edge = high > 0 && *std::min_element(first, last) == 0;
             if (d.pdf < low * (1 - same_number) || (d.pdf > high * (1 + same_number) && !at_edge))
                 to_.checks.pointwise.add({u[at_[k]], d, p_[k], 0});
@@ -202,7 +203,7 @@ private:
         }
     }
 
-    /// Weights of the draws: what comes with them, else f cos / pdf; compared with that, and summed for the mean.
+    /// Weights of the draws: returned by the sampler, else f cos / pdf. Compares both and adds to the mean.
     void compare_weights(std::span<const PrimarySample> u, int set) {
         const bool evaluated = source_.has_f(), truth = evaluated && source_.adapter.has_true_f();
         f_.assign(w_.size(), {});
@@ -211,7 +212,7 @@ private:
             true_f_.assign(w_.size(), {});
             source_.f_cos(w_, true_f_, true);
         }
-        if (set < 0) to_.weighed += static_cast<double>(u.size());
+        if (set < 0) to_.weighted_draws += static_cast<double>(u.size());
         for (std::size_t k = 0; k < w_.size(); ++k) {
             const Draw& d = draws_[at_[k]];
             if (!is_direction(d, p_[k])) continue;
@@ -224,16 +225,16 @@ private:
         }
     }
 
-    void compare_weight(const PrimarySample& u, const Draw& d, std::size_t k, Vec3d due, int set) {
+    void compare_weight(const PrimarySample& u, const Draw& d, std::size_t k, Vec3d expected, int set) {
         const Vec3d f = f_[k];
         const bool derived = source_.has_density();
-        // The weight may be an estimate too; the mean is compared.
+        // The weight may be an estimate too; its mean is tested.
         const bool random = source_.estimates || source_.f_estimates || source_.traits.own_random;
         const std::size_t leaf = derived ? 0 : plan_.tree.find(to_chart(w_[k]));
         bool wrong = false, untrue = false;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
-            const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(due, c);
+            const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(expected, c);
             const double w = !d.weight ? own : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
             wrong = wrong || (derived && std::fabs(own - w) > same_number * std::max(own, 1e-6) + 1e-9);
             untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
@@ -243,10 +244,10 @@ private:
         }
         ++to_.checks.weights;
         if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
-        if (untrue && !source_.f_estimates) to_.checks.reference_f.add({u, d, f.x, due.x});
+        if (untrue && !source_.f_estimates) to_.checks.reference_f.add({u, d, f.x, expected.x});
     }
 
-    /// Where rounding leaves few directions, one of them may lie on a cut: draws are spread over half a step about it.
+    /// If rounding leaves few directions, a direction may lie on a cut: the draws are spread over half a step about it.
     std::size_t leaf_of(Vec3d w, ChartPoint at, const PrimarySample& u) const {
         const std::size_t l = plan_.tree.find(at);
         const double step = plan_.tree.nodes()[static_cast<std::size_t>(plan_.tree.leaves()[l].node)].step;
@@ -258,7 +259,7 @@ private:
         return plan_.tree.find(to_chart(w + frame.t * (r * math::cos(angle)) + frame.b * (r * math::sin(angle))));
     }
 
-    void take(Vec3d w, double p, int set, const PrimarySample& u) {
+    void add_direction(Vec3d w, double p, int set, const PrimarySample& u) {
         const ChartPoint point = to_chart(w);
         const std::size_t l = leaf_of(w, point, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
@@ -289,7 +290,7 @@ private:
         if (p > alike * integral.top) complete(integral, w, v, p);
     }
 
-    /// The variance of C for points at random is k integral of g^2 = k E[g^2 / p].
+    /// The variance of C for random points is k integral of g^2 = k E[g^2 / p].
     void complete(LeafIntegral& leaf, Vec3d w, const Values& v, double p) {
         if (to_.unmet++ < batch_size) to_.unmet_at.push_back({to_chart(w), p});
         const double draws = to_.independent;
@@ -313,7 +314,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
     Observer observer(source, plan, integrals, to);
-    const bool weighs = source.has_f() || source.adapter.has_drawn_f();
+    const bool with_weights = source.has_f() || source.adapter.has_drawn_f();
     std::vector<PrimarySample> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
@@ -322,7 +323,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     to.independent = std::max(last_draw, before);
     for (std::uint32_t from = before; from < last_draw; from += batch_size) {
         u.resize(std::min(batch_size, last_draw - from));
-        observer.batch(draws, from, u, weighs && from < of_f);
+        observer.batch(draws, from, u, with_weights && from < of_f);
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.adapter.can_draw()) return;

@@ -1,4 +1,4 @@
-// The pilot draws shape the tree and are used for nothing else, so that no bias comes from its choice.
+// The pilot draws shape the tree and have no other use, so that the choice of the tree causes no bias.
 #include "check/estimate/plan.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The first answers are compared with a second round at the same directions, then with neighbours at two distances: a
-// smooth function's differences shrink with the distance, those of an estimate do not.
+// Compares the first answers with a second round at the same directions, then with neighbours at two distances: the
+// differences of a smooth function shrink with the distance, those of an estimate do not.
 #include "check/estimate/scatter.h"
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace crescent::check {
 
-// ---- 64 pairs: an f that is no such function agrees at all of them by chance never, and a glass at next to none.
+// ---- 64 pairs: a function of another kind practically never agrees at all of them by chance.
 
 namespace {
 
 constexpr int pair_count = 64;
-constexpr int fewest = 16;  // pairs with f > 0, fewer show nothing
+constexpr int fewest = 16;  // pairs with f > 0; fewer show nothing
 
 bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_tolerance * std::max(a, b); }
 
@@ -53,22 +53,22 @@ BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
     return same && positive >= fewest ? BothWays::same_f : BothWays::not_known;
 }
 
-// ---- The next change is found by longer and longer moves of one number, then by bisection.
+// ---- Finds the next change by increasing moves of one number, then by bisection.
 
 namespace {
 
 constexpr double longest_move = 0x1p-4, side_move = 0x1p-10;
-constexpr std::ptrdiff_t draws_to_begin = 64;  // without a step among them there is none
-constexpr int halvings = 6;  // of a move that grew fourfold: the jump is then met within 1/16 of the distance to it
+constexpr std::ptrdiff_t draws_to_begin = 64;  // without a step among these draws, no others are tested
+constexpr int halvings = 6;  // bisects the last fourfold move: the jump is then known to 1/16 of the distance to it
 
 class Moved {
-    static constexpr double nowhere = 2;  // further than any direction
+    static constexpr double nowhere = 2;  // larger than any distance of directions
 
 public:
     Moved(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w)
         : source_(source), u_(u), w_(w) {}
 
-    /// The jump from w of each of these draws, with number k moved by its own distance, inwards.
+    /// The jumps of these draws if number k moves inwards by the given distances.
     std::vector<LocalStep> by_moving(const std::vector<std::size_t>& which, int k, const std::vector<double>& by) {
         std::vector<PrimarySample> v;
         for (std::size_t i : which) {
@@ -92,7 +92,7 @@ private:
     const std::vector<Vec3d>& w_;
 };
 
-/// The jump at the next change of each draw, along number k; 0 where the least move changes it, or none does.
+/// The jump at the next change of each draw along number k; 0 if the smallest move already changes it, or none does.
 std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
     std::vector<LocalStep> out(count);
     std::vector<double> same(count), other(count, ulp);
@@ -129,7 +129,7 @@ std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>
         std::vector<std::size_t> jumping;
         for (std::size_t i = 0; i < w.size(); ++i)
             if (steps[i].jump > 0) jumping.push_back(i);
-        std::vector<double> beside(w.size());  // the furthest that another number moves w, by one
+        std::vector<double> beside(w.size());  // largest movement of w by another number, per unit
         for (int j = 0; j < source.numbers() && !jumping.empty(); ++j) {
             if (j == k) continue;
             const std::vector<LocalStep> d = moved.by_moving(jumping, j, std::vector<double>(w.size(), side_move));
@@ -159,7 +159,7 @@ namespace {
 
 constexpr double fine_step = 0x1p-22, coarse_step = 0x1p-18;  // to a neighbour, radians
 
-/// Relative differences of two rounds of answers, where either is not 0.
+/// Relative differences of two rounds of answers where they are not both 0.
 std::vector<double> differences(std::span<const double> a, std::span<const double> b) {
     std::vector<double> out;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -169,15 +169,17 @@ std::vector<double> differences(std::span<const double> a, std::span<const doubl
     return out;
 }
 
-/// Answers to one question differ at three directions at least and at one of twenty: one that differs once is a state.
+/// Whether repeated answers differ at three directions at least and at one of twenty: a single difference is due to
+/// state.
 double of_repetition(const std::vector<double>& apart) {
     const auto differ = std::ranges::count_if(apart, [](double v) { return v > same_number; });
     return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median_of(apart), same_number) : 0;
 }
 
-/// Neighbours differ where that does not shrink with the step: a slope is sixteen times smaller at the fine one.
+/// Neighbours differ if the difference does not shrink with the step: that of a slope is sixteen times smaller at the
+/// fine step.
 double of_neighbours(const std::vector<double>& near, const std::vector<double>& far) {
-    constexpr double no_rounding = 0.1;  // of sharp lobes in single precision
+    constexpr double no_rounding = 0.1;  // larger than the rounding of sharp lobes in single precision
     constexpr std::size_t enough = 16;
     const double small = median_of(near);
     return near.size() >= enough && small > no_rounding && median_of(far) < 4 * small ? small : 0;
@@ -210,13 +212,13 @@ EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     EvaluationNoise out;
     if (!source.adapter.can_draw()) return out;  // a file has one answer for each direction
     const std::vector<Vec3d> at = places_of(source, key), near = beside(at, fine_step), far = beside(at, coarse_step);
-    const SamplerAdapter& anew = uncached(source.adapter);
+    const SamplerAdapter& sampler = uncached(source.adapter);
     const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
         std::vector<Pair> pairs;
         for (Vec3d w : wi) pairs.push_back({source.wo, w});
         std::vector<double> v(wi.size());
         source.count(wi.size());
-        of_f ? anew.f(pairs, v) : anew.pdf(source.technique, pairs, v);
+        of_f ? sampler.f(pairs, v) : sampler.pdf(source.technique, pairs, v);
         return v;
     };
     for (bool of_f : {false, true}) {

@@ -1,4 +1,4 @@
-// Batches go out as they come; numbers that cannot be used are counted and replaced by 0.
+// Passes batches to the sampler as they are; unusable numbers are counted and replaced by 0.
 #include "check/estimate/source.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void Source::draw(std::span<const PrimarySample> u, std::span<Draw> out) {
 
 namespace {
 
-/// Which of eight rows serve a stream.
+/// The rows, of each eight, that a stream uses.
 std::span<const std::uint32_t> rows_for(const StreamKey& key) {
     static constexpr std::uint32_t pilot[] = {0}, first[] = {1, 3, 5, 7}, second[] = {2, 4, 6};
     if (key.purpose == Purpose::pilot) return pilot;

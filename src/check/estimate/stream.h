@@ -1,6 +1,6 @@
-// Random numbers of the engine. A stream is one column of pcg4d (simd/random.h), which maps 128 bits to 128 bits one to
-// one: the key fills three words, the position the fourth. Two streams whose keys differ in any field therefore share
-// no block, and stage 2 cannot reuse the numbers of stage 1.
+// Random numbers of the engine. A stream is one column of pcg4d (simd/random.h), which is a bijection of 128 bits: the
+// key fills three words, the position the fourth. Two streams whose keys differ in any field therefore share no block,
+// and stage 2 cannot reuse the numbers of stage 1.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace crescent::check {
 
-/// What the numbers of a stream are used for.
+/// The use of the numbers of a stream.
 enum class Purpose : std::uint8_t { pilot, tree, points, draws, scrambles, pairs, corners, jacobian, light };
 
-/// Fields, not a hash: distinct by construction. `place` counts the cases of a call; `stage` is 1 or 2; `part` counts
-/// looks or replicates.
+/// Fields, not a hash: distinct by construction. `place` is the index of the case in a call; `stage` is 1 or 2; `part`
+/// is the index of a look or replicate.
 struct StreamKey {
     std::uint32_t seed = 1;
     std::uint16_t place = 0;
@@ -25,7 +25,7 @@ struct StreamKey {
     Purpose purpose = Purpose::pilot;
     std::uint16_t part = 0;
 
-    /// Of a stage that confirms what another one found; `regrown` is the first stage on a second tree.
+    /// The key of a stage that confirms another one; `regrown` is the first stage on a second tree.
     static constexpr std::uint8_t regrown = 9;
     bool confirms() const { return stage != 1 && stage != regrown; }
 
@@ -35,14 +35,14 @@ struct StreamKey {
     }
 };
 
-/// (k + 1/2) / 2^32, at most 1 - 2^-24, so that no float made of it is 1.
+/// (k + 1/2) / 2^32, at most 1 - 2^-24, so that no float conversion of it is 1.
 inline double unit_number(std::uint32_t k) { return std::min((k + 0.5) * 0x1p-32, 1 - 0x1p-24); }
-/// The number as a sampler in single precision takes it: an odd multiple of 2^-24, as the estimator draws them.
+/// The number for a sampler in single precision: an odd multiple of 2^-24, as the estimator draws them.
 inline double single_number(double u) {
     return static_cast<double>(static_cast<std::uint32_t>(u * 0x1p24) | 1u) * 0x1p-24;
 }
 
-/// Numbers in order.
+/// Numbers of a stream in order.
 class Stream {
 public:
     explicit Stream(StreamKey key) : key_(key) {}
@@ -59,7 +59,7 @@ private:
     Vec4u<std::uint32_t> block_{};
 };
 
-/// Above the horizon by `least_z` at least, or below it; even over what is left.
+/// Uniform above the horizon by at least `least_z`, or below it.
 inline Vec3d random_direction(Stream& stream, bool below, double least_z) {
     const double z = least_z + (1 - least_z) * stream.number();
     return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
@@ -77,7 +77,7 @@ inline PrimarySample numbers_at(const StreamKey& key, std::uint32_t i, int count
     return out;
 }
 
-/// The first `count` of them, as a sampler takes them.
+/// The first `count` of them, in the precision of the sampler.
 inline std::vector<PrimarySample> first_numbers(const StreamKey& key, std::uint32_t count, const Traits& traits) {
     std::vector<PrimarySample> u(count);
     for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, std::max(traits.numbers, 1), traits.bits == 24);
@@ -117,7 +117,7 @@ constexpr SobolMatrix sobol_matrix() {
     return v;
 }
 
-/// Point i of the sequence, one dimension of it, as 32 bits.
+/// One dimension of point i of the sequence, as 32 bits.
 inline std::uint32_t sobol(std::uint32_t i, int dimension) {
     static constexpr SobolMatrix matrix = sobol_matrix();
     const auto& v = matrix[static_cast<std::size_t>(dimension)];
@@ -145,10 +145,10 @@ constexpr std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
     return reversed_bits(x);
 }
 
-/// Sets of Sobol points that are scrambled independently of one another: their means are independent replicates.
+/// Sets of Sobol points with independent scrambles, so that their means are independent replicates.
 class ScrambledSobol {
 public:
-    /// `key` names the set.
+    /// `key` selects the set.
     ScrambledSobol(const StreamKey& key, int count, bool single) : count_(count), single_(single) {
         Stream stream(key);
         for (std::uint32_t& s : seeds_) s = stream.bits();

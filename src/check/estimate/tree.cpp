@@ -1,5 +1,5 @@
-// Grown in rounds, so that p is evaluated in batches: all nodes to `even_depth`, then in each round the eighth of the
-// leaves with the highest score.
+// The tree grows in rounds, so that p is evaluated in batches: all nodes to `even_depth`, then in each round the eighth
+// of the leaves with the highest score.
 #include "check/estimate/tree.h"
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace crescent::check {
 
 namespace {
 
-constexpr std::size_t round_share = 8;  // a round cuts one leaf in eight
-constexpr double worthless = 1e-7;      // a score that no cut can use: 1/2000 of the detection floor
-constexpr int fewest_steps = 4;         // measured in a leaf of a mean of its own
-constexpr double fewest_pilots = 8;     // draws of a leaf that is cut by them alone: its halves then have some
+constexpr std::size_t round_share = 8;  // one leaf in eight is cut in a round
+constexpr double least_score = 1e-7;    // a score too small for a cut: 1/2000 of the detection floor
+constexpr int fewest_steps = 4;         // measured steps in a leaf that has its own mean
+constexpr double fewest_pilots = 8;     // draws of a leaf that is cut without a density, so that its halves have some
 
 }  // namespace
 
 class TreeGrowth {
-    /// What is known of a leaf while the tree grows.
+    /// The state of a leaf while the tree grows.
     struct Growing {
         std::vector<DensityPoint> points;
         std::size_t first = 0, last = 0;  // its pilot draws
@@ -69,7 +69,7 @@ private:
     Stream stream_;
     std::vector<Growing> growing_;  // by node
 
-    /// One round of best-first growth; false where it has ended.
+    /// One round of best-first growth; false at the end.
     bool grow_round(std::vector<int>& open) {
         double spread = 0;
         for (int i : open) spread += at(i).spread;
@@ -82,7 +82,7 @@ private:
         std::partial_sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count), open.end(),
             [&](int a, int b) { return at(a).score != at(b).score ? at(a).score > at(b).score : a < b; });
         std::vector<int> chosen(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
-        std::erase_if(chosen, [&](int i) { return at(i).score <= worthless; });
+        std::erase_if(chosen, [&](int i) { return at(i).score <= least_score; });
         if (chosen.empty()) return false;
         const std::vector<int> fresh = cut(chosen);
         for (int i : chosen)
@@ -94,7 +94,7 @@ private:
 
     Growing& at(int node) { return growing_[static_cast<std::size_t>(node)]; }
 
-    /// Which side to cut, by what the halves differ in; none where both are too narrow.
+    /// The side to cut, by the difference of the halves; none if both sides are too narrow.
     std::optional<bool> side_to_cut(const TreeNode& node, const Growing& g) const {
         const ChartRect& rect = node.rect;
         const double least = std::max(least_width, 4 * node.step);
@@ -115,7 +115,7 @@ private:
         return gain[1] > gain[0];
     }
 
-    /// Cuts these leaves in two where that is possible, and rates the halves.
+    /// Cuts these leaves in two if possible, and rates the halves.
     std::vector<int> cut(const std::vector<int>& which) {
         std::vector<int> fresh;
         for (int i : which) {
@@ -148,7 +148,7 @@ private:
         return fresh;
     }
 
-    /// The mean over the draws where it was measured; that of the whole where they are too few.
+    /// The mean step over the draws with a measured step; that of the parent if they are too few.
     double step_in(const Growing& g, double of_whole) const {
         double sum = 0;
         int count = 0;
@@ -161,7 +161,7 @@ private:
         return static_cast<int>(std::ranges::count_if(g.points, [](const DensityPoint& e) { return !e.hint; }));
     }
 
-    /// Evaluates p until each has its points, in one batch, and scores them.
+    /// Evaluates p until each leaf has its points, in one batch, and scores them.
     void rate(const std::vector<int>& which) {
         std::vector<ChartPoint> places;
         std::vector<Vec3d> w;
@@ -181,7 +181,7 @@ private:
         }
     }
 
-    /// Without a density the draws alone say where leaves are needed.
+    /// Without a density only the draws decide where leaves are needed.
     void score_by_draws(double area, Growing& g) const {
         const double drawn = static_cast<double>(g.last - g.first);
         g.score = drawn < fewest_pilots ? 0 : drawn / of_;
@@ -192,21 +192,21 @@ private:
     void score(double area, Growing& g) const {
         if (!source_.has_density()) return score_by_draws(area, g);
         const double n = sampled(g);
-        double mean = 0, square = 0, top = 0, seen = 0;
+        double mean = 0, square = 0, top = 0, largest_known = 0;
         for (const DensityPoint& e : g.points) {
             if (e.hint) {
-                seen = std::max(seen, e.p);
+                largest_known = std::max(largest_known, e.p);
                 continue;
             }
             mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
         }
-        for (std::size_t k = g.first; k < g.last; ++k) seen = std::max(seen, pilots_[k].p);
+        for (std::size_t k = g.first; k < g.last; ++k) largest_known = std::max(largest_known, pilots_[k].p);
         const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
-        const bool missed = seen > alike * top;
-        const double hidden = missed ? std::max(drawn, area * std::min(seen, 1 / area) / n) : 0;
+        const bool missed = largest_known > alike * top;
+        const double hidden = missed ? std::max(drawn, area * std::min(largest_known, 1 / area) / n) : 0;
         g.spread = area * std::sqrt(std::max(0.0, square - mean * mean));
         g.score = g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + hidden;
-        // Not of the draws alone: their noise would make h rough from leaf to leaf, and replicates would gain nothing.
+        // Not from the draws alone: their noise would make h vary from leaf to leaf, and replicates would gain nothing.
         g.q = missed ? (mean + drawn / area) / 2 : mean;
         g.met = g.q > 0;
         if (!g.met) g.q = std::max(drawn, 0.5 / of_) / area;
@@ -239,17 +239,17 @@ void Tree::number_leaves() {
     }
 }
 
-/// A leaf beside one of another density may hide a strip of it that none of its points has met.
+/// Whether a neighbouring leaf has another density, so that this leaf may contain a strip of it without any point.
 bool Tree::at_edge(const Leaf& leaf) const {
-    constexpr double beside = 1e-12, places[2] = {0.25, 0.75};
+    constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
     const ChartRect& r = rect(leaf);
     for (int face = 0; face < 4; ++face)
         for (double x : places) {
             ChartPoint at = r.at(x, x);
-            if (face == 0) at.t = r.t0 - beside;
-            if (face == 1) at.t = r.t1 + beside;
-            if (face == 2) at.phi = r.phi0 - beside < 0 ? r.phi0 - beside + two_pi : r.phi0 - beside;
-            if (face == 3) at.phi = r.phi1 + beside >= two_pi ? r.phi1 + beside - two_pi : r.phi1 + beside;
+            if (face == 0) at.t = r.t0 - outside;
+            if (face == 1) at.t = r.t1 + outside;
+            if (face == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
+            if (face == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
             if (at.t < 0 || at.t > 2) continue;
             const Leaf& neighbour = leaves_[find(at)];
             const double q = neighbour.met ? neighbour.q : 0;

@@ -1,6 +1,5 @@
-// A tree of the sphere for one density, fixed before anything is tested: dyadic cuts of the chart where p varies, where
-// the pilot draws disagree with it and where mass is. Each leaf has a density q_l, from which the test functions are
-// made.
+// A tree of the sphere for one density, built before any test: dyadic cuts of the chart where p varies, where the pilot
+// draws disagree with it and where mass is. Each leaf has a density q_l, from which the test functions are made.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +14,17 @@
 
 namespace crescent::check {
 
-/// A place with p there.
+/// A point with p there.
 struct DensityPoint {
     ChartPoint at;
     double p = 0;
-    bool hint = false;  // met earlier, where p was high: it has no part in averages
-    double step = -1;   // of a draw: what its direction jumps by there; below 0 if that was not measured
+    bool hint = false;  // a point from an earlier tree where p was high: excluded from averages
+    double step = -1;   // of a draw: jump of its direction; below 0 if not measured
 };
 
 struct TreeNode {
     ChartRect rect;
-    int child = -1;  // the second child is the next one; -1: a leaf
+    int child = -1;  // the second child has the next index; -1: a leaf
     int depth = 0, leaf = -1;
     int row = -1;            // its number among nodes down to `replicated_depth`
     bool along_phi = false;  // of its cut
@@ -34,18 +33,18 @@ struct TreeNode {
 
 struct Leaf {
     int node = 0;
-    int coarse = 0;     // row of its ancestor at `replicated_depth`, or of itself where it is higher
+    int coarse = 0;     // row of its ancestor at `replicated_depth`, or of itself if it is higher
     double q = 0;       // 1/sr; positive
     double spread = 0;  // area times the standard deviation of p over its points
-    double score = 0;   // how much more leaves would help here
-    bool met = false;   // p > 0 was met here while the tree grew; else q is what one draw in two pilots would show
+    double score = 0;   // benefit of more leaves here
+    bool met = false;   // p > 0 at a point or draw while the tree grew; otherwise q is that of half a draw in the pilot
     bool edge = false;  // it is met, and a neighbour has a q that differs by more than `alike`
 };
 
 class Tree {
 public:
-    /// `pilots`: directions that were drawn, of `of` draws in all. `hints`: other places at which p was met. step: of
-    /// the sampler's arithmetic, as an angle.
+    /// `pilots`: the directions among `of` pilot draws. `hints`: other points with p. step: of the sampler's
+    /// arithmetic, as an angle.
     Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
         double step, const CheckBudget& budget, const StreamKey& key);
 

@@ -1,5 +1,5 @@
-// Candidates are tried in the order of their likelihood; the first that passes the check in place of p is the cause,
-// unless another passes that draws tell no better.
+// Tries candidates in order of likelihood. The first that passes the check in place of p is the cause, unless another
+// one passes that the draws cannot distinguish from it.
 #include "check/explain/causes.h"
 
 #include <algorithm>
@@ -17,21 +17,22 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t most_places = 2, most_checks = 4;
-constexpr double least_lead = 8;  // nats over all draws by which a cause beats another: e^-8
+constexpr double least_lead = 8;  // lead in nats over all draws at which a cause is preferred: e^-8
 constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
-/// Shares of the divergence that are enough where nothing explains all of it: of frames, in which a table that is read
-/// in another order is not wholly known; of what has a fitted number, which replicates know better than the fit.
-constexpr double most_of_it = 0.4, nearly_all = 0.9;
-/// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and a
-/// likelihood from that of p for what explains a part.
+/// Shares of the divergence that are sufficient if no cause explains all of it: for a frame, because a table that is
+/// read in another order may not be known exactly; for a fitted number, because replicates are more precise than the
+/// fit.
+constexpr double enough_for_frame = 0.4, enough_for_fit = 0.9;
+/// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and by which
+/// the likelihood must exceed that of p for a partial cause.
 constexpr double clear_errors = 8;
 
-/// A candidate, with what is said of it once it has passed.
+/// A candidate, and a function that describes it as a cause.
 struct Candidate {
     Hypothesis hypothesis;
     std::function<Cause(const Hypothesis&)> make_cause{};
-    double in_part = 2;  // named too if it explains this share of the divergence; above 1: only if it passes
-    int plainness = 0;   // of two that say the same the plainer is named
+    double in_part = 2;  // also named if it explains this share of the divergence; above 1: only if it passes
+    int preference = 0;  // of two equivalent candidates the one with the larger value is named
 };
 
 std::optional<Candidate> constant_candidate(std::span<const Place> places) {
@@ -98,7 +99,7 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     } else if (most > 1.02 * least) times = " and a constant at each w_o";
     return fmt::format("Draws follow p {} {}{}{} (fitted exponent {}): {} {} in p.", exponent > 0 ? "times" : "over",
         f.name, power, times, with_error(f.fitted, 1.96 * f.error), f.name,
-        exponent > 0 ? "is missing" : "is once too often");
+        exponent > 0 ? "is missing" : "occurs once too often");
 }
 
 Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
@@ -106,7 +107,7 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
     out.hypothesis = f.hypothesis;
     const bool no_constant =
         std::ranges::all_of(f.hypothesis.constants, [](double c) { return std::fabs(c - 1) < 0.01; });
-    out.plainness = (std::fabs(f.exponent) == 1) + no_constant;
+    out.preference = (std::fabs(f.exponent) == 1) + no_constant;
     out.make_cause = [f, places](const Hypothesis& h) {
         return Cause{f.name, f.exponent, f.error, factor_sentence(f, h, places)};
     };
@@ -114,7 +115,7 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
 }
 
 Candidate candidate_of_power(FactorHypothesis f) {
-    Candidate out{f.hypothesis};  // much that is no power is nearly one
+    Candidate out{f.hypothesis};  // many densities that are no power of p are nearly one
     out.make_cause = [f](const Hypothesis&) {
         return Cause{"p", f.exponent, f.error,
             fmt::format("Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
@@ -125,7 +126,7 @@ Candidate candidate_of_power(FactorHypothesis f) {
 }
 
 Candidate candidate_of(const Hypothesis& frame) {
-    Candidate out{frame, {}, most_of_it, -frame.place};
+    Candidate out{frame, {}, enough_for_frame, -frame.place};
     out.make_cause = [name = frame.name](const Hypothesis& h) {
         return Cause{name, 0, 0,
             h.explained < 0.9 ? fmt::format("{:.0f} % of the difference is explained by {} between draws and p.",
@@ -136,7 +137,7 @@ Candidate candidate_of(const Hypothesis& frame) {
 }
 
 Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, bool about_z) {
-    Candidate out{turn.hypothesis, {}, about_z ? most_of_it : nearly_all};
+    Candidate out{turn.hypothesis, {}, about_z ? enough_for_frame : enough_for_fit};
     out.make_cause = [turn, places, about_z](const Hypothesis& h) {
         std::size_t most = 0;
         for (std::size_t k = 1; k < turn.turns.size(); ++k)
@@ -171,7 +172,7 @@ void sort_by_gain(Candidates& all) {
     std::ranges::sort(all, std::greater<>(), [](const Candidate& c) { return c.hypothesis.gain; });
 }
 
-/// Causes without a number of their own but a constant.
+/// Causes without a fitted number except a constant.
 Candidates plain_candidates(std::span<const Place> places) {
     Candidates out;
     add_if(out, constant_candidate(places));
@@ -182,7 +183,7 @@ Candidates plain_candidates(std::span<const Place> places) {
     return out;
 }
 
-/// Causes with an angle, an exponent or a share that is fitted.
+/// Causes with a fitted angle, exponent or share.
 Candidates fitted_candidates(std::span<const Place> places) {
     Candidates out;
     if (places[0].traits.wo == Traits::WoDomain::none)
@@ -193,7 +194,7 @@ Candidates fitted_candidates(std::span<const Place> places) {
     if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_errors * power->error)
         out.push_back(candidate_of_power(std::move(*power)));
     for (const Leak& leak : leak_hypotheses(places)) {
-        Candidate c{leak.hypothesis, {}, nearly_all};
+        Candidate c{leak.hypothesis, {}, enough_for_fit};
         c.make_cause = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
         out.push_back(std::move(c));
     }
@@ -201,7 +202,7 @@ Candidates fitted_candidates(std::span<const Place> places) {
     return out;
 }
 
-/// The one that passes, if none that is as likely passes too.
+/// The candidate that passes, if no other of similar likelihood passes too.
 std::optional<Cause> passing(Candidates& all, std::span<const Place> places, bool& several) {
     Candidate* found = nullptr;
     std::size_t checks = 0;
@@ -211,9 +212,9 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
             const double by_chance = least_lead / std::min(found->hypothesis.draws, c.hypothesis.draws);
             if (less > std::max({3 * found->hypothesis.error, 3 * c.hypothesis.error, by_chance})) break;
             if (are_equivalent(found->hypothesis, c.hypothesis, places)) {
-                const bool plainer = c.plainness > found->plainness;
-                const std::string other = plainer ? found->hypothesis.name : c.hypothesis.name;
-                if (plainer) c.hypothesis.same = found->hypothesis.same, found = &c;
+                const bool preferred = c.preference > found->preference;
+                const std::string other = preferred ? found->hypothesis.name : c.hypothesis.name;
+                if (preferred) c.hypothesis.same = found->hypothesis.same, found = &c;
                 found->hypothesis.same += " (or " + other + ", which is the same here)";
                 continue;
             }
@@ -228,7 +229,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
     return found->make_cause(found->hypothesis);
 }
 
-/// What explains most of a difference that nothing explains wholly, by twice as much as anything else.
+/// A cause for most of a difference that no candidate explains completely, at least twice as much as any other.
 std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     Candidate* best = nullptr;
     for (Candidate& c : all) {
@@ -246,7 +247,7 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     return best->make_cause(best->hypothesis);
 }
 
-/// What the sampling map draws over p, by its derivatives at a few points of each place.
+/// The density of the sampling map over p, from its derivatives at a few points of each place.
 std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     std::vector<KnownRatio> out;
     for (const Place& place : places) {
@@ -258,8 +259,8 @@ std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     return out;
 }
 
-/// A constant or factor that nine of ten points of the map show: without noise, so that nothing is as likely.
-std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<const Place> places) {
+/// A constant or factor at nine of ten points of the map. They have no noise, so no other cause is as likely.
+std::optional<Cause> cause_from_map(std::span<const KnownRatio> ratios, std::span<const Place> places) {
     const std::vector<Factor> factors = factors_for(places[0].traits, places[0].check_case->light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c) return {};
@@ -278,7 +279,8 @@ std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<
     return candidate->make_cause(candidate->hypothesis);
 }
 
-/// What is drawn is at least what the map draws at one u: p over that is nowhere below a constant that p has too much.
+/// The density of the draws is at least that of the map at one u, so p over the latter is nowhere below a constant
+/// factor of p.
 bool can_be_constant(std::span<const KnownRatio> ratios, const Cause& constant) {
     const double off = std::fabs(math::log(constant.exponent));
     double below = 0;
@@ -289,7 +291,7 @@ bool can_be_constant(std::span<const KnownRatio> ratios, const Cause& constant) 
 
 std::optional<Cause> explained_by(std::span<const Place> places) {
     const std::vector<KnownRatio> ratios = map_ratios(places);
-    if (std::optional<Cause> c = shown_by_map(ratios, places)) return c;
+    if (std::optional<Cause> c = cause_from_map(ratios, places)) return c;
     Candidates plain = plain_candidates(places);
     bool several = false;
     if (std::optional<Cause> c = passing(plain, places, several); c || several) {
@@ -303,17 +305,18 @@ std::optional<Cause> explained_by(std::span<const Place> places) {
     return in_part(plain, places);
 }
 
-/// Draws that cannot be used, and draws where p is 0, are all that masses differ by: their own findings say so.
-bool odd_draws_explain(std::span<const Place> places) {
+/// Whether unusable draws and draws where p is 0 explain the difference of the masses: these have their own findings.
+bool unusable_draws_explain(std::span<const Place> places) {
     bool any = false;
     for (const Place& place : places) {
         const DrawChecks& c = place.at->observations.checks;
         const auto share = [](std::uint64_t a, double of) { return static_cast<double>(a) / std::max(of, 1.0); };
-        // Unusable draws are counted among all; where p is 0 only some of those that pdf(w) contradicts are looked at.
+        // Unusable draws are counted among all draws. Where p is 0, only a part of the draws that contradict pdf(w) is
+        // compared.
         const double unusable =
-                         share(c.invalid.times, static_cast<double>(c.looked_at) + place.at->observations.scrambled),
-                     at_zero = share(c.zero.times, static_cast<double>(c.odd_compared)) *
-            share(c.odd, static_cast<double>(c.followed));
+                         share(c.invalid.times, static_cast<double>(c.tested) + place.at->observations.scrambled),
+                     at_zero = share(c.zero.times, static_cast<double>(c.differing_compared)) *
+            share(c.differing, static_cast<double>(c.followed));
         const MassRatio m = mass_ratio(*place.at);
         const double off = m.claimed - m.drawn - (unusable - at_zero);
         any = any || unusable + at_zero > detection_floor;
@@ -329,7 +332,7 @@ std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const Chec
         std::ranges::any_of(outcome.check_cases, [&](std::size_t i) { return check_cases[i].adapter->serial(); });
     const std::vector<Place> places = places_of(check_cases, outcome, most_places, few ? draws_of_few : draws_of_many);
     if (places.empty()) return weight_cause(check_cases, outcome);
-    if (odd_draws_explain(places)) return {};
+    if (unusable_draws_explain(places)) return {};
     if (std::optional<Cause> c = curve_cause(places)) return c;
     if (std::optional<Cause> c = explained_by(places)) return c;
     return unreached_cause(places);

@@ -1,4 +1,4 @@
-// Small samplers with one fault each, and the cause that is named for it; and faults for which none may be named.
+// Small samplers with one fault each and the named cause, and faults for which no cause may be named.
 #include "check/explain/causes.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double pi = two_pi / 2;
 
-using Sample = std::function<Vec3d(Vec3d wo, const PrimarySample& u)>;  // {} where nothing is drawn
+using Sample = std::function<Vec3d(Vec3d wo, const PrimarySample& u)>;  // {} for no sample
 using Density = std::function<double(Vec3d wo, Vec3d wi)>;
 
 struct Made : SamplerAdapter {
@@ -99,7 +99,7 @@ TEST(CheckCauses, NamesAConstantWithItsMeaning) {
     EXPECT_NEAR(r.cause->exponent, pi, 0.01);
 }
 
-TEST(CheckCauses, NamesAFactorThatIsMissingOrThereTwice) {
+TEST(CheckCauses, NamesAMissingOrRepeatedFactor) {
     expect_cause(checked(made(cosine_draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / pi : 0; })), "cos theta_i");
     expect_cause(checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * w.z; })), "cos theta_i");
     const auto lobe = [](Vec3d o, const PrimarySample& u) { return power_draw(mirror(o), 20, u); };
@@ -156,21 +156,21 @@ TEST(CheckCauses, MeasuresALeak) {
     EXPECT_NEAR(r.cause ? r.cause->exponent : 0, 0.02, 0.004) << r.text();
 }
 
-TEST(CheckCauses, SaysThatANumberHasNoEffect) {
+TEST(CheckCauses, ReportsANumberWithoutEffect) {
     const auto draw = [](Vec3d o, const PrimarySample& u) { return cosine_draw(o, PrimarySample{u[0], 0.3}); };
     const Result r = checked(made(draw, cosine_pdf));
     expect_cause(r, "curve");
     EXPECT_NE(r.text().find("u2 has no effect"), std::string::npos);
 }
 
-TEST(CheckCauses, SaysWherePIsPositiveAndNothingIsDrawn) {
+TEST(CheckCauses, ReportsPositivePWithoutDraws) {
     const double density = 1 / (two_pi * 0.05);
     const auto draw = [](Vec3d, const PrimarySample& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };
     const Result r = checked(made(draw, [density](Vec3d, Vec3d) { return density; }, 2, Traits::WoDomain::none));
     expect_cause(r, "unreached");
 }
 
-TEST(CheckCauses, NamesWhatIsWrongWithWeights) {
+TEST(CheckCauses, NamesTheFaultOfWeights) {
     Made m = made(cosine_draw, cosine_pdf);
     m.f_value = [](Vec3d, Vec3d w) { return w.z > 0 ? 0.5 / pi : 0; };
     m.weights = [](Vec3d, Vec3d w) { return Vec3d{0.5 / w.z, 0, 0}; };
@@ -183,8 +183,8 @@ TEST(CheckCauses, NamesWhatIsWrongWithWeights) {
     EXPECT_NE(r.text().find("0.5 = 1/2"), std::string::npos) << r.text();
 }
 
-TEST(CheckCauses, NamesNoneWhereNothingOnTheListIsWrong) {
-    // A density with a bump, and one that is 5 % off over an eighth of the sphere.
+TEST(CheckCauses, NamesNoneForOtherFaults) {
+    // A density with a bump, and one with an error of 5 % over an eighth of the sphere.
     const auto bump = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (1 + 0.3 * math::sincos(9 * w.x).sin); };
     const auto patch = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (w.x > 0 && w.y > 0 ? 1.05 : 1.0); };
     for (const Density& p : {Density(bump), Density(patch)}) {
@@ -194,7 +194,7 @@ TEST(CheckCauses, NamesNoneWhereNothingOnTheListIsWrong) {
     }
 }
 
-TEST(CheckCauses, AreSaidOnceWithTheirVerdict) {
+TEST(CheckCauses, AppearOnceWithTheirVerdict) {
     const Result r =
         checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return 2 * cosine_pdf(o, w); }), {{10, 0}, {60, 90}});
     int message = 0;
@@ -206,7 +206,7 @@ TEST(CheckCauses, AreSaidOnceWithTheirVerdict) {
     EXPECT_EQ(message, 1);
 }
 
-TEST(CheckText, GivesAsManyDigitsAsAreKnown) {
+TEST(CheckText, PrintsTheSignificantDigits) {
     EXPECT_EQ(with_error(0.975366, 0.0002), "0.9754 +- 0.0002");
     EXPECT_EQ(with_error(3.14163, 0.000123), "3.14163 +- 0.00012");
     EXPECT_EQ(with_error(42.4, 3), "42 +- 3");

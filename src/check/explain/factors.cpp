@@ -14,7 +14,7 @@ namespace crescent::check {
 
 namespace {
 
-/// A boundary seen from w_o's side; eta = index beyond over here.
+/// A boundary in the orientation of w_o; eta = index on the other side over the index on this side.
 struct SeenBoundary {
     double below_over_above;
     double eta(Vec3d wo) const { return wo.z > 0 ? below_over_above : 1 / below_over_above; }
@@ -126,13 +126,13 @@ std::string number_name(double value, double known_to, const Traits& traits) {
     return "";
 }
 
-// ---- An exponent follows by least squares of logarithms, its trimmed tenth left out; what counts is how many ratios
-// agree with the simple exponent next to it.
+// ---- The exponent is fitted by least squares of logarithms without the tenth with the largest residuals; the
+// criterion is the share of ratios that agree with the nearest simple exponent.
 
 namespace {
 
-/// A ratio agrees if it is off by less than this and than a tenth of how far the ratios are from 1 at most, beside its
-/// own error: of what is nearly constant much looks alike.
+/// A ratio agrees if its error, besides its own uncertainty, is below `agrees` and below a tenth of the typical
+/// distance of the ratios from 1: many factors fit ratios that are nearly constant.
 constexpr double agrees = 2e-3, part_that_agrees = 0.1, most_agree = 0.9, to_half = 0.05;
 constexpr std::size_t fewest_ratios = 40;
 
@@ -142,7 +142,7 @@ double median(std::vector<double> v) {
     return *middle;
 }
 
-/// The slope of y over x, twice without the tenth that is furthest off.
+/// The slope of y over x after removing, twice, the tenth with the largest residuals.
 double slope_of(std::vector<std::pair<double, double>> points) {
     double slope = 0;
     for (int round = 0; round < 3; ++round) {
@@ -159,7 +159,7 @@ double slope_of(std::vector<std::pair<double, double>> points) {
     return slope;
 }
 
-/// ln ratio = ln constant + exponent x: the constant, and the share that agrees.
+/// Fits ln ratio = ln constant + exponent x: the constant, and the share of ratios that agree.
 RatioCause agreeing(const std::vector<double>& logs, const std::vector<double>& x, double exponent, double close,
     std::span<const KnownRatio> ratios) {
     std::vector<double> rest;

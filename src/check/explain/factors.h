@@ -1,4 +1,4 @@
-// Candidate factors by which a density, a weight or f may be off, as functions of the directions.
+// Candidate factors for an error of a density, a weight or f, as functions of the directions.
 #pragma once
 
 #include <functional>
@@ -13,27 +13,29 @@ namespace crescent::check {
 
 struct Factor {
     std::string name;
-    /// Positive; 0 where it says nothing. m: the half vector, of refraction across a boundary whose index is declared.
+    /// Positive; 0 if it is not defined. m: the half vector; for refraction across a boundary with a declared index.
     std::function<double(Vec3d wo, Vec3d wi)> value;
-    /// The same factor times a known number is what people leave out: 4 (w_o.m) is "w_o.m" with 4.
+    /// The constant that is often omitted together with the factor: for "w_o.m" it is 4, from 4 (w_o.m).
     double usual_constant = 1;
-    /// Any exponent can be what is wrong (a roughness, an exponent), not only a simple one.
+    /// Whether any exponent is possible (a roughness, an exponent), not only a simple one.
     bool any_exponent = false;
 };
 
-/// What a sampler's traits and light allow; no index is assumed that is not declared.
+/// The factors that apply to a sampler's traits and light. An index is used only if it is declared.
 std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light);
 
-/// The microfacet's normal that leads from wo to wi, or its opposite: of a reflection, or of a refraction, eta = index
-/// beyond over here (Walter et al. 2007, (13), (16)). Unit; n where the two are opposite.
+/// The microfacet normal between wo and wi, or its opposite: for a reflection, or for a refraction with eta = index on
+/// the other side over the index on this side (Walter et al. 2007, (13), (16)). Unit length; n if the two directions
+/// are opposite.
 Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta);
 
-/// "2", "1/pi", "eta^2"; "" where it is no known number. known_to: relative.
+/// "2", "1/pi", "eta^2"; "" for an unknown number. known_to: relative.
 std::string number_name(double value, double known_to, const Traits& traits);
 
-// ---- Ratios that are known without noise, as of a weight over f cos / p at a draw: which constant or factor they are.
+// ---- Ratios without noise, such as that of a weight to f cos / p at a draw, and the constant or factor that they
+// have.
 
-/// What was given over what is due for one pair of directions; positive.
+/// The ratio of a given to the expected value for one pair of directions; positive.
 struct KnownRatio {
     Vec3d wo{}, wi{};
     double value = 1;
@@ -46,12 +48,13 @@ struct RatioCause {
     double explained = 0;  // share of the ratios
 };
 
-/// Nine of ten are a constant, or a constant times a simple power of one factor; none where half of them are 1.
+/// A constant, or a constant times a simple power of one factor, if nine of ten ratios agree with it; none if half of
+/// them are 1.
 std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std::span<const Factor> factors);
 
-// ---- The regression of a check's counts on candidate factors: which factor, with which exponent, and which constants.
+// ---- The regression of the counts of a check on candidate factors: the factor, its exponent, and the constants.
 
-/// A factor that draws follow besides p, with its exponent: draws ~ constant p factor^exponent.
+/// A factor of the density of the draws besides p, with its exponent: draws ~ constant p factor^exponent.
 struct FactorHypothesis {
     Hypothesis hypothesis;
     std::string name;
@@ -59,20 +62,19 @@ struct FactorHypothesis {
     double usual_constant = 1;
 };
 
-/// Draws follow p times a power of a factor, and a free constant.
+/// Draws follow p times a power of a factor, with a free constant.
 Hypothesis times(const Factor& factor, double exponent);
-/// Single factors of largest likelihood first, those with a simple exponent.
+/// Single factors with a simple exponent, the largest likelihood first.
 std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places);
 /// Draws follow a power of p.
 std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places);
 
-// ---- Draws in another frame than p: mirrored, axes exchanged, turned. The sampler is asked for p at transformed
-// directions.
+// ---- Draws in another frame than p: mirrored, axes exchanged, rotated. p is evaluated at transformed directions.
 
-/// The reflections, exchanges and turns that have a name, of largest likelihood first.
+/// Reflections, exchanges and rotations that have a name, the largest likelihood first.
 std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places);
 
-/// The turn of largest likelihood at each place, found from none, and about the z axis from any angle.
+/// The rotation of largest likelihood at one place, searched from the identity; about the z axis from any angle.
 struct Turn {
     Vec3d by{};        // axis times angle, radians
     double error = 0;  // of the angle, one standard error
@@ -80,7 +82,7 @@ struct Turn {
 struct FoundTurn {
     Hypothesis hypothesis;
     std::vector<Turn> turns;  // by place
-    /// Each angle exceeds its error by far.
+    /// Whether each angle exceeds its error by far.
     bool is_clear() const {
         constexpr double errors = 5;
         return std::ranges::all_of(
@@ -88,12 +90,12 @@ struct FoundTurn {
     }
 };
 std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places);
-/// About z by one angle at all places.
+/// A rotation about z by the same angle at all places.
 std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places);
 
-// ---- Lobes that one random number chooses among: each is drawn by itself, and p is compared with their sum.
+// ---- Lobes selected by one random number: each is drawn separately, and p is compared with their sum.
 
-/// An interval of the number that chooses.
+/// An interval of the number that selects a lobe.
 struct LobeInterval {
     double from = 0, to = 1;
     double share() const { return to - from; }
@@ -103,14 +105,14 @@ struct LobeChooser {
     std::vector<LobeInterval> lobes;
 };
 
-/// The one number that chooses among two to eight lobes; none where no number does, or several do.
+/// The number that selects among two to eight lobes; none if no number or several numbers do.
 std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key);
-/// Lobes are drawn with other probabilities than p has them with.
+/// Lobes are drawn with other probabilities than those in p.
 std::optional<Cause> lobe_cause(std::span<const Place> places);
 
-// ---- Where draws fall: a share of them spread evenly, none where p is positive, all on a curve.
+// ---- The location of the draws: a share of them is spread uniformly, none where p is positive, or all on a curve.
 
-/// A share of the draws is spread evenly over the sphere, or over the upper half, and p does not have it.
+/// A share of the draws is spread uniformly over the sphere or the upper hemisphere, and p does not include it.
 struct Leak {
     Hypothesis hypothesis;
     double share = 0, error = 0;
@@ -119,17 +121,17 @@ struct Leak {
 std::vector<Leak> leak_hypotheses(std::span<const Place> places);
 std::string leak_sentence(const Leak& leak);
 
-/// Numbers that change no draw leave fewer than two.
+/// A curve, if the numbers that change no draw leave fewer than two.
 std::optional<Cause> curve_cause(std::span<const Place> places);
-/// p is positive where nothing is drawn.
+/// p is positive where there are no draws.
 std::optional<Cause> unreached_cause(std::span<const Place> places);
 
-// ---- What explains weights, f and densities that come with the draws: their ratio to what they ought to be is known
+// ---- Causes for weights, f and densities that are returned with the draws: their ratio to the expected value is known
 // at every draw, without noise.
 
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
 
 /// "Weights are f cos / p over cos theta_i and a constant 0.5 = 1/2."
-std::string ratio_sentence(const char* given, const char* due, const RatioCause& cause, const Traits& traits);
+std::string ratio_sentence(const char* given, const char* expected, const RatioCause& cause, const Traits& traits);
 
 }  // namespace crescent::check

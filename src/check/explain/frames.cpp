@@ -1,5 +1,5 @@
-// Named frames are tried on a few hundred draws; turns are looked for on the tree's own densities first, which costs no
-// evaluations, and then with p itself.
+// Named frames are tested with a few hundred draws. Rotations are searched first with the densities of the tree, which
+// costs no evaluations, and then with p itself.
 #include "check/explain/factors.h"
 
 #include <algorithm>
@@ -12,17 +12,17 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t draws_to_climb = 512;
-constexpr std::size_t most_frames = 4;  // that are looked at closely
+constexpr std::size_t most_frames = 4;  // that are tested further
 
-/// A frame that is taken for another: p there times the ratio of areas is the density of the draws.
+/// A frame used in place of another: p in that frame times the ratio of areas is the density of the draws.
 struct NamedFrame {
     const char* name;
     Vec3d (*of)(Vec3d);
-    double (*area)(Vec3d) = nullptr;  // none: areas stay
-    bool of_lights = false;           // where no normal stands apart
+    double (*area)(Vec3d) = nullptr;  // null: areas do not change
+    bool of_lights = false;           // only if no normal is distinguished
 };
 
-/// theta and phi / 2 exchanged, as in a table whose rows and columns are.
+/// theta and phi / 2 exchanged, as in a table with rows and columns exchanged.
 Vec3d transposed(Vec3d w) {
     const double theta = math::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
     double phi = math::atan2(w.y, w.x);
@@ -55,7 +55,7 @@ constexpr NamedFrame named_frames[] = {{"the frame mirrored in y", [](Vec3d w) {
 
 enum Which { of_wo = 1, of_wi = 2, of_both = 3 };
 
-/// Where a draw counts as nothing because the pdf with it is 0, there is no density.
+/// Sets the density to 0 where p is 0: the pdf of a draw there is 0, so it counts as no sample.
 void clear_where_zero(const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> density) {
     std::vector<double> p(at.size());
     s.exact_pdf(technique, at, p);
@@ -81,14 +81,14 @@ Hypothesis in_frame(const NamedFrame& frame, int which, bool at_zero) {
     return h;
 }
 
-/// w_o under the surface, and directions in place of w_o where there is none, are not asked for.
+/// A w_o below the surface, or a transformed w_o of a sampler without w_o, cannot be evaluated.
 bool can_be_tested(const NamedFrame& frame, int which, const Traits& traits) {
     if (traits.wo == Traits::WoDomain::none) return which == of_wi;
     if (frame.of_lights) return false;
     return !(which & of_wo) || traits.wo == Traits::WoDomain::both || frame.of({0, 0, 1}).z > 0;
 }
 
-/// By the leaves' densities and all draws of the check.
+/// Uses the densities of the leaves and all draws of the check.
 void score_by_tree(const NamedFrame& frame, std::span<const Place> places, Hypothesis& h) {
     Sums gain;
     double draws = 0;
@@ -116,7 +116,7 @@ Vec3d rotated(Vec3d w, Vec3d by) {
     return w * r.cos + cross(axis, w) * r.sin + axis * (dot(axis, w) * (1 - r.cos));
 }
 
-/// Mean log likelihood where the draws are those of p turned by `by`.
+/// Mean log likelihood of the draws if they are those of p rotated by `by`.
 class Likelihood {
 public:
     Likelihood(const Place& place, std::size_t most) : place_(place), count_(std::min(most, place.w.size())) {}
@@ -135,7 +135,7 @@ public:
             if (!std::isfinite(v)) v = 0;
         return place_.mean_log(p);
     }
-    /// Standard error of the angle, from the curvature about it.
+    /// Standard error of the angle, from the curvature of the likelihood.
     double error_of(Vec3d by, double step) const {
         const double angle = std::sqrt(dot(by, by));
         const Vec3d axis = angle > 0 ? by * (1 / angle) : Vec3d{0, 0, 1};
@@ -151,7 +151,7 @@ private:
     std::size_t count_;
 };
 
-/// Steps along the given axes, halved where none of them helps.
+/// Coordinate search along the given axes; halves the step if no step improves the likelihood.
 template <class L>
 Vec3d climb(Vec3d from, std::span<const Vec3d> axes, double step, double least, const L& likelihood) {
     double best = likelihood(from);
@@ -167,11 +167,11 @@ Vec3d climb(Vec3d from, std::span<const Vec3d> axes, double step, double least, 
     return from;
 }
 
-/// An angle of which p varies over a lobe: of a lobe of density p, 1 / sqrt(p).
+/// An angle over which p varies within a lobe: 1 / sqrt(p) for a lobe of density p.
 double width_of(const Place& place) { return std::min(1.0, 0.3 * math::exp(-place.at->plan->median_log_p / 2)); }
 
-/// A lobe that is round about its middle looks the same after any twist: the twist is left out, and the rest is sought
-/// again, unless all draws together tell it by two units of log likelihood.
+/// Any rotation of a symmetric lobe about its own axis has the same likelihood. The twist is removed and the rest is
+/// searched again, unless the likelihood of all draws is higher with the twist by two units of log likelihood.
 Vec3d without_twist(
     Vec3d by, std::span<const Vec3d, 3> axes, double width, const Likelihood& fine, const Likelihood& all) {
     const std::span<const Vec3d> across = axes.first(2);
@@ -181,12 +181,12 @@ Vec3d without_twist(
     return all.by_p(level) + 2 / all.count() >= all.by_p(by) ? level : by;
 }
 
-/// The part of a turn, 2 pi / n, next to an angle that is as likely: a column of a table.
+/// A nearby whole part of a turn, 2 pi / n, that is as likely: a column of a table.
 template <class L> double whole_columns(double angle, const L& likelihood) {
-    constexpr int beside = 3;
+    constexpr int neighbours = 3;
     const double n = std::round(two_pi / std::fabs(angle));
     double best = angle, most = likelihood(angle, false);
-    for (int k = -beside; k <= beside; ++k) {
+    for (int k = -neighbours; k <= neighbours; ++k) {
         const double to = std::copysign(two_pi / std::max(n + k, 2.0), angle);
         if (std::fabs(to - angle) > 0.1 * std::fabs(angle)) continue;
         if (const double l = likelihood(to, false); l >= most) best = to, most = l;
@@ -197,7 +197,7 @@ template <class L> double whole_columns(double angle, const L& likelihood) {
 Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& turns) {
     Hypothesis h;
     h.name = "turned";
-    std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its turn
+    std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its rotation
     for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].check_case->wo, turns[k].by});
     h.density = [by, at_zero = places[0].draws_at_zero()](
                     const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {

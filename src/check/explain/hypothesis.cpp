@@ -1,4 +1,4 @@
-// The supposed density is given to the check itself, as that of a sampler which draws as before.
+// Tests the supposed density with the check itself, as the density of a sampler with the same draws.
 #include "check/explain/hypothesis.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double least_log = 14;  // nats below the median of p: what a draw where the density is 0 counts
+constexpr double least_log = 14;  // nats below the median of p: value for a draw where the density is 0
 
 class Supposed : public ForwardingAdapter {
 public:
@@ -29,7 +29,7 @@ private:
     double constant_;
 };
 
-/// A look of the size at which the fault was found, after a small one for what is far off.
+/// A look of the size at which the fault was found, after a small look for large differences.
 CheckBudget budget_for(const CheckAt& found, bool few) {
     const std::uint32_t n = found.looks == 1 ? 1u << 15 : few ? 1u << 16 : 1u << 17;
     CheckBudget b = CheckBudget::limited(6.0 * n);
@@ -43,13 +43,14 @@ bool density_is_wrong(const CheckAt& c) {
     return std::ranges::any_of(c.findings, [](const Finding& f) { return of_density(f.first.family); });
 }
 
-/// A cause explains the difference if nothing of it is left: not only no family below alpha1, which the fewer draws of
-/// this check would often reach, but none below this. Of right samplers one in a hundred has one.
-constexpr double nothing_left = 1e-2;
+/// A cause explains the difference if nothing remains of it: it is not sufficient that no family is below alpha1, which
+/// the fewer draws of this check might not reach; no family may be below this level. One right sampler in a hundred has
+/// such a family.
+constexpr double remaining_level = 1e-2;
 
-bool difference_is_left(const CheckAt& c) {
+bool difference_remains(const CheckAt& c) {
     return density_is_wrong(c) ||
-        std::ranges::any_of(c.answers, [](const Answer& a) { return of_density(a.family) && a.p < nothing_left; });
+        std::ranges::any_of(c.answers, [](const Answer& a) { return of_density(a.family) && a.p < remaining_level; });
 }
 
 void draw_at(Place& place, std::uint32_t count) {
@@ -73,7 +74,7 @@ void draw_at(Place& place, std::uint32_t count) {
         const double claimed = c.integrals.leaves[l].bridge.value, n = c.observations.independent;
         const double area = c.plan->tree.rect(c.plan->tree.leaves()[l]).area();
         const double here = std::max(static_cast<double>(c.observations.counts[l]), 1.0);
-        // The logarithm of a count is low by 1 / (2 count) on average.
+        // The logarithm of a count is too low by 1 / (2 count) on average.
         place.implied.push_back(math::exp(0.5 / here) *
             (claimed > 0 && c.observations.leaves[l] > 0 && p[i] > 0 ? p[i] * c.observations.leaves[l] / (claimed * n)
                                                                      : here / (n * area)));
@@ -120,7 +121,7 @@ std::vector<Place> places_of(
                 const CheckCase& t = check_cases[outcome.check_cases[k]];
                 wrong.push_back({&t, &c, outcome.check_cases[k], t.adapter->traits(), {}, {}, {}, 0});
             }
-    // Spread over the list, which goes from n to grazing and below.
+    // Selects entries over the whole list, which goes from n to grazing and below.
     std::vector<Place> out;
     for (std::size_t k = 0; k < std::min(most, wrong.size()); ++k)
         out.push_back(wrong[(2 * k + 1) * wrong.size() / (2 * std::min(most, wrong.size()))]);
@@ -179,14 +180,14 @@ bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed) {
                 budget_for(*place.at, supposed.serial()), seed ^ 0x9e3779b9u);
         };
         CheckAt c = check();
-        if (difference_is_left(c) && h.free) {
+        if (difference_remains(c) && h.free) {
             const double claimed = c.integrals.sums[mass].value;
             const double drawn = c.observations.sums[mass].sum / std::max(c.observations.independent, 1.0);
             if (!(claimed > 0) || !(drawn > 0)) return false;
             h.constants[k] *= drawn / claimed;
             c = check();
         }
-        if (difference_is_left(c)) return false;
+        if (difference_remains(c)) return false;
     }
     return !places.empty();
 }

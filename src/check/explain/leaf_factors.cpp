@@ -1,4 +1,4 @@
-// Rows of the regression are the leaves in which the claim expects a draw, chosen by the claim alone.
+// Rows of the regression are the leaves in which p expects a draw; the draws have no influence on this choice.
 #include "check/explain/factors.h"
 
 #include <algorithm>
@@ -10,11 +10,11 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double wide_leaf = 0.02;       // rad: a factor is averaged over four places of a wider leaf
-constexpr std::size_t most_factors = 3;  // that are looked at closely
-constexpr double to_simple = 0.03;       // an exponent this near to a multiple of 1/2 is that
-constexpr double most_power = 0.5;       // of it: of what is nearly even any power is likely
-constexpr double least_power = 1e-3;     // of an exponent that differs from 1
+constexpr double wide_leaf = 0.02;       // rad: in a wider leaf a factor is averaged over four points
+constexpr std::size_t most_factors = 3;  // that are tested further
+constexpr double to_simple = 0.03;       // an exponent is rounded to a multiple of 1/2 within this distance
+constexpr double most_power = 0.5;       // largest power: for a nearly uniform density any power is likely
+constexpr double least_power = 1e-3;     // least difference of the exponent from 1
 
 double average(const Factor& f, Vec3d wo, const ChartRect& rect) {
     if (std::max(rect.theta_width(), rect.phi_width()) < wide_leaf) return f.value(wo, from_chart(rect.at(0.5, 0.5)));
@@ -47,7 +47,7 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
     return rows;
 }
 
-/// The simple exponent that a fitted one may be: 1 or -1 before 1/2, 2 and the like; 0 where it may be none or nothing.
+/// The simple exponent that agrees with a fitted one: 1 or -1 before 1/2, 2 and others; 0 if there is none.
 double simple_of(double b, double error) {
     const double known = std::max(3 * error, to_simple);
     if (std::fabs(b) < 4 * error) return 0;
@@ -58,14 +58,15 @@ double simple_of(double b, double error) {
 
 double power_of(double x, double b) { return x > 0 ? math::exp(b * math::log(x)) : 0; }
 
-/// The number that a constant is near to: 1, or what usually goes with the factor.
-double settled(double constant, double usual, double b) {
+/// The known number next to a constant: 1, or the usual constant of the factor.
+double known_constant(double constant, double usual, double b) {
     for (double known : {1.0, power_of(usual, b)})
         if (std::fabs(constant / known - 1) < 0.02) return known;
     return constant;
 }
 
-/// From the log likelihood that a factor gains over constants alone, and what those gain by the masses.
+/// Sets the gain from the log likelihood gained by a factor over constants alone, and that of the constants from the
+/// masses.
 void set_gain(Hypothesis& h, double likelihood, std::span<const Place> places) {
     double draws = 0, by_masses = 0;
     for (const Place& place : places) {
@@ -111,7 +112,7 @@ std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
         FactorHypothesis found{
             times(factors[k], exponent), factors[k].name, exponent, b, f.errors[0], factors[k].usual_constant};
         for (double c : f.constants)
-            found.hypothesis.constants.push_back(settled(c, factors[k].usual_constant, exponent));
+            found.hypothesis.constants.push_back(known_constant(c, factors[k].usual_constant, exponent));
         set_gain(found.hypothesis, f.likelihood - even.likelihood, places);
         if (found.hypothesis.helps()) out.push_back(std::move(found));
     }

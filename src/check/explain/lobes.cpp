@@ -1,6 +1,6 @@
-// The ends of the lobes are where the direction jumps along one number, at the same place for all values of the others.
-// By (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, x = 1
-// where p has the lobe as it is drawn; x follows by weighted least squares over cells.
+// The ends of the lobes are jumps of the direction along one number, at the same position for all values of the others.
+// By (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, with
+// x = 1 if p has the lobe as it is drawn. Weighted least squares over cells gives x.
 #include "check/explain/factors.h"
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::size_t settings_of_others = 12, scanned = 65, most_lobes = 8;
 constexpr int halvings = 22;
-constexpr double jump_angle = 0.02;   // rad: a root or a logarithm moves less over 2^-22
-constexpr double one_end = 1e-4;      // of the number
-constexpr double steep_rim = 0x1p-7;  // what is steep at 0 and at 1 is no jump
-constexpr double least_draws = 400;   // so that a cell's 5 % error biases x by 0.3 % at most
+constexpr double jump_angle = 0.02;   // rad: a root or a logarithm changes less over 2^-22
+constexpr double one_end = 1e-4;      // in units of the number
+constexpr double steep_rim = 0x1p-7;  // a steep change at 0 or at 1 is not a jump
+constexpr double least_draws = 400;   // so that the 5 % error of a cell biases x by 0.3 % at most
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
-constexpr double fits_at = 1e-3;      // p-value of the misfit that is left
+constexpr double fits_at = 1e-3;      // p-value of the remaining misfit
 constexpr double known_share = 0.02;  // of x, relative
 
 bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
@@ -33,14 +33,14 @@ struct NumberStep {
     double from, to;
     Draw a, b;
     static double move(const Draw& a, const Draw& b) {
-        if (has_direction(a) != has_direction(b)) return 4;  // more than any
+        if (has_direction(a) != has_direction(b)) return 4;  // larger than any distance
         const Vec3d d = b.wi - a.wi;
         return has_direction(a) ? std::sqrt(dot(d, d)) : 0;
     }
     bool jumps() const { return move(a, b) > jump_angle; }
 };
 
-/// Halves each step towards the side that moves more, and drops those that are smooth.
+/// Bisects each step towards the larger change, and removes those that are smooth.
 void close_in(Source& source, int number, std::span<const PrimarySample> others, std::vector<NumberStep>& all) {
     for (int k = 0; k < halvings && !all.empty(); ++k) {
         std::vector<PrimarySample> u;
@@ -74,7 +74,7 @@ std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const 
     return out;
 }
 
-/// The ends that a third of the settings have in common; none where other jumps between two directions are many.
+/// The ends that a third of the settings have in common; none if there are many other jumps between two directions.
 std::vector<LobeInterval> intervals(const std::vector<NumberStep>& all, std::size_t tried) {
     const auto of_two = [](const NumberStep& s) { return has_direction(s.a) && has_direction(s.b); };
     std::vector<LobeInterval> out;
@@ -93,7 +93,7 @@ std::vector<LobeInterval> intervals(const std::vector<NumberStep>& all, std::siz
     return out.size() <= most_lobes ? out : std::vector<LobeInterval>();
 }
 
-/// Sums of h by leaf over draws of one lobe, and how many draws there were.
+/// Sums of h by leaf over draws of one lobe, and the number of draws.
 struct LobeDraws {
     std::vector<double> sum, square;
     double drawn = 0;
@@ -129,13 +129,13 @@ LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, st
     return out;
 }
 
-/// A cell of leaves: the claim, and what each lobe gives.
+/// A cell of leaves: the integral of h p, and the means of each lobe.
 struct LobeCell {
     double claimed = 0, variance = 0, draws = 0;
     std::vector<double> mean, mean_variance;
 };
 
-/// Leaves in the tree's order are neighbours; they are joined until a cell has enough draws.
+/// Neighbouring leaves in the order of the tree are joined until a cell has enough draws.
 std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& by, const std::vector<LobeDraws>& all) {
     std::vector<LobeCell> out;
     LobeCell cell;
@@ -190,7 +190,7 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
                 right[k] += c.mean[k] * c.claimed / v;
                 for (std::size_t j = 0; j < lobes; ++j) normal[k][j] += c.mean[k] * c.mean[j] / v;
             }
-            // The square of a mean has its variance in it.
+            // The square of a mean is biased by its variance.
             for (std::size_t k = 0; k < lobes; ++k) normal[k][k] -= c.mean_variance[k] / v;
         }
         const auto x = statistics::solved(normal, right, 1e-6);
@@ -212,7 +212,7 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
 bool explains(const Shares& s) {
     const double degrees = s.cells - static_cast<double>(s.x.size());
     if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
-    // What is left is within chance, or a fiftieth of what there was.
+    // The rest is within chance, or a fiftieth of the original misfit.
     return statistics::chi_squared_tail(degrees, s.misfit) > fits_at ||
         s.misfit - degrees < 0.02 * (s.before - degrees);
 }
@@ -260,7 +260,7 @@ std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
     for (int number = source.traits.numbers - 1; number >= 0; --number) {
         std::vector<LobeInterval> lobes = intervals(jumps_along(source, number, others), others.size());
         if (lobes.empty()) continue;
-        if (out) return {};  // two numbers choose
+        if (out) return {};  // two numbers select
         out = {number, std::move(lobes)};
     }
     return out;

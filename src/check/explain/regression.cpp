@@ -1,5 +1,5 @@
-// Poisson regression by Newton's method: observed draws of a leaf over expected ones, explained by the logarithms of
-// candidate factors. Factors are added one at a time, the one of the largest gain in likelihood first.
+// Poisson regression by Newton's method: the ratio of observed to expected draws of a leaf, explained by the logarithms
+// of candidate factors. Factors are added one at a time, the one with the largest gain in likelihood first.
 #include "check/explain/hypothesis.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Model model_of(std::span<const Row> rows, std::size_t groups, const Fit& f) {
 
 using Matrix = std::vector<std::vector<double>>;
 
-/// Gradient and Fisher information of the exponents, the constants having been eliminated.
+/// Gradient and Fisher information of the exponents after elimination of the constants.
 void derivatives(std::span<const Row> rows, std::size_t groups, const Fit& f, const Model& m,
     std::vector<double>& gradient, Matrix& information) {
     const std::size_t d = f.factors.size();
@@ -67,7 +67,7 @@ void derivatives(std::span<const Row> rows, std::size_t groups, const Fit& f, co
     for (std::size_t k = 0; k < d; ++k) information[k][k] += 1e-9;
 }
 
-/// Column k of the inverse.
+/// Diagonal element k of the inverse.
 double inverse_at(const Matrix& a, std::size_t k) {
     std::vector<double> unit(a.size());
     unit[k] = 1;

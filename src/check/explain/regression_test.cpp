@@ -9,7 +9,7 @@
 namespace crescent::check {
 namespace {
 
-/// 2 groups of 500 cells, two factors; a normal law in place of Poisson's is enough at these counts.
+/// 2 groups of 500 cells and two factors; a normal distribution replaces the Poisson distribution at these counts.
 std::vector<Row> counts(double b0, double b1, double c0, double c1) {
     Stream stream({5, 0, 0, 1, Purpose::pairs});
     std::vector<Row> rows;
@@ -27,7 +27,7 @@ std::vector<Row> counts(double b0, double b1, double c0, double c1) {
     return rows;
 }
 
-TEST(CheckRegression, FindsExponentsAndConstantsWithinTheirErrors) {
+TEST(CheckRegression, FitsExponentsAndConstantsWithinTheirErrors) {
     const std::vector<Row> rows = counts(1, -0.5, 2, 0.7);
     const Fit f = fit(rows, 2, {0, 1});
     EXPECT_NEAR(f.exponents[0], 1, 4 * f.errors[0]);

@@ -1,4 +1,4 @@
-// By the counts and densities of the leaves.
+// Uses the counts and densities of the leaves.
 #include "check/explain/factors.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace {
 
 constexpr int em_steps = 60;
 constexpr double least_share = 1e-4;
-constexpr double least_errors = 8;        // standard errors that a share is above 0
-constexpr double expected_at_least = 10;  // draws, of a leaf in which none fell: e^-10
-constexpr double right_elsewhere = 0.1;   // how far draws over p may be from 1 where draws fall
-constexpr double least_unreached = 0.02;  // share of p's mass
+constexpr double least_errors = 8;        // least ratio of a share to its standard error
+constexpr double expected_at_least = 10;  // expected draws of an empty leaf that counts as unreached: e^-10
+constexpr double right_elsewhere = 0.1;   // largest difference from 1 of draws over p where there are draws
+constexpr double least_unreached = 0.02;  // share of the mass of p
 
 bool in_domain(const ChartRect& rect, bool whole) { return whole || rect.t0 < 1; }
 
@@ -29,8 +29,8 @@ double support_of(const Place& place, bool whole) {
     return sum;
 }
 
-/// By (1) with h ln p, the test function that an even part moves most: its mean is linear in the share. Taken where it
-/// knows the share better and agrees with it.
+/// By (1) with h ln p, the test function that a uniform part changes most: its mean is linear in the share. Used if it
+/// is more precise than the given share and agrees with it.
 void refine_by_slope(std::span<const Place> places, double even, double& share, double& error) {
     double sum = 0, weights = 0;
     for (const Place& place : places) {
@@ -53,8 +53,8 @@ void refine_by_slope(std::span<const Place> places, double even, double& share, 
     share = sum / weights, error = 1 / std::sqrt(weights);
 }
 
-/// The share of an even density in a mixture with the leaves' q, by expectation and maximisation.
-/// Draws where p is 0 may count as nothing: then the even part is seen where p is positive alone, `seen` of it.
+/// The share of a uniform density in a mixture with the q of the leaves, by expectation-maximisation. If draws where p
+/// is 0 count as no sample, the uniform part is visible only where p is positive, a fraction `seen` of it.
 Leak fitted_leak(std::span<const Place> places, bool whole) {
     const double even = 1 / (whole ? 2 * two_pi : two_pi);
     Leak out;
@@ -92,10 +92,10 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
     return out;
 }
 
-/// Where no draw falls though p expects some, and where draws fall: masses of p and of the draws.
+/// The masses of p and of the draws in leaves without draws, where p expects some, and in leaves with draws.
 struct Reach {
     double unreached = 0, reached = 0, drawn = 0, misfit = 0, leaves = 0;
-    double by = 1;  // draws over p where draws fall
+    double by = 1;  // draws over p in leaves with draws
 };
 Reach reach_at(const CheckAt& c) {
     Reach out;
@@ -171,7 +171,8 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
         const Reach r = reach_at(*place.at);
         if (!(r.unreached > least_unreached * (r.unreached + r.reached)) || std::fabs(r.by - 1) > right_elsewhere)
             continue;
-        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached) continue;  // more than that is off
+        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached)
+            continue;  // more than the unreached part is wrong
         if (!worst || r.unreached > most.unreached) worst = &place, most = r;
     }
     if (!worst) return {};
@@ -179,7 +180,7 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
                  part = of * most.unreached / (most.unreached + most.reached);
     return Cause{"unreached", part, 0,
         fmt::format("p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
-                    "another sampler by MIS that darkens.",
+                    "another sampler by MIS the image is too dark.",
             part, of, worst->where())};
 }
 

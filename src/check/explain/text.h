@@ -1,4 +1,4 @@
-// Numbers in sentences: as many digits as are known.
+// Numbers in sentences, with as many digits as are known.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace crescent::check {
 
-/// "0.9754 +- 0.0002": the half width of the interval with one digit, two where the first is 1, and the value to the
+/// "0.9754 +- 0.0002": the half width of the interval with one digit, or two if the first is 1, and the value to the
 /// same place.
 inline std::string with_error(double value, double half) {
     if (!(half > 0) || !std::isfinite(half)) return fmt::format("{:.5g}", value);
@@ -19,7 +19,7 @@ inline std::string with_error(double value, double half) {
     if (digits > 12 || digits < -3) return fmt::format("{:.5g} +- {:.1g}", value, half);
     return fmt::format("{:.{}f} +- {:.{}f}", value, std::max(digits, 0), half, std::max(digits, 0));
 }
-/// "12.3 % +- 0.4 %" of shares.
+/// "12.3 % +- 0.4 %" for shares.
 inline std::string percent(double share, double half) {
     const std::string both = with_error(100 * share, 100 * half);
     const std::size_t at = both.find(" +-");

@@ -1,4 +1,4 @@
-// Fresh draws at up to three w_o where a question on them failed.
+// Uses fresh draws at up to three w_o where a test of them failed.
 #include "check/explain/factors.h"
 
 #include <algorithm>
@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::size_t most_directions = 3;
 constexpr std::uint32_t draws_to_compare = 512;
-constexpr double agrees_to = 2e-3;  // of a constant, relative
+constexpr double agrees_to = 2e-3;  // relative, for a constant
 
 using ByChannel = std::array<double, 3>;
 
-/// Of one draw: what came with it, and what is due.
+/// For one draw: the returned and the expected value.
 struct Compared {
     Vec3d wo{}, wi{};
     double pdf = 0, p = 0;
-    bool weighs = false;
-    ByChannel weight{}, due{}, f{}, reference_f{};
+    bool has_weight = false;
+    ByChannel weight{}, expected{}, f{}, reference_f{};
 };
 
 ByChannel channels_of(Vec3d v) { return {v.x, v.y, v.z}; }
@@ -51,9 +51,9 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
         const Draw& d = *of[i];
         Compared c{check_case.wo, w[i], d.pdf, p[i], d.weight.has_value() && source.has_f(), {}, {}, channels_of(f[i]),
             channels_of(truth[i])};
-        if (c.weighs) {
+        if (c.has_weight) {
             c.weight = source.channels() == 3 ? channels_of(d.weights) : ByChannel{*d.weight, *d.weight, *d.weight};
-            c.due = channels_of(f[i] * (1 / d.pdf));
+            c.expected = channels_of(f[i] * (1 / d.pdf));
         }
         out.push_back(c);
     }
@@ -82,32 +82,32 @@ constexpr ChannelExchange channel_exchanges[] = {
     {"luminance in every channel", grey}};
 
 std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
-    double weighed = 0, plain = 0;
+    double with_weight = 0, plain = 0;
     std::array<double, std::size(channel_exchanges)> same{};
     for (const Compared& c : all) {
-        if (!c.weighs) continue;
-        ++weighed, plain += near(c.weight, c.due);
-        for (std::size_t k = 0; k < same.size(); ++k) same[k] += near(c.weight, channel_exchanges[k].of(c.due));
+        if (!c.has_weight) continue;
+        ++with_weight, plain += near(c.weight, c.expected);
+        for (std::size_t k = 0; k < same.size(); ++k) same[k] += near(c.weight, channel_exchanges[k].of(c.expected));
     }
-    if (weighed < 64 || 2 * plain > weighed) return {};
+    if (with_weight < 64 || 2 * plain > with_weight) return {};
     for (std::size_t k = 0; k < same.size(); ++k)
-        if (same[k] >= 0.9 * weighed)
+        if (same[k] >= 0.9 * with_weight)
             return Cause{channel_exchanges[k].name, 0, 0,
                 fmt::format("Weights are f cos / p with {}.", channel_exchanges[k].name), "identity"};
     return {};
 }
 
 std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const CheckCase& check_case, const char* given,
-    const char* due, const char* verdict) {
+    const char* expected, const char* verdict) {
     const std::vector<Factor> factors = factors_for(check_case.adapter->traits(), check_case.light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c) return {};
     return Cause{c->name, c->exponent == 0 ? c->constant : c->exponent, 0,
-        ratio_sentence(given, due, *c, check_case.adapter->traits()), verdict};
+        ratio_sentence(given, expected, *c, check_case.adapter->traits()), verdict};
 }
 
-void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, double due) {
-    if (due > 0) to.push_back({wo, wi, given / due});
+void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, double expected) {
+    if (expected > 0) to.push_back({wo, wi, given / expected});
 }
 
 /// f(a, b) with its eta^2 over f(b, a), for pairs across the surface and on one side.
@@ -132,7 +132,7 @@ std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
     return out;
 }
 
-/// eta^2 seen from w_o's side, and the cosines, as reciprocity shows them: once for each direction.
+/// Factors eta^2, in the orientation of w_o, and cosines that reciprocity reveals, once for each direction.
 std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
     const Traits traits = check_case.adapter->traits();
     const std::vector<KnownRatio> ratios = reciprocity_ratios(check_case);
@@ -157,12 +157,12 @@ bool found(const CheckAt& c, Family family) {
 
 }  // namespace
 
-std::string ratio_sentence(const char* given, const char* due, const RatioCause& c, const Traits& traits) {
+std::string ratio_sentence(const char* given, const char* expected, const RatioCause& c, const Traits& traits) {
     const std::string number = number_name(c.constant, agrees_to, traits);
     const std::string constant = fmt::format("a constant {:.4g}{}", c.constant, number.empty() ? "" : " = " + number);
-    if (c.exponent == 0) return fmt::format("{} {} times {}.", given, due, constant);
+    if (c.exponent == 0) return fmt::format("{} {} times {}.", given, expected, constant);
     const std::string power = std::fabs(c.exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(c.exponent));
-    return fmt::format("{} {} {} {}{}{}.", given, due, c.exponent > 0 ? "times" : "over", c.name, power,
+    return fmt::format("{} {} {} {}{}{}.", given, expected, c.exponent > 0 ? "times" : "over", c.name, power,
         std::fabs(c.constant - 1) < agrees_to ? "" : " and " + constant);
 }
 
@@ -186,7 +186,7 @@ std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const 
         std::vector<KnownRatio> pdf, weight, f;
         for (const Compared& c : all) {
             add_ratio(pdf, c.wo, c.wi, c.pdf, c.p);
-            if (c.weighs) add_ratio(weight, c.wo, c.wi, c.weight[0], c.due[0]);
+            if (c.has_weight) add_ratio(weight, c.wo, c.wi, c.weight[0], c.expected[0]);
             if (check_case->adapter->has_true_f()) add_ratio(f, c.wo, c.wi, c.f[0], c.reference_f[0]);
         }
         if (auto c = ratio_cause(pdf, *check_case, "The pdf with a draw is", "pdf(w)", "identity")) return c;

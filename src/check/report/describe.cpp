@@ -1,5 +1,5 @@
-// Shares have Clopper and Pearson's intervals, means those of the normal distribution, quantiles those of order
-// statistics. The support is measured on cells that other draws have shaped and ordered, so that no choice biases it.
+// Shares have Clopper-Pearson intervals, means those of the normal distribution, quantiles those of order statistics.
+// The support is measured on cells that other draws have shaped and ordered, so that no choice biases it.
 #include "check/report/describe.h"
 
 #include <algorithm>
@@ -29,13 +29,13 @@ Interval share_interval(double hits, double of) {
     return {hits / of, i.low, i.high};
 }
 
-/// Of the mean of n values with this sum and sum of squares.
+/// Interval of the mean of n values with this sum and sum of squares.
 Interval mean_interval(double sum, double square, double n) {
     const double mean = sum / n, half = normal_95 * std::sqrt(std::max(square / n - mean * mean, 0.0) / n);
     return {mean, mean - half, mean + half};
 }
 
-/// Of the value below which a share of the draws lies; `sorted` rises.
+/// Interval of the value below which a share of the draws lies; `sorted` is ascending.
 Interval quantile_interval(const std::vector<double>& sorted, double share) {
     const double n = static_cast<double>(sorted.size()), half = normal_95 * std::sqrt(n * share * (1 - share));
     const auto at = [&](double rank) { return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
@@ -73,15 +73,15 @@ void describe_moments(const std::vector<Vec3d>& w, Description& d) {
         angles.push_back(angle_between(v, axis));
     }
     d.length = mean_interval(along, along_square, n);
-    // Across the mean direction the mean has two components of half this variance each: 2.4477 = sqrt(chi-square of two
-    // degrees at 95 %).
+    // Perpendicular to the mean direction the mean has two components, each with half of this variance: 2.4477 =
+    // sqrt(chi-square of two degrees at 95 %).
     const double across = 2.4477 * std::sqrt(std::max(across_square, 0.0) / 2) / n;
     d.direction_error = across < size ? math::asin(across / size) : two_pi / 2;
     std::ranges::sort(angles);
     for (std::size_t k = 0; k < shares_within.size(); ++k) d.within[k] = quantile_interval(angles, shares_within[k]);
 }
 
-/// Dyadic cells of the chart that hold at most `most` of the draws that shape them.
+/// Dyadic cells of the chart that contain at most `most` of the draws that shape them.
 class Cells {
 public:
     explicit Cells(std::vector<ChartPoint> shape) { cut({}, std::move(shape), 0); }
@@ -125,7 +125,7 @@ private:
     }
 };
 
-/// A third of the draws shapes the cells, a third gives each a density, by which a third measures.
+/// A third of the draws shapes the cells, a third gives each cell a density, and a third measures.
 void describe_support(const std::vector<Vec3d>& w, Description& d) {
     const std::size_t third = w.size() / 3;
     const auto part = [&](std::size_t k) {
@@ -242,7 +242,7 @@ std::string interval_text(const Interval& i, double scale = 1, const char* unit 
     return fmt::format("{:.4g}{} ({:.4g} to {:.4g})", scale * i.value, unit, scale * i.low, scale * i.high);
 }
 
-/// Density by characters, theta downwards and phi to the right.
+/// The density as characters, with theta downwards and phi to the right.
 std::string map_text(const Description& d) {
     constexpr std::string_view shades = " .:-=+*#%@";
     const auto sectors = static_cast<std::size_t>(d.sectors);

@@ -1,4 +1,4 @@
-// Distributions whose moments and support are known: a cosine, a cone, a part of which is a delta part.
+// Distributions with known moments and support: a cosine, a cone, and one with a delta part.
 #include "check/report/describe.h"
 
 #include <cmath>
@@ -9,7 +9,8 @@
 namespace crescent::check {
 namespace {
 
-/// Even over a cone of half angle `angle` about `axis`; a share of the draws is a delta part, one is nothing.
+/// Uniform over a cone of half angle `angle` about `axis`; a share of the draws is a delta part, another returns no
+/// sample.
 struct ConeOfDraws : SamplerAdapter {
     double angle = 0.5, delta = 0, nothing = 0;
     bool cosine = false, below = false;
@@ -23,7 +24,7 @@ struct ConeOfDraws : SamplerAdapter {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double z = cosine ? std::sqrt(u[i].x) : 1 - (1 - std::cos(angle)) * u[i].x, r = std::sqrt(1 - z * z);
             const Vec3d w{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z};
-            // Turned by 60 degrees about y; the cosine is left about n.
+            // Rotated by 60 degrees about y; the cosine stays about n.
             const Vec3d turned =
                 cosine ? w : Vec3d{0.5 * w.x + std::sqrt(0.75) * w.z, w.y, 0.5 * w.z - std::sqrt(0.75) * w.x};
             out[i] = {below && u[i][2] > 0.75 ? Vec3d{turned.x, turned.y, -turned.z} : turned, 1.0};
@@ -40,7 +41,7 @@ Description described(const ConeOfDraws& s) {
     ProgressMonitor monitor;
     return describe({&t, 1}, {}, monitor).at(0);
 }
-/// True values lie within twice the distance of the ends.
+/// Tests that the true value is within twice the distance of the ends.
 void expect_near(const Interval& i, double truth) {
     EXPECT_LE(i.low, i.value);
     EXPECT_LE(i.value, i.high);
@@ -72,7 +73,7 @@ TEST(DescriptionOfDraws, HasTheAxisAndTheSolidAngleOfACone) {
     EXPECT_NEAR(d.theta, two_pi / 6, 2 * d.direction_error);
     EXPECT_LT(std::min(d.phi, two_pi - d.phi), 2 * d.direction_error / std::sin(d.theta));
     const double solid_angle = two_pi * (1 - std::cos(0.5));
-    // Cells at the rim reach beyond it: a few per cent.
+    // Cells at the rim extend beyond it by a few per cent.
     EXPECT_NEAR(d.solid_angle.value / (0.95 * solid_angle), 1, 0.06);
     EXPECT_NEAR(d.effective.value / solid_angle, 1, 0.06);
     EXPECT_LE(d.solid_angle.low, d.solid_angle.value);

@@ -1,4 +1,4 @@
-// The page of a result: what was found, in sentences, tables and pictures.
+// The HTML page of a result: the findings in sentences, tables and pictures.
 #include "check/report/html.h"
 #include "check/report/print.h"
 
@@ -17,7 +17,7 @@ namespace crescent::inline results {
 
 namespace {
 
-/// Counts of X over its size, both logarithmic, with the fitted tail where there is one.
+/// Counts of X by size, both logarithmic, with the fitted tail if there is one.
 std::string histogram(const WeightHistogram& w) {
     if (w.counts.empty()) return "";
     std::vector<double> seen;
@@ -30,7 +30,8 @@ std::string histogram(const WeightHistogram& w) {
     for (std::size_t i = 0; i < w.counts.size(); ++i)
         if (w.counts[i] > 0)
             chart.band({w.log10_edges[i], w.log10_edges[i + 1]}, {0.5, 0.5}, {w.counts[i], w.counts[i]}, "c1");
-    if (w.exceedances > 0 && w.sigma > 0) {  // what the fitted generalised Pareto law expects above its threshold
+    if (w.exceedances > 0 &&
+        w.sigma > 0) {  // expected by the fitted generalised Pareto distribution above its threshold
         const auto survival = [&](double v) {
             return v <= w.threshold     ? 1.0
                 : std::fabs(w.k) < 1e-6 ? math::exp(-(v - w.threshold) / w.sigma)
@@ -40,8 +41,8 @@ std::string histogram(const WeightHistogram& w) {
         for (std::size_t i = 0; i < w.counts.size(); ++i) {
             const double low = math::pow(10.0, w.log10_edges[i]), high = math::pow(10.0, w.log10_edges[i + 1]);
             if (low < w.threshold) continue;
-            const double due = w.exceedances * (survival(low) - survival(high));
-            if (due >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, due});
+            const double expected = w.exceedances * (survival(low) - survival(high));
+            if (expected >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, expected});
         }
         if (tail.size() > 1) chart.line(tail, "c2"), line = true;
     }
@@ -55,7 +56,7 @@ std::string histogram(const WeightHistogram& w) {
         chart.str(), fitted, w.zeros);
 }
 
-/// What this page needs beside the style sheet of all.
+/// The parts of the style sheet that only this page uses.
 constexpr const char* head =
     "<style>.right{color:var(--good)}.inconclusive{color:var(--accent)}.wrong,.error{color:var(--bad);font-weight:600}"
     ".skipped{color:var(--soft)}.row{display:flex;flex-wrap:wrap;gap:.5em .1em}.row figure{margin:0;width:auto}"
@@ -95,7 +96,7 @@ std::string expected_html(const Verdict& v) {
     return fmt::format(" <em>{}: {}.</em>", v.waived ? "Waived" : "As expected of this arm", escape(v.why_expected));
 }
 
-/// One line a finding, then every case with its verdicts.
+/// One line for each finding, then every case with its verdicts.
 std::string overview(const CheckResult& j) {
     std::string out;
     for (const Finding& f : findings_of(j))
@@ -119,7 +120,7 @@ std::string overview(const CheckResult& j) {
     return out + "</table></div>";
 }
 
-/// Every case with its verdicts, its maps, what its draws imply and its weights.
+/// Every case with its verdicts, maps, implied density and weights.
 std::string cases_html(const CheckResult& j) {
     std::string out;
     std::size_t map = 0, weight = 0;
@@ -134,7 +135,7 @@ std::string cases_html(const CheckResult& j) {
                 escape(describe(v)), v.why_expected.empty() ? "" : expected_html(v));
             implied += implied_html(v);
         }
-        open = open || (out.empty() && !implied.empty());  // what it is asked for, once
+        open = open || (out.empty() && !implied.empty());  // only the first table of an implied density is open
         out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
             escape(arm), escape(check_case), rows);
         while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].check_case == check_case)
@@ -155,7 +156,7 @@ std::string cases_html(const CheckResult& j) {
 std::string verdict_html(const CheckResult& j, const ResultSource& source) {
     PageFrame frame;
     frame.title_text = fmt::format("{}: {}", names_of(j), word(j.state));
-    frame.kicker_text = "samplers judged by themselves";
+    frame.kicker_text = "samplers checked by themselves";
     frame.version_text = source.version;
     frame.head_html = head;
     frame.lead_html = fmt::format("<p class=\"verdict {0}\">{0}</p>\n", word(j.state)) + overview(j) +
@@ -172,21 +173,21 @@ std::string verdict_html(const CheckResult& j, const ResultSource& source) {
     return page_html(frame, {{"cases", "Case by case", cases_html(j)}});
 }
 
-// ---- SVG as text; the cells of a map are painted by the page's own script from the numbers that stand beside it.
+// ---- SVG as text; the script of the page paints the cells of a map from the numbers next to it.
 
 namespace {
 
-// A map is 260 x 200 px (`canvas` in the page's style), with room for its labels to the left and below.
+// A map is 260 x 200 px (`canvas` in the style of the page), with room for labels on the left and below.
 constexpr double map_width = 260, map_height = 200;
 constexpr const char* axes_text = "theta downwards, phi to the right";
 constexpr const char* shades = "by shade 0 to";
 
 double degrees_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))) * 180 / pi; }
 
-/// "31", and "0.02" where rings are narrow.
+/// "31", or "0.02" if rings are narrow.
 std::string degrees(double v) { return v >= 1 || v == 0 ? fmt::format("{:.0f}", v) : fmt::format("{:.2g}", v); }
 
-/// Rings are as high as each other, whatever angle they span: their edges are labelled.
+/// All rings have the same height, independent of their angle, so their edges are labelled.
 std::string map_axes(const BinHistogram& m) {
     std::string out;
     for (int i = 0; i <= 4; ++i) {
@@ -222,7 +223,7 @@ std::string curve(const std::vector<double>& v, std::string_view name) {
     return out + "'/>";
 }
 
-/// Of densities, 1/sr.
+/// A map of densities, 1/sr.
 std::string implied_figure(const BinHistogram& m) {
     const double top = std::max(m.full_scale, 1e-300);
     return fmt::format(

@@ -1,5 +1,5 @@
-// The cells are nodes of the tree, cut while their halves have enough draws; a map's bins take their share of each
-// leaf, both being rectangles of one chart. What is counted has the standard error of a binomial law.
+// The cells are nodes of the tree, cut while their halves have enough draws. A bin of a map takes its share of each
+// leaf, since both are rectangles of the same chart. Counts have binomial standard errors.
 #include "check/report/sentences.h"
 #include "check/explain/text.h"
 
@@ -11,7 +11,7 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double draws_of_cell = 100;  // a standard error of a tenth
+constexpr double draws_of_cell = 100;  // a relative standard error of a tenth
 constexpr std::size_t most_cells = 512;
 constexpr double degrees_per_ring = 5;
 
@@ -34,7 +34,7 @@ std::vector<double> draws_by_node(const CheckAt& c) {
     return out;
 }
 
-/// The fullest cell is cut first.
+/// Cuts the cell with the most draws first.
 std::vector<std::size_t> cells_of(const Tree& tree, const std::vector<double>& draws) {
     const auto can_be_cut = [&](std::size_t i) { return tree.nodes()[i].child >= 0 && draws[i] >= 2 * draws_of_cell; };
     const auto emptier = [&](std::size_t a, std::size_t b) {
@@ -80,7 +80,8 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
     const std::vector<double> draws = draws_by_node(c);
     const double n = c.observations.independent;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    double least = 0;  // the highest by what it is at least: four standard errors are beyond the chance of 512 cells
+    double least =
+        0;  // The highest cell is selected by its lower bound: four standard errors exceed the chance of 512 cells
     std::size_t highest = 0;
     for (std::size_t i : cells_of(tree, draws)) {
         const ChartRect& r = tree.nodes()[i].rect;

@@ -1,4 +1,4 @@
-// Bins need not lie along the leaves: a leaf is shared out by area, and leaves are small where mass is.
+// Bins need not align with leaves: a leaf is divided by area, and leaves are small where mass is.
 #include "check/report/pictures.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int map_rings = 20, map_sectors = 24;
 
-/// A share of a leaf's mass that is spread evenly over an interval.
+/// A share of the mass of a leaf, spread evenly over an interval.
 struct Spread1d {
     double from, to, mass;
 };
@@ -35,16 +35,17 @@ double quantile_of(std::span<const Spread1d> all, double share, double low, doub
     return (low + high) / 2;
 }
 
-/// Even bins where nearly all of the mass is, a few on either side of it.
+/// Uniform bins over nearly all of the mass, and a few on either side of it.
 std::vector<double> edges_of(std::span<const Spread1d> all, double low, double high, int bins) {
     constexpr double outside = 1e-3;    // of the mass, on either side
     constexpr double zoom_below = 0.6;  // of the range
-    constexpr int beside = 2;           // bins
+    constexpr int margin_bins = 2;      // bins
     double from = quantile_of(all, outside, low, high), to = quantile_of(all, 1 - outside, low, high);
     const double margin = 0.02 * (to - from);
     from = std::max(low, from - margin), to = std::min(high, to + margin);
     if (to - from > zoom_below * (high - low)) from = low, to = high;
-    const int before = from > low ? beside : 0, after = to < high ? beside : 0, inside = bins - before - after;
+    const int before = from > low ? margin_bins : 0, after = to < high ? margin_bins : 0,
+              inside = bins - before - after;
     std::vector<double> out;
     for (int i = 0; i < before; ++i) out.push_back(low + (from - low) * i / before);
     for (int i = 0; i < inside; ++i) out.push_back(from + (to - from) * i / inside);
@@ -53,7 +54,7 @@ std::vector<double> edges_of(std::span<const Spread1d> all, double low, double h
     return out;
 }
 
-/// Shares of [from, to] that fall into each bin, added by `add(bin, share)`.
+/// Calls `add(bin, share)` with the share of [from, to] in each bin.
 void share_out(
     double from, double to, const std::vector<double>& edges, const std::function<void(std::size_t, double)>& add) {
     auto bin = static_cast<std::size_t>(std::ranges::upper_bound(edges, from) - edges.begin());
@@ -64,7 +65,7 @@ void share_out(
     }
 }
 
-/// One leaf in draws: what was drawn, what p expects, and the variance of their difference.
+/// One leaf in units of draws: observed, expected by p, and the variance of their difference.
 struct LeafDraws {
     ChartRect rect;
     double observed = 0, expected = 0, variance = 0;
@@ -77,7 +78,7 @@ std::vector<LeafDraws> leaf_draws(const CheckAt& c, bool has_density) {
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const LeafIntegral& claim = c.integrals.leaves[l];
         LeafDraws d{c.plan->tree.rect(leaves[l])};
-        // What one draw counts for, E[h^2] / E[h]: 1 where h is.
+        // The weight of one draw, E[h^2] / E[h].
         const double unit = claim.bridge.value > 0 ? claim.second / claim.bridge.value : 1;
         if (!has_density) {
             d.observed = d.expected = static_cast<double>(c.observations.counts[l]);
@@ -90,7 +91,7 @@ std::vector<LeafDraws> leaf_draws(const CheckAt& c, bool has_density) {
     return out;
 }
 
-/// A leaf's azimuths from `start` on, in one or two pieces.
+/// The azimuths of a leaf from `start` on, in one or two intervals.
 std::vector<std::pair<double, double>> turned_azimuths(const ChartRect& rect, double start) {
     const double from = rect.phi0 - start, to = rect.phi1 - start;
     if (from >= 0) return {{from, to}};
@@ -98,7 +99,7 @@ std::vector<std::pair<double, double>> turned_azimuths(const ChartRect& rect, do
     return {{from + two_pi, two_pi}, {0, to}};
 }
 
-/// Where the azimuth is cut open: across from where the draws are.
+/// The azimuth at which the map is cut: opposite to the draws.
 double seam_of(const Vec3d& middle) {
     if (math::hypot(middle.x, middle.y) < 0.05) return 0;
     const double phi = math::atan2(middle.y, middle.x) + two_pi / 2;
@@ -128,7 +129,7 @@ MapEdges map_edges(const std::vector<LeafDraws>& leaves, const Vec3d& middle) {
     return out;
 }
 
-/// Degrees in [0, 360], the last edge above the first.
+/// Degrees in [0, 360]; the last edge is above the first.
 double degrees_from(double seam, double turned) {
     const double d = (seam + turned) * 360 / two_pi;
     return d > 360 + 1e-9 ? d - 360 : d;
@@ -196,7 +197,8 @@ WeightHistogram weight_picture(const CheckCase& check_case, std::span<const doub
     std::vector<double> largest(x.begin(), x.end());
     std::ranges::sort(largest, std::greater<>());
     out.threshold = largest[tail.fit->exceedances];
-    const double median = largest[tail.fit->exceedances / 2] - out.threshold;  // of the exceedances, which gives sigma
+    const double median =
+        largest[tail.fit->exceedances / 2] - out.threshold;  // of the exceedances; it determines sigma
     out.sigma = std::fabs(out.k) < 1e-6 ? median / math::log(2.0) : out.k * median / (math::exp2(out.k) - 1);
     return out;
 }

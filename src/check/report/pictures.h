@@ -1,5 +1,5 @@
-// What the HTML page draws of one w_o: draws by bin beside what p expects, the weights, and p over f L cos in the plane
-// of incidence.
+// The pictures of the HTML page for one w_o: draws by bin with the expectation of p, the weights, and p and f L cos in
+// the plane of incidence.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace crescent::check {
 
-/// Draws of one technique by bins of theta and phi about n, from the leaves of its tree: finer where most draws are.
-/// Both sides count h = q / (p + q), in draws. Without a density what the draws imply, in 1/sr. None if nothing was
-/// drawn.
+/// Draws of one technique by bins of theta and phi about n, from the leaves of its tree, finer where most draws are.
+/// Both sides are sums of h = q / (p + q), in units of draws. Without a density: the density that the draws imply, in
+/// 1/sr. None if there are no draws.
 std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& c);
-/// Histogram of the weights with the fitted tail. x: of all techniques together.
+/// Histogram of the weights with the fitted tail. x: weights of all techniques.
 WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail);
 /// Adds p and f L cos along the plane of incidence, which costs evaluations of both at 179 directions.
 void add_rose(const CheckCase& check_case, WeightHistogram& to);

@@ -1,4 +1,4 @@
-// Maps sum to the draws, follow the lobe, and show what is off.
+// Maps sum to the draws, follow the lobe, and show differences.
 #include "check/report/pictures.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ MappedCase mapped(const char* arm, double theta) {
 }
 double sum_of(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
-TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
+TEST(PicturesOfACheck, MapObservedAndExpectedDraws) {
     for (double theta : {0.0, 60.0}) {
         const MappedCase m = mapped("ggx-vndf", theta);
         const std::optional<BinHistogram> map = bin_map(m.check_case, m.at);
@@ -39,7 +39,7 @@ TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
         for (std::size_t i = 0; i < bins; ++i)
             furthest = std::max(furthest, std::fabs(map->observed[i] - map->expected[i]) / std::max(map->sd[i], 1.0));
         EXPECT_LT(furthest, 5);
-        // The lobe fills the map: no bin holds a tenth of the draws.
+        // The lobe fills the map: no bin contains a tenth of the draws.
         EXPECT_LT(*std::ranges::max_element(map->observed), drawn / 10);
     }
 }
@@ -53,7 +53,7 @@ TEST(PicturesOfACheck, ShowTheWeightsAndTheTail) {
     add_rose(m.check_case, w);
     ASSERT_EQ(w.rose_p.size(), 179u);
     ASSERT_EQ(w.rose_f.size(), 179u);
-    // The plane of incidence: the lobe is across from w_o.
+    // In the plane of incidence the lobe is opposite to w_o.
     const auto top = std::ranges::max_element(w.rose_f) - w.rose_f.begin() - 89;
     EXPECT_NEAR(static_cast<double>(top), -30, 3);
 }

@@ -1,5 +1,5 @@
-// The terminal's table shows the worst state over all w_o; JSON and JUnit have every verdict. What takes time goes into
-// the timing alone, so that a result has the same bytes each time.
+// The table of the terminal shows the worst state over all w_o; JSON and JUnit contain every verdict. Times are only in
+// the timing file, so that a result always has the same bytes.
 #include "check/report/print.h"
 
 #include <array>
@@ -48,7 +48,7 @@ std::string rows_of(const CheckResult& result) {
 }
 
 std::string expected_ones(const CheckResult& result) {
-    std::map<std::string, int> lines;  // told once each, with how often
+    std::map<std::string, int> lines;  // number of cases by line
     for (const Verdict& v : result.verdicts)
         if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
             ++lines[fmt::format(
@@ -124,7 +124,7 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
         one["state"] = word(v.state);
         one["say"] = v.message;
         if (!v.cause.empty()) one["cause"] = v.cause;
-        if (const std::string next = settling(v); !next.empty()) one["settle"] = next;
+        if (const std::string next = next_step_text(v); !next.empty()) one["settle"] = next;
         one["expected"] = v.expected;
         if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
         if (v.waived) one["waived"] = true;
@@ -152,14 +152,14 @@ std::string verdict_junit(const CheckResult& result) {
     for (const Verdict& v : result.verdicts) {
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         const bool open = v.state == State::skipped || v.state == State::inconclusive;
-        const std::string next = settling(v);
+        const std::string next = next_step_text(v);
         const Case state = v.state == State::error ? Case::error
             : fails                                ? Case::failed
             : open                                 ? Case::skipped
                                                    : Case::passed;
         suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
             fmt::format("{}: {}", word(v.state), sentences_of(v.message).front()),
-            v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next),
+            v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next),
             v.seconds});
     }
     for (const std::string& line : result.unmet)
@@ -167,7 +167,7 @@ std::string verdict_junit(const CheckResult& result) {
     return junit_text(suite);
 }
 
-// ---- The words of each front end for one step stand side by side.
+// ---- The terms of each front end for a next step.
 
 namespace {
 
@@ -181,13 +181,13 @@ std::string named(const Words& words, FrontEnd front_end) { return words[static_
 
 }  // namespace
 
-std::string settling(const Verdict& v, FrontEnd front_end) {
+std::string next_step_text(const Verdict& v, FrontEnd front_end) {
     switch (v.next.kind) {
         case NextStep::Kind::none: return v.next_step;
         case NextStep::Kind::more_draws:
             return named(thorough, front_end) + " draws more" +
                 (v.next.times > 0 ? fmt::format(" (about {:.2g} times as many draws are needed).", v.next.times) : ".");
-        case NextStep::Kind::more_time: return named(time, front_end) + ": there was no time to look at all of it.";
+        case NextStep::Kind::more_time: return named(time, front_end) + ": the time was too short for all tests.";
         case NextStep::Kind::heavier_pdf:
             return "a pdf that falls off no faster than f; " + named(accept, front_end) + " accepts a heavy tail.";
     }
@@ -197,13 +197,13 @@ std::string settling(const Verdict& v, FrontEnd front_end) {
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end) {
     const auto [theta, azimuth] = wo;
     switch (front_end) {
-        case FrontEnd::command_line: return fmt::format("--wo {:g},{:g} judges this w_o alone.", theta, azimuth);
+        case FrontEnd::command_line: return fmt::format("--wo {:g},{:g} checks only this w_o.", theta, azimuth);
         case FrontEnd::cpp:
             return fmt::format(
-                "crescent::IsARightSamplerBy(settings) with settings.wo = {{{{{:g}, {:g}}}}} judges "
-                "this w_o alone.",
+                "crescent::IsARightSamplerBy(settings) with settings.wo = {{{{{:g}, {:g}}}}} checks "
+                "only this w_o.",
                 theta, azimuth);
-        case FrontEnd::python: return fmt::format("wo_deg=[({:g}, {:g})] judges this w_o alone.", theta, azimuth);
+        case FrontEnd::python: return fmt::format("wo_deg=[({:g}, {:g})] checks only this w_o.", theta, azimuth);
     }
     return "";
 }

@@ -1,4 +1,4 @@
-// Each sentence is computed from the numbers of the finding alone. w_o is named by the verdict that it stands in.
+// Each sentence is computed only from the numbers of the finding. The verdict that contains it names w_o.
 #include "check/report/sentences.h"
 
 #include <algorithm>
@@ -49,8 +49,8 @@ std::pair<double, double> sums_below(const CheckAt& c, int node) {
     return {a.first + b.first, a.second + b.second};
 }
 
-/// A half of a node against what p expects there, given the draws in the whole node. The half with the smaller share is
-/// named: there the deviation is larger.
+/// Compares one half of a node with the expectation of p, given the draws in the whole node. It names the half with the
+/// smaller share, where the relative deviation is larger.
 std::string node_sentence(const CheckAt& c, int node, const Answer& a) {
     const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
     const auto whole = sums_below(c, node), first = sums_below(c, x.child), second = sums_below(c, x.child + 1);
@@ -91,13 +91,13 @@ std::string light_sentence(const Answer& a, Family family, bool of_three) {
         return fmt::format(
             "p is 0 over directions that carry {} of f L cos.", percent(a.difference / a.expected, half / a.expected));
     if (family == Family::albedo)
-        return fmt::format("f sends back {} times what arrives from an even light{}. Expected at most 1.",
+        return fmt::format("f returns {} times the power of a uniform light{}. Expected at most 1.",
             with_error(1 + a.difference, half), channel_of(a, of_three));
     return fmt::format("The weighted draws give {} times the integral of f cos{}. Expected 1.",
         with_error(1 + a.difference / a.expected, half / a.expected), channel_of(a, of_three));
 }
 
-/// Whole sums.
+/// The sentence of a whole sum.
 std::string sum_sentence(const Finding& f, const Answer& a) {
     const double half = interval * a.sd;
     switch (f.first.family) {
@@ -146,11 +146,11 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
         case Family::weight:
             return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, numbers,
                 fmt::format(": weight {:.5g}, f cos / pdf {:.5g}", checks.weight.first.draw.weight.value_or(0),
-                    checks.weight.first.due));
+                    checks.weight.first.expected));
         case Family::reference_f:
             return pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, numbers,
                 fmt::format(
-                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.due));
+                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.expected));
         case Family::repeats:
             return fmt::format("{:g} pairs of {:g} draws have the same direction. Expected {:.2g}.", a.difference,
                 c.observations.independent, a.expected);
@@ -158,9 +158,10 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
             return fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
                 with_error(a.expected + a.difference, interval * a.sd), a.expected);
         case Family::delta_scatter:
-            return "Draws said to be of delta parts have more than 16 directions: what has a density is no delta part.";
+            return "Draws of delta parts have more than 16 directions: a distribution with a density is not a delta "
+                   "part.";
         case Family::delta_weight:
-            return fmt::format("{:g} draws of a delta part have another weight than the first of it.", a.difference);
+            return fmt::format("{:g} draws of a delta part have another weight than its first draw.", a.difference);
         case Family::support:
         case Family::albedo:
         case Family::mean: return light_sentence(a, f.first.family, c.channels == 3);
@@ -189,7 +190,7 @@ std::string sentence_of(const SmallFault& f, int numbers) {
 
 namespace {
 
-/// The least p-value of a verdict's families, and how many of them were tested.
+/// The least p-value of the families of a verdict, and the number of families that were tested.
 std::pair<double, int> least_p(const CheckAt& c, std::string_view verdict) {
     std::pair<double, int> out{1, 0};
     for (const Answer& a : c.answers)
@@ -202,7 +203,7 @@ std::string albedo_sentence(const CheckAt& c) {
     for (const Answer& a : c.answers)
         if (a.family == Family::albedo && a.difference + a.expected > most)
             most = a.difference + a.expected, half = interval * a.sd;
-    return most > 0 ? fmt::format("{} of an even light is reflected or transmitted.", with_error(most, half)) : "";
+    return most > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(most, half)) : "";
 }
 
 std::string mean_sentence(const CheckAt& c) {
@@ -230,39 +231,39 @@ std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
     return "";
 }
 
-// ---- Without pdf(w) the draws are compared with f alone, by their weights; where these are missing too, nothing says
-// whether the draws are right.
+// ---- Without pdf(w) only the weights of the draws are compared with f; if there are no weights either, the draws
+// cannot be tested.
 
 namespace {
 
-bool comes_weighted(const CheckAt& c) { return c.observations.weighed > 0 && c.observations.weightless == 0; }
+bool has_all_weights(const CheckAt& c) { return c.observations.weighted_draws > 0 && c.observations.weightless == 0; }
 
 void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     note_implied_density(c, v);
     v.state = State::skipped;
     const bool of_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
-    if (of_deltas || (sampler.has_f() && comes_weighted(c))) return;
+    if (of_deltas || (sampler.has_f() && has_all_weights(c))) return;
     v.state = State::inconclusive;
     v.message += fmt::format(" There is {}: whether the draws are right could not be examined.",
-        comes_weighted(c) ? "no f either" : "no weight with the draws either");
-    v.next_step = comes_weighted(c) ? "f(w), which the mean of the weights is compared with."
-                                    : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
+        has_all_weights(c) ? "no f either" : "no weight with the draws either");
+    v.next_step = has_all_weights(c) ? "f(w), for a comparison with the mean of the weights."
+                                     : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
 }
 
 void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
-    const bool asked = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
-    if (asked) return;
+    const bool tested = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
+    if (tested) return;
     if (c.observations.weightless > 0) {
         v.state = State::skipped;
         v.message = "The draws come with neither a pdf nor a weight.";
-    } else if (comes_weighted(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
+    } else if (has_all_weights(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
         v.state = State::inconclusive;
         v.message = "The weights have a heavy tail: their mean has no known error.";
         v.next_step = "Draws whose weights are bounded.";
     }
 }
 
-/// A file says how its rows were used, and how many would do.
+/// Describes how the rows of a file were used, and how many rows are needed.
 void note_rows(const CheckAt& c, Verdict& v) {
     if (v.name == "density") {
         v.evidence["rows_compared"] = c.observations.independent;

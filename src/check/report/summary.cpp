@@ -1,5 +1,5 @@
-// Verdicts of one arm, name and state are one finding, told by the one that is furthest off; the other sentences follow
-// with the w_o at which they were said.
+// Verdicts of one arm with equal name and state form one finding, described by the one with the largest deviation.
+// Other sentences follow with their w_o.
 #include "check/report/summary.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::map<Key, std::set<std::string>> left_out_of(const CheckResult& j) {
 
 struct Count {
     std::size_t cases = 0;
-    bool by_wo = true;  // they differ by w_o alone
+    bool by_wo = true;  // whether they differ only by w_o
 };
 
 std::map<std::string, Count> count_cases(const CheckResult& j) {
@@ -51,7 +51,7 @@ void add(Finding& f, const Verdict& v) {
     if (!f.worst || v.size > f.worst->size) f.worst = &v;
 }
 
-/// What a verdict says beyond what the worst of its finding says already.
+/// The sentences of a verdict that the worst verdict of its finding does not have.
 std::string without_repeats(const Verdict& v, const std::set<std::string>& already) {
     std::string out;
     for (const std::string& sentence : sentences_of(describe(v)))
@@ -72,7 +72,7 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
     }
 }
 
-/// The cause that is named for the worst verdict, or for another wrong one of the same arm, best of the same name.
+/// The cause of the worst verdict or of another wrong verdict of the same arm, preferably with the same name.
 std::string cause_of(const Finding& f, const CheckResult& j) {
     std::string out = f.worst->cause;
     for (const bool of_name : {true, false})
@@ -85,8 +85,8 @@ std::string cause_of(const Finding& f, const CheckResult& j) {
 }  // namespace
 
 std::string describe(const Verdict& v, FrontEnd front_end) {
-    const std::string next = settling(v, front_end);
-    return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next) +
+    const std::string next = next_step_text(v, front_end);
+    return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next) +
         (v.timed_message.empty() ? "" : " " + v.timed_message);
 }
 
@@ -154,7 +154,7 @@ std::string describe(const Finding& f, FrontEnd front_end) {
     const std::string message = describe(*f.worst, front_end);
     if (f.state == State::error && f.worst->check_case == before_any_case) return "error. " + message;
     if (f.state == State::error)
-        return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
+        return fmt::format("error: {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.of,
             f.worst->check_case, message);
     const std::string where = where_found(f);
     std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, message);
@@ -196,7 +196,7 @@ std::string in_one_line(std::string text) {
     return text;
 }
 
-/// What and how large, where, and the cause: a line each.
+/// One line each for the message, the place and the cause.
 std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
     if (f.state == State::error) return {in_one_line(describe(f, FrontEnd::cpp))};
     std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->message))};
@@ -205,10 +205,11 @@ std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
     return out;
 }
 
-/// The step of the first finding: a wrong one is looked at alone, an open one has what would settle it.
+/// The next step of the first finding: a check of one w_o if it is wrong, the step of the verdict if it is
+/// inconclusive.
 std::string next_step_of(const Finding& f) {
     const Verdict& v = *f.worst;
-    std::string message = in_one_line(settling(v, FrontEnd::cpp));
+    std::string message = in_one_line(next_step_text(v, FrontEnd::cpp));
     if (message.empty() && v.wo && f.state == State::wrong) message = one_wo_text(*v.wo, FrontEnd::cpp);
     return message.empty() ? "" : "Next: " + message;
 }
@@ -240,7 +241,7 @@ std::string what_is_wrong(const CheckResult& result, std::size_t most_lines) {
 }
 
 std::string unseen_text(const CheckResult& result) {
-    if (result.state == State::error) return "";  // what there is of right verdicts is not the whole
+    if (result.state == State::error) return "";  // the right verdicts are incomplete
     std::map<std::string, double> most;
     for (const Verdict& v : result.verdicts)
         for (const auto& [kind, size] : v.hidden)
@@ -259,22 +260,22 @@ std::string unseen_text(const CheckResult& result) {
 }
 
 std::string nothing_drawn_text(const CheckResult& result) {
-    constexpr double worth_saying = 0.01;
+    constexpr double least_share = 0.01;
     const auto most = std::ranges::max_element(result.verdicts, {}, &Verdict::nothing);
-    if (most == result.verdicts.end() || !(most->nothing > worth_saying)) return "";
+    if (most == result.verdicts.end() || !(most->nothing > least_share)) return "";
     return fmt::format("Up to {:.3g} % of the draws returned no sample (pdf 0, or below the horizon): {}{}.",
         100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
 }
 
-// ---- Read off the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
-// physics. Rings of 15 degrees are means of the evidence's own, by solid angle.
+// ---- Texts from the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
+// physics. Rings of 15 degrees are means of the finer rings of the evidence, weighted by solid angle.
 
 namespace {
 
 constexpr double edges[] = {0, 15, 30, 45, 60, 75, 90, 180};  // degrees
 constexpr std::size_t rings = std::size(edges) - 1, most_lines = 16;
 
-/// "2.61 +- 0.02", to the first digit of the error; "0" where nothing was drawn.
+/// "2.61 +- 0.02", to the first digit of the error; "0" if there are no draws.
 std::string with_error(double v, double se) {
     if (!(v > 0)) return "0";
     if (!(se > 0)) return fmt::format("{:.4g}", v);
@@ -293,7 +294,7 @@ std::string ring_text(const nlohmann::ordered_json& rows, double from, double to
         sum += row[2].get<double>() * angle, square += sqr(row[3].get<double>() * angle);
         whole += angle;
     }
-    if (to > 90) whole = 1;  // rows end where the draws do
+    if (to > 90) whole = 1;  // rows end at the last ring with draws
     return whole > 0 ? with_error(sum / whole, std::sqrt(square) / whole) : "-";
 }
 
@@ -322,7 +323,7 @@ std::string implied_text(const CheckResult& j) {
     for (std::size_t i = 0; i < std::min(all.size(), most_lines); ++i)
         out += line_of(*all[i], one_arm ? all[i]->check_case : all[i]->arm + " " + all[i]->check_case);
     if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
-    return "The density that the draws imply, there being no pdf(w): 1/sr, the mean over each ring and one standard "
+    return "The density that the draws imply, since there is no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +
         out + "Finer in the JSON: implied_rings, implied_bins.";
 }
@@ -336,7 +337,7 @@ std::string not_tested_text(const CheckResult& j) {
         const std::string what = at->get<std::string>();
         if (std::find(all.begin(), all.end(), what) == all.end()) all.push_back(what);
     }
-    return all.empty() ? "" : fmt::format("Not looked at: {}.", fmt::join(all, "; "));
+    return all.empty() ? "" : fmt::format("Not tested: {}.", fmt::join(all, "; "));
 }
 
 }  // namespace crescent::inline results

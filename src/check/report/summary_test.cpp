@@ -1,4 +1,4 @@
-// What a failing test prints of a result: few lines, in a fixed order, in calls of C++.
+// The text of a failing test for a result: few lines, in a fixed order, in calls of C++.
 #include "check/report/summary.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::vector<std::string> lines(const std::string& text) {
     return out;
 }
 
-TEST(WhatIsWrong, IsWhatHowLargeWhereCauseAndNext) {
+TEST(WhatIsWrong, HasMessageSizePlaceCauseAndNextStep) {
     const auto message = lines(what_is_wrong(of_verdicts({{"normalised", State::wrong, 60, ""},
         {"density", State::right, 60, ""}, {"normalised", State::wrong, 30, "A factor 2."}})));
     ASSERT_EQ(message.size(), 4u);
@@ -39,7 +39,7 @@ TEST(WhatIsWrong, IsWhatHowLargeWhereCauseAndNext) {
         << message[3];
 }
 
-TEST(WhatIsWrong, HasAtMostEightLinesHoweverMuchIsWrong) {
+TEST(WhatIsWrong, HasAtMostEightLinesForManyFaults) {
     const CheckResult j = of_verdicts(
         {{"valid", State::wrong, 0, "A."}, {"support", State::wrong, 0, "B."}, {"normalised", State::wrong, 0, "C."},
             {"density", State::wrong, 0, "D."}, {"tail", State::inconclusive, 0, ""}, {"mean", State::error, 0, ""}});
@@ -56,13 +56,13 @@ TEST(WhatIsWrong, HasAtMostEightLinesHoweverMuchIsWrong) {
     EXPECT_EQ(what_is_wrong(of_verdicts({{"valid", State::right, 0, ""}})), "");
 }
 
-TEST(NextStep, IsNamedByEachFrontEndInItsOwnWords) {
+TEST(NextStep, HasTheTermsOfEachFrontEnd) {
     CheckResult j = of_verdicts({{"density", State::inconclusive, 0, ""}});
     j.verdicts[0].next = {NextStep::Kind::more_draws, 4};
     EXPECT_NE(summary_of(j).find("--full"), std::string::npos) << summary_of(j);
     EXPECT_EQ(what_is_wrong(j).find("--"), std::string::npos) << what_is_wrong(j);
     EXPECT_NE(what_is_wrong(j).find("TestSettings::thorough()"), std::string::npos) << what_is_wrong(j);
-    EXPECT_NE(settling(j.verdicts[0], FrontEnd::python).find("full=True"), std::string::npos);
+    EXPECT_NE(next_step_text(j.verdicts[0], FrontEnd::python).find("full=True"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A verdict is wrong if a finding of its families is there; inconclusive where a stated size is too large for one;
-// skipped where the sampler gives nothing that its families could ask; else right.
+// A verdict is wrong if there is a finding of its families; inconclusive if a stated size is too large; skipped if the
+// sampler provides nothing that its families can test; otherwise right.
 #include "check/report/sentences.h"
 
 #include <algorithm>
@@ -29,10 +29,10 @@ void add_sizes(const Sizes& s, Verdict& v) {
 }
 
 void decide_at(const CheckAt& c, Verdict& v) {
-    constexpr double beyond_chance = 1e9;  // standard errors of what is counted
+    constexpr double beyond_chance = 1e9;  // standard errors of a count
     const DrawChecks& checks = c.observations.checks;
-    if (v.name == verdict_names[0] && checks.looked_at > 0)
-        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing) / static_cast<double>(checks.looked_at));
+    if (v.name == verdict_names[0] && checks.tested > 0)
+        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing) / static_cast<double>(checks.tested));
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name)
             v.state = State::wrong, v.size = beyond_chance * f.times / std::max(f.of, 1.0),
@@ -65,8 +65,8 @@ void decide_at(const CheckAt& c, Verdict& v) {
     }
 }
 
-/// A cause is said once: of a constant with `normalised`, of another density with `density`, else where it belongs; or
-/// with the first verdict that is wrong.
+/// Adds the cause to one verdict: a constant to `normalised`, another density to `density`, otherwise to the verdict of
+/// the cause, or else to the first wrong verdict.
 void place(const Cause& cause, std::vector<Verdict>& all) {
     std::vector<std::string_view> names = {"density", "normalised"};
     if (!cause.verdict.empty()) names = {cause.verdict};

@@ -1,4 +1,4 @@
-// Findings become verdicts of today's names.
+// Findings become verdicts.
 #include "check/report/sentences.h"
 
 #include <gtest/gtest.h>

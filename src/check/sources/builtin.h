@@ -1,5 +1,5 @@
-// A built-in arm as a sampler: draws in float as it renders, densities in double for quadrature; the surface is
-// f = rho_d/pi + rho_s lobe.
+// A built-in arm as a sampler: draws in float as it renders, and densities in double for quadrature. The surface is f =
+// rho_d/pi + rho_s lobe.
 #pragma once
 
 #include <array>
@@ -28,14 +28,14 @@ template <class F> ShadingPoint<F> point_of(const SurfaceSetup& surface, Vec3d w
         static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size()), others.data(),
         static_cast<int>(others.size())};
 }
-/// L r^2 of the disks, and what the other lights are worth beside it.
+/// Power of the light: L r^2 of the disks plus that of the other lights.
 inline double power_of(const CaseLighting& light) {
     double total = 0;
     for (const CaseDiskLight& d : light.disks) total += d.radiance * sqr(d.radius);
     for (const CaseAreaLight& area_light : light.area_lights) total += area_light.power();
     return total;
 }
-/// One-sided disks, each with its share of the choice among lights.
+/// One-sided disks, each with its probability of selection among the lights.
 template <class F> std::vector<LocalDisk<F>> disks_of(const CaseLighting& light) {
     const double total = power_of(light);
     std::vector<LocalDisk<F>> out;
@@ -45,7 +45,7 @@ template <class F> std::vector<LocalDisk<F>> disks_of(const CaseLighting& light)
     return out;
 }
 
-/// The lights that are no disks, as the surface sees them.
+/// The lights that are not disks, in the frame of the surface.
 template <class F> std::vector<LocalLight<F>> others_of(const CaseLighting& light) {
     const double total = power_of(light);
     const Frame<double> frame = frame_about(Vec3d{0, 0, 1});

@@ -1,5 +1,5 @@
-// Every built-in arm on the surfaces that it states, or on every lobe; under a fill, disks, a ball or a rectangle; at 8
-// w_o, 16 in full mode. --set changes what a surface has.
+// Every built-in arm on its declared surfaces, or on every lobe; under a fill, disks, a ball or a rectangle; at 8 w_o,
+// or 16 in full mode. --set changes a surface.
 #include "check/sources/cases.h"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace crescent::inline sources {
 
 namespace {
 
-/// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so
-/// that distance decides and not order; one straight above facing down (its frame's axis is -z); and of every other
-/// kind of light its example. Radiances, m.
+/// A disk at 35 deg from the normal at an oblique angle; a larger one partly behind it and first in the list, so that
+/// distance decides and not order; one directly above that faces down (the axis of its frame is -z); and the example of
+/// every other kind of light. Radiances, m.
 CaseLighting light_named(const std::string& name) {
     const CaseDiskLight oblique{20, 2.0 * tilt(35, 20), -1.0 * tilt(20, 60), 0.5};
     const CaseDiskLight behind{12, 3.2 * tilt(48, 35), -1.0 * tilt(60, 40), 0.9};
@@ -35,12 +35,12 @@ CaseLighting light_named(const std::string& name) {
 
 using Setups = std::vector<CaseSetup>;
 
-/// The surfaces that an arm states; where it states none, every lobe at a middling width, and Lambert.
+/// The surfaces that an arm declares; without any, every lobe at a medium width, and Lambert.
 Setups setups_of(const SamplerInfo& arm) {
     Setups all;
     for (const CaseSurface& on : arm.check_cases)
         all.push_back(case_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
-    // What is checked under a disk alone aims at lights, and is checked under every kind too.
+    // An arm that is checked only under a disk samples lights, so it is also checked under every other kind.
     const auto add = [&](std::string_view light) {
         all.push_back(case_setup(LobeKind::none, true, std::string(light), 32));
     };
@@ -55,29 +55,28 @@ Setups setups_of(const SamplerInfo& arm) {
     return all;
 }
 
-/// What is known of an arm on such a surface at theta_R = theta.
+/// The expected behaviour of an arm on a surface at theta_R = theta.
 ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& on, double theta_deg) {
     const SurfaceSetup& f = on.surface;
     return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : ExpectedBehaviour{};
 }
 
-/// Sets what this surface and light have; the keys that it read are crossed out of `unread`.
-void apply(const Settings& settings, CaseSetup& setup, Settings& unread) {
+/// Sets the parameters of this surface and light; removes the keys that it uses from `unused`.
+void apply(const Settings& settings, CaseSetup& setup, Settings& unused) {
     const auto set = [&](const char* key, bool has, double& to) {
         const auto at = settings.find(key);
         if (at == settings.end() || !has) return;
         to = at->second;
-        unread.erase(key);
+        unused.erase(key);
     };
     SurfaceSetup& f = setup.surface;
-    set("s", setup.tells_s, f.s);
-    set("alpha", setup.tells_alpha, f.alpha);
+    set("s", setup.has_s, f.s);
+    set("alpha", setup.has_alpha, f.alpha);
     set("rho_d", f.rho_d > 0, f.rho_d);
     set("rho_s", f.rho_s > 0, f.rho_s);
-    if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).checked_from)
+    if (setup.has_alpha && f.alpha < lobe_info(f.lobe).checked_from)
         throw InputError({"--set", 0, 0},
-            fmt::format(
-                "alpha is judged from {:g} on where the lobe is {}: the quadrature of a sharper one is not known",
+            fmt::format("alpha must be at least {:g} for the lobe {}: the quadrature of a sharper lobe is not known",
                 lobe_info(f.lobe).checked_from, lobe_info(f.lobe).label));
     if (f.rho_d + f.rho_s > 1)
         throw InputError({"--set", 0, 0},
@@ -92,10 +91,10 @@ std::shared_ptr<const SamplerAdapter> make_adapter(const std::string& arm, const
     return out;
 }
 
-/// Two setups that --set made alike count once.
+/// Whether two setups are equal after --set.
 bool alike(const CaseSetup& a, const CaseSetup& b) {
-    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.tells_s || a.surface.s == b.surface.s) &&
-        (!a.tells_alpha || a.surface.alpha == b.surface.alpha);
+    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.has_s || a.surface.s == b.surface.s) &&
+        (!a.has_alpha || a.surface.alpha == b.surface.alpha);
 }
 
 }  // namespace
@@ -138,9 +137,9 @@ CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, d
     out.surface.lobe = lobe;
     out.surface.rho_d = lambert ? 0.5 : 0;
     out.surface.rho_s = lobe == LobeKind::none ? 0 : 0.4;
-    out.tells_alpha = info && info->parameter == LobeParameter::alpha;
-    out.tells_s = info && info->parameter == LobeParameter::s;
-    (out.tells_alpha ? out.surface.alpha : out.surface.s) = sharpness;
+    out.has_alpha = info && info->parameter == LobeParameter::alpha;
+    out.has_s = info && info->parameter == LobeParameter::s;
+    (out.has_alpha ? out.surface.alpha : out.surface.s) = sharpness;
     out.brdf = info ? info->label : "";
     if (lambert) out.brdf = out.brdf.empty() ? "Lambert" : "Lambert + " + out.brdf;
     out.lighting = lighting;
@@ -157,8 +156,8 @@ CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std
     t.wo = tilt(theta, azimuth);
     t.theta_deg = theta;
     t.azimuth_deg = azimuth;
-    if (setup.tells_s) t.parameters.emplace_back("s", setup.surface.s);
-    if (setup.tells_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
+    if (setup.has_s) t.parameters.emplace_back("s", setup.surface.s);
+    if (setup.has_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
     t.light = setup.light;
     t.adapter = std::move(adapter);
     return t;
@@ -174,12 +173,12 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
                 (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", "))
                               : "; did you mean '" + near + "'?"));
     }
-    Settings unread = settings;
+    Settings unused = settings;
     for (const std::string& name : names) {
         if (!arm.empty() && name != arm) continue;
         Setups setups;
         for (CaseSetup s : setups_of(*find_arm_info(name))) {
-            apply(settings, s, unread);
+            apply(settings, s, unused);
             bool seen = false;
             for (const CaseSetup& other : setups) seen = seen || alike(s, other);
             if (!seen) setups.push_back(s);
@@ -191,19 +190,19 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
                 check_cases.push_back(std::move(t));
             }
     }
-    if (!unread.empty())
-        throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
+    if (!unused.empty())
+        throw InputError({"--set " + unused.begin()->first, 0, 0}, "no surface of the checks of '" + arm + "' has it");
     return check_cases;
 }
 
-// ---- CheckCases of a user's sampler, with arms of the list beside it that are aimed at its BRDF.
+// ---- Cases of a user's sampler, with built-in arms that sample the same BRDF.
 
 namespace {
 
-/// A built-in arm aimed at a user's BRDF.
-template <template <class> class A> class Borrowed : public BuiltIn<A> {
+/// A built-in arm for a user's BRDF.
+template <template <class> class A> class ForUserBrdf : public BuiltIn<A> {
 public:
-    Borrowed(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
+    ForUserBrdf(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
         : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
     void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
     bool serial() const override { return owner_->serial(); }
@@ -227,8 +226,8 @@ CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& adapter, d
 
 namespace {
 
-/// The grid of w_o that a sampler answers for: one where it has none, mirrored under the surface too where it takes
-/// both sides.
+/// The grid of w_o of a sampler: one w_o if it does not depend on w_o, and w_o below the surface too if it accepts both
+/// sides.
 Grid grid_for(const Traits& traits, bool full) {
     if (traits.wo == Traits::WoDomain::none) return {{0, 0}};
     Grid grid = wo_grid(full);
@@ -249,11 +248,11 @@ std::vector<CheckCase> make_user_cases(
         check_cases.push_back(make_user_case(adapter, theta, azimuth));
         const bool can_be_ranked =
             adapter->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::WoDomain::none;
-        if (!can_be_ranked) continue;  // cosine and uniform reach neither delta parts nor the other side
+        if (!can_be_ranked) continue;  // cosine and uniform sample neither delta parts nor the other side
         const Vec3d wo = tilt(theta, azimuth);
         for (const std::shared_ptr<const SamplerAdapter>& peer :
-            {std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Uniform>>(adapter, wo)),
-                std::shared_ptr<const SamplerAdapter>(std::make_shared<Borrowed<Cosine>>(adapter, wo))}) {
+            {std::shared_ptr<const SamplerAdapter>(std::make_shared<ForUserBrdf<Uniform>>(adapter, wo)),
+                std::shared_ptr<const SamplerAdapter>(std::make_shared<ForUserBrdf<Cosine>>(adapter, wo))}) {
             check_cases.push_back(make_user_case(peer, theta, azimuth));
             check_cases.back().baseline = true;
         }
@@ -263,10 +262,10 @@ std::vector<CheckCase> make_user_cases(
 
 namespace {
 
-/// An arm of the list aimed at a user's f.
-class WithF : public SamplerAdapter {
+/// A built-in arm with a user's f.
+class WithUserF : public SamplerAdapter {
 public:
-    WithF(std::shared_ptr<const SamplerAdapter> arm, std::shared_ptr<const SamplerAdapter> owner)
+    WithUserF(std::shared_ptr<const SamplerAdapter> arm, std::shared_ptr<const SamplerAdapter> owner)
         : arm_(std::move(arm)), owner_(std::move(owner)) {}
     std::string name() const override { return arm_->name(); }
     Traits traits() const override { return arm_->traits(); }
@@ -298,7 +297,7 @@ std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<
         CheckCase b = t;
         b.arm = name;
         b.theory = {};
-        b.adapter = std::make_shared<WithF>(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
+        b.adapter = std::make_shared<WithUserF>(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
         out.push_back(std::move(b));
     }
     return out;

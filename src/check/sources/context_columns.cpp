@@ -1,4 +1,4 @@
-// One table: each quantity with the number of its columns and what fills them.
+// One table: each quantity with its number of columns and their values.
 #include "check/sources/context_columns.h"
 
 #include <algorithm>

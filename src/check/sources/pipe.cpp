@@ -1,6 +1,6 @@
-// Rows of questions become lines or blocks and the answers rows of doubles, which are read the same way. Directions
-// under the horizon of a sampler of the hemisphere are not asked about. What `f` stands for is asked once, along the
-// normal.
+// Rows of a request are sent as lines or blocks, and the answers are rows of doubles in both formats. Directions below
+// the horizon are not sent to a sampler of the hemisphere. One request along the normal determines whether the program
+// has an f.
 #include "check/sources/pipe.h"
 
 #include <array>
@@ -22,29 +22,29 @@ namespace crescent::inline sources {
 
 namespace {
 
-/// A multiple of 2^-24, which single precision holds.
+/// A multiple of 2^-24, which single precision represents exactly.
 double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1 - 0x1p-24); }
 
 class PipeSampler : public ProgramSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label)
-        : talk_(command, limits, label) {
+        : connection_(command, limits, label) {
         try {
             handshake_with_program(label);
         } catch (const SamplerError&) {
-            const std::string& broken = talk_.broken();
+            const std::string& broken = connection_.broken();
             const bool unknown =
                 broken.find("exit code 127") != std::string::npos || broken.find("exit code 126") != std::string::npos;
-            talk_.stop();
+            connection_.stop();
             if (unknown && hello_.name.empty())
                 throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
             throw;
         } catch (...) {
-            talk_.stop();
+            connection_.stop();
             throw;
         }
     }
-    ~PipeSampler() override { talk_.stop(); }
+    ~PipeSampler() override { connection_.stop(); }
     PipeSampler(const PipeSampler&) = delete;
     PipeSampler& operator=(const PipeSampler&) = delete;
 
@@ -53,7 +53,7 @@ public:
     bool serial() const override { return true; }
     bool has_f() const override { return has_f_; }
     bool has_drawn_f() const override { return has_f_ || hello_.weight; }
-    QueryUsage spending() const override { return talk_.spending(); }
+    QueryUsage spending() const override { return connection_.spending(); }
 
     int numbers() const override { return hello_.traits.numbers; }
     bool uses_lights() const override { return hello_.uses_lights(); }
@@ -63,7 +63,7 @@ public:
         std::vector<double> in;
         in.reserve(u.size() * columns_of_sample(example_lights));
         for (const PrimarySample& v : u)
-            add_row(asked(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
+            add_row(wo_to_send(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
         query_samples(in, example_lights, out.size(), [&](std::size_t i, const Draw& d) { out[i] = d; });
     }
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
@@ -78,7 +78,7 @@ public:
             add_context(hello_.uses, run, batch.lights,
                 lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
             for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
-                add_row(asked(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
+                add_row(wo_to_send(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
         }
         query_samples(
             in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) { out.wi[i] = d.wi, out.pdf[i] = d.pdf; });
@@ -117,15 +117,15 @@ public:
     }
 
 private:
-    mutable PipeConnection talk_;
+    mutable PipeConnection connection_;
     static constexpr std::size_t example_lights = 1;  // of example_context()
     Handshake hello_;
-    std::vector<double> example_;  // the columns of a context in a check
+    std::vector<double> example_;  // the columns of the context in a check
     bool has_f_ = false;
     mutable std::mutex lock_;
 
     std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
-    Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
+    Vec3d wo_to_send(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
             hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
@@ -153,7 +153,7 @@ private:
         for (std::size_t k = 0; k < numbers; ++k) to[3 + k] = number_for(u(k));
         std::copy(context.begin(), context.end(), to + 3 + numbers);
     }
-    /// Rows of w_o, u and the context; calls take(i, draw) for each row in order.
+    /// Requests samples for rows of w_o, u and the context; calls take(i, draw) for each row in order.
     template <class Take>
     void query_samples(const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
         const std::size_t given = columns_of_sample(lights), got = 4 + weights();
@@ -161,9 +161,10 @@ private:
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
-            talk_.lines(count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
-            });
+            connection_.lines(
+                count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+                });
         for (std::size_t i = 0; i < count; ++i)
             take(i, drawn(std::span(answers).subspan(i * got, got), !hello_.blocks && delta[i]));
     }
@@ -174,7 +175,7 @@ private:
         if (hello_.uses_lights())
             for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(lights >> (8 * byte) & 255);
         const PipeConnection::Write write = writer(verb, given, in);
-        talk_.blocks({operation, count, given, got, in, out,
+        connection_.blocks({operation, count, given, got, in, out,
             [&](std::size_t i) {
                 std::string line;
                 write(i, line);
@@ -194,7 +195,7 @@ private:
         }
         return blank(s);
     }
-    /// Nothing drawn where pdf is 0, or where a draw lies under the horizon and only the hemisphere counts.
+    /// No sample if pdf is 0, or if the draw is below the horizon of a sampler of the hemisphere.
     Draw drawn(std::span<const double> a, bool delta) const {
         Draw d{{a[0], a[1], a[2]}, a[3]};
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
@@ -206,8 +207,8 @@ private:
         return d;
     }
 
-    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked. `context`: the
-    /// columns of all rows, or of each.
+    /// pdf or f; both are 0, without a request, below the horizon of a sampler of the hemisphere. `context`: the
+    /// columns common to all rows, or those of each row.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
         std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
         const std::size_t columns_of_context = context_columns(hello_.uses, lights), given = 6 + columns_of_context;
@@ -217,7 +218,7 @@ private:
         for (std::size_t row = 0; row < all.size(); ++row) {
             const Pair& p = all[row];
             if (!counts(p)) continue;
-            const Vec3d o = asked(p.wo);
+            const Vec3d o = wo_to_send(p.wo);
             for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
             const auto own = std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
             in.insert(in.end(), own.begin(), own.end());
@@ -226,7 +227,7 @@ private:
         std::vector<double> answers(count * columns);
         if (hello_.blocks) query_block(operation, verb, count, given, columns, in, answers, lights);
         else if (count > 0)
-            talk_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
+            connection_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
                 if (operation[0] == 'f' && s == "-") {
                     std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
                     return true;
@@ -247,22 +248,22 @@ private:
     }
 
     void handshake_with_program(const std::string& label) {
-        talk_.lines(
+        connection_.lines(
             1, "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
             [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
                 Handshake hello;
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
-                    talk_.fault("hello 2", 0, fault.got, fault.expected);
+                    connection_.fault("hello 2", 0, fault.got, fault.expected);
                 hello_ = hello;
                 example_ = example_context(hello.uses);
                 return true;
             });
-        talk_.greeted();
+        connection_.finish_handshake();
         probe_f();
     }
-    /// Whether there is a BRDF: `-`, or NaN in a block, is none.
+    /// Determines whether there is a BRDF: `-`, or NaN in a block, means none.
     void probe_f() {
         const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
         std::vector<double> normal = {0, 0, 1, 0, 0, 1};
@@ -273,7 +274,7 @@ private:
             has_f_ = !std::isnan(answer[0]);
             return;
         }
-        talk_.lines(1,
+        connection_.lines(1,
             columns == 1 ? "one number, or '-' where there is no BRDF"
                          : "three numbers, one a channel, or '-' where there is no BRDF",
             writer("f", normal.size(), normal), [&](std::size_t, std::string_view s) {
@@ -292,8 +293,8 @@ std::shared_ptr<const ProgramSampler> start_pipe(
     return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label);
 }
 
-// ---- A table of keys, each with what it takes, from which the messages are made too. The name is all that stands
-// before the first word with '='.
+// ---- A table of keys with their values, from which the messages are made too. The name is the text before the first
+// word with '='.
 
 namespace {
 
@@ -311,7 +312,7 @@ bool whole_number(std::string_view value, int low, int high, int& out) {
     return error == std::errc{} && end == value.data() + value.size() && out >= low && out <= high;
 }
 
-/// One index, or one a channel, separated by commas.
+/// One index, or one for each channel, separated by commas.
 bool indices(std::string_view value, std::optional<Vec3d>& out) {
     std::vector<double> v;
     std::string text(value);
@@ -425,7 +426,7 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     while (name.ends_with(' ') || name.ends_with('\t')) name.remove_suffix(1);
     out.name = printable(name, 60);
     if (out.delta && !out.weight)
-        return {"weight=yes beside delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
+        return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
     out.traits.delta = out.delta;
     return {};
 }

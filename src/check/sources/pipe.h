@@ -1,7 +1,8 @@
-// A sampler in another process, over its stdin and stdout. It is greeted with `hello 2` and says what it is; one that
-// answers `hello 1 NAME` is spoken to in protocol 1, which is protocol 2 without keys; one that answers `hello 3` may
-// name what it uses of the surface point and the lights. Text lines, or blocks of doubles
-// where it asks for them; docs/samplers.md has the grammar. Local frame, n = +z; end of input ends it.
+// A sampler in another process, over its stdin and stdout. The handshake starts with `hello 2`, and the program answers
+// with its declaration. A program that answers `hello 1 NAME` uses protocol 1, which is protocol 2 without keys; one
+// that answers `hello 3` may declare the quantities of the surface point and the lights that it uses. Requests are text
+// lines, or blocks of doubles if the program declares them; docs/samplers.md has the grammar. Local frame, n = +z; the
+// program ends at the end of its input.
 #pragma once
 
 #include <algorithm>
@@ -16,53 +17,53 @@
 
 namespace crescent::inline sources {
 
-/// What a program behind a pipe, or a plugin, may take.
+/// Time limits of a program behind a pipe or of a plugin.
 struct PipeLimits {
     double hello_seconds = 60;   // until the first answer: a sky of millions of texels is read first
-    double quiet_seconds = 10;   // without a byte while an answer is due
-    double call_seconds = 60;    // of a plugin: for one call of a function
-    double total_seconds = 120;  // for everything; beyond it the program is too slow to check
+    double quiet_seconds = 10;   // without a byte while an answer is pending
+    double call_seconds = 60;    // for one call of a function of a plugin
+    double total_seconds = 120;  // in total; a slower program cannot be checked
     std::size_t longest_line = 4096;
-    const std::atomic<bool>* stop = nullptr;  // when set, the program is ended and Interrupted thrown
-    /// The same limit for each answer of either kind; 0: as it is.
+    const std::atomic<bool>* stop = nullptr;  // if set, the program is ended and Interrupted is thrown
+    /// Sets the same limit for each answer of either kind; 0: no change.
     void limit_answers(double seconds) {
         if (seconds > 0) hello_seconds = quiet_seconds = call_seconds = seconds;
     }
 };
 
-/// A program: checked by itself, or an arm of an experiment. Its requests are sequential, whoever makes them.
+/// A program, checked by itself or as an arm of an experiment. Its requests are sequential, also for several callers.
 class ProgramSampler : public ExternalSampler, public SamplerAdapter {
 public:
     std::string name() const override = 0;
 };
 
-/// Starts `command` with /bin/sh -c. Throws SamplerError that says at which request, what came and what was expected;
-/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is before what it
-/// writes to stderr and before that text; "": the command.
+/// Starts `command` with /bin/sh -c. Throws SamplerError with the request, the answer and the expected answer;
+/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is the prefix of
+/// its stderr output and of that text; "": the command.
 std::shared_ptr<const ProgramSampler> start_pipe(
     const std::string& command, const PipeLimits& limits = {}, const std::string& label = "");
 
-// ---- What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`, or `hello 3 ...`;
+// ---- The declaration of a program: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`, or `hello 3 ...`;
 // docs/samplers.md has the keys.
 
-/// What a program declares of itself in its first line.
+/// The declaration in the first line of a program.
 struct Handshake {
     int protocol = 1;
     std::string name;
     Traits traits;
-    bool hemisphere = false;  // a draw under the horizon is nothing drawn
-    bool f_cos = false;       // f comes with |cos|
+    bool hemisphere = false;  // a draw below the horizon is no sample
+    bool f_cos = false;       // f includes |cos|
     bool weight = false, delta = false, blocks = false;
     std::vector<std::string> uses;  // protocol 3: of context_names()
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
 
-/// What was expected of a greeting, and what came in place of it; both empty where it could be read.
+/// The expected handshake, and the received one; both empty if it is valid.
 struct HandshakeError {
     std::string expected, got;
     explicit operator bool() const { return !got.empty(); }
 };
-/// Reads the first line that a program answers.
+/// Reads the first line of a program.
 HandshakeError read_handshake(std::string_view answer, Handshake& out);
 
 }  // namespace crescent::inline sources

@@ -1,5 +1,5 @@
-// One loop over poll() writes requests and reads answers, whichever side is ready: neither can wait for the other for
-// ever. Time is looked at every 50 ms at least. A program that broke off once is not asked again.
+// One loop over poll() writes requests and reads answers, whichever side is ready, so neither side blocks the other.
+// The time limits are checked at least every 50 ms. A program that failed once gets no further requests.
 #include "check/sources/pipe_io.h"
 
 #include <bit>
@@ -17,13 +17,13 @@ static_assert(std::endian::native == std::endian::little, "blocks are little-end
 
 void PipeConnection::fault(
     const std::string& request, std::size_t i, const std::string& what, std::string_view expected) {
-    program_.wait_ready(false, false, 0);  // what it printed comes before the error
+    program_.wait_ready(false, false, 0);  // its output precedes the error
     broken_ = fmt::format("request {} ({}): expected {}, {}", requests_ + i + 1, shown(request), expected, what);
     throw SamplerError(broken_);
 }
 
 /// "" while it runs.
-std::string PipeConnection::how_it_ended(int milliseconds) const {
+std::string PipeConnection::exit_text(int milliseconds) const {
     const std::optional<ProcessEnd> end = program_.ended(milliseconds);
     if (!end) return "";
     if (end->signal != 0) return "the program was killed by " + end->text();
@@ -32,24 +32,24 @@ std::string PipeConnection::how_it_ended(int milliseconds) const {
     return "the program ended with " + end->text() + (by_signal ? ": " + ProcessEnd{0, end->code - 128}.text() : "");
 }
 
-std::string PipeConnection::why_closed() const {
-    const std::string how = how_it_ended(200);
+std::string PipeConnection::close_reason() const {
+    const std::string how = exit_text(200);
     return how.empty() ? "the program closed its output" : how;
 }
 
-/// Why nothing comes: a program that went on in the background and ended itself, or one that keeps its answers.
-std::string PipeConnection::why_silent() const {
-    const std::string how = how_it_ended(0);
-    if (!how.empty()) return ": " + how + ", and what it left running holds its output open and says nothing";
-    return pending().empty() ? " (does it flush every answer?)" : "; half an answer stands there: " + shown(pending());
+/// The reason for a missing answer: a program that continues in the background, or one that does not flush its answers.
+std::string PipeConnection::silence_reason() const {
+    const std::string how = exit_text(0);
+    if (!how.empty()) return ": " + how + ", and what it left running keeps its output open without an answer";
+    return pending().empty() ? " (does it flush every answer?)" : "; it sent an incomplete answer: " + shown(pending());
 }
 
 std::string PipeConnection::end_of_output() const {
     return fmt::format(
-        "but {}{}", why_closed(), pending().empty() ? "" : " in the middle of an answer: " + shown(pending()));
+        "but {}{}", close_reason(), pending().empty() ? "" : " in the middle of an answer: " + shown(pending()));
 }
 
-/// False at the end of the program's output.
+/// Returns false at the end of the program's output.
 bool PipeConnection::fill() {
     incoming_.erase(0, read_from_);
     read_from_ = 0;
@@ -62,27 +62,28 @@ bool PipeConnection::fill() {
     return n > 0 || (n < 0 && (error == EAGAIN || error == EINTR));
 }
 
-/// Returns how many bytes were written.
+/// Returns the number of bytes written.
 std::size_t PipeConnection::send(Exchange& x, std::string_view bytes, bool answers_wait) {
     const ssize_t n = program_.write(bytes);
-    if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + why_closed());
+    if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + close_reason());
     return static_cast<std::size_t>(std::max<ssize_t>(n, 0));
 }
 
-void PipeConnection::mind_the_time(Exchange& x, Clock::time_point last) {
+void PipeConnection::check_time_limits(Exchange& x, Clock::time_point last) {
     if (limits_.stop && limits_.stop->load()) {
         broken_ = "interrupted";
         throw Interrupted{};
     }
     if (seconds_since(began_) > limits_.total_seconds) {
-        broken_ = fmt::format("the program is too slow to judge: {:g} s are spent and it gives {:.2g} answers a second",
-            limits_.total_seconds, static_cast<double>(requests_ + x.answered) / seconds_since(began_));
+        broken_ =
+            fmt::format("the program is too slow to check: {:g} s are spent and it gives {:.2g} answers per second",
+                limits_.total_seconds, static_cast<double>(requests_ + x.answered) / seconds_since(began_));
         slow_ = true;
         throw SamplerTimeout(broken_);
     }
     const double quiet = seconds_since(last);
-    if (quiet > (greeted_ ? limits_.quiet_seconds : limits_.hello_seconds))
-        fault(x, x.answered, fmt::format("got nothing for {:.0f} s{}", quiet, why_silent()));
+    if (quiet > (handshake_done_ ? limits_.quiet_seconds : limits_.hello_seconds))
+        fault(x, x.answered, fmt::format("got nothing for {:.0f} s{}", quiet, silence_reason()));
 }
 
 void PipeConnection::check_open() const {
@@ -109,7 +110,7 @@ void PipeConnection::run(Exchange& x) {
             last = Clock::now();
             x.take();
         }
-        mind_the_time(x, last);
+        check_time_limits(x, last);
     }
 }
 
@@ -125,7 +126,7 @@ void PipeConnection::lines(std::size_t count, std::string_view expected, const W
     run(x);
     if (pending().find('\n') != std::string_view::npos)
         fault(x, count - 1,
-            "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))) + only_answers);
+            "got more lines than requested: " + shown(pending().substr(0, pending().find('\n'))) + only_answers);
     requests_ += count;
 }
 
@@ -149,9 +150,10 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
     }
 }
 
-// Rows go from and to the caller's memory without a copy in between: they are most of what is exchanged.
+// Rows are read from and written to the caller's memory without a copy: they are most of the exchanged data.
 void PipeConnection::blocks(const Rows& rows) {
-    constexpr std::size_t most_rows = 1 << 15;  // 65536 are allowed; smaller ones let both sides work at once
+    constexpr std::size_t most_rows =
+        1 << 15;  // 65536 are allowed; smaller blocks let both sides work at the same time
     const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
     Exchange x{rows.count, expected, rows.describe, {}, {}};
     check_open();
@@ -186,15 +188,15 @@ void PipeConnection::blocks(const Rows& rows) {
             }
             last = Clock::now();
         }
-        mind_the_time(x, last);
+        check_time_limits(x, last);
     }
     if (program_.wait_ready(false, true, 0).output && fill() && !pending().empty())
-        fault(x, rows.count - 1,
-            fmt::format("got {} bytes more than were asked for: {}", pending().size(), shown(pending())));
+        fault(
+            x, rows.count - 1, fmt::format("got {} bytes more than requested: {}", pending().size(), shown(pending())));
     requests_ += rows.count;
 }
 
-/// Reads what there is of the answer to `n` rows; false at the end of the program's output.
+/// Reads the available part of the answer to `n` rows; returns false at the end of the program's output.
 bool PipeConnection::take_block(
     Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read) {
     const auto read = [&](char* to, std::size_t most, std::size_t& got) {

@@ -1,4 +1,4 @@
-// The words of the pipe protocol: floats in and out, and what came, made fit to be shown.
+// Text of the pipe protocol: parsing and printing floats, and received text in a printable form.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace crescent::inline sources {
 
-/// What came, for a message: cut short, with what does not print shown as \xNN.
+/// Received text for a message: shortened, with unprintable bytes as \xNN.
 inline std::string shown(std::string_view s) {
     std::string out = "'";
     for (char c : s.substr(0, 80)) {
@@ -26,11 +26,11 @@ inline std::string shown(std::string_view s) {
     return out + (s.size() > 80 ? "...'" : "'");
 }
 
-/// Behind what came in place of an answer: programs greet their users, warn and tell of progress.
-inline constexpr const char* only_answers = "; stdout is for answers alone, what else is said belongs on stderr";
+/// Appended to an unexpected answer: programs print greetings, warnings and progress.
+inline constexpr const char* only_answers = "; stdout is for answers alone, other output belongs on stderr";
 
-/// What a double makes of a number that it cannot hold: infinite where it is too large, 0 where it is too small.
-/// Decided by the place of its first digit, in powers of ten (of two for hexadecimal digits).
+/// The double for a number out of range: infinite if it is too large, 0 if it is too small. Decided by the position of
+/// its first digit, in powers of ten (of two for hexadecimal digits).
 inline double out_of_range(std::string_view word, bool hex) {
     const std::size_t mark = std::min(word.find_first_of(hex ? "pP" : "eE"), word.size());
     const std::string_view digits = word.substr(0, mark);
@@ -46,7 +46,7 @@ inline double out_of_range(std::string_view word, bool hex) {
     return power + (negative ? -exponent : exponent) > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
-/// A float at the front of `s`, decimal or hexadecimal, NaN and infinities included; what is left stays in `s`.
+/// Reads a float at the front of `s`, decimal or hexadecimal, including NaN and infinities, and removes it from `s`.
 inline bool take_float(std::string_view& s, double& out) {
     while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
     const std::size_t end = std::min(s.find_first_of(" \t"), s.size());
@@ -65,10 +65,10 @@ inline bool take_float(std::string_view& s, double& out) {
     return true;
 }
 
-/// Nothing but spaces.
+/// Whether there are only spaces.
 inline bool blank(std::string_view s) { return s.find_first_not_of(" \t") == std::string_view::npos; }
 
-/// Shortest text that reads back as the same double.
+/// Appends the shortest text that reads back as the same double.
 inline void append(std::string& to, double v) {
     char buffer[32];
     buffer[0] = ' ';
@@ -76,12 +76,12 @@ inline void append(std::string& to, double v) {
     to.append(buffer, end);
 }
 
-// ---- Requests to a program and its answers, text lines or blocks of doubles. Requests run far ahead of the answers,
-// both ways without blocking, so that neither side waits for the other.
+// ---- Requests to a program and its answers, as text lines or blocks of doubles. Requests are sent far ahead of the
+// answers, without blocking, so that neither side waits for the other.
 
 class PipeConnection {
 public:
-    /// Starts `command` by the shell; `label` is before what it writes to stderr.
+    /// Starts `command` with the shell; `label` is the prefix of its stderr output.
     PipeConnection(const std::string& command, const PipeLimits& limits, const std::string& label)
         : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = label}) {}
     PipeConnection(const PipeConnection&) = delete;
@@ -89,9 +89,9 @@ public:
 
     using Write = std::function<void(std::size_t, std::string&)>;
     using Read = std::function<bool(std::size_t, std::string_view)>;
-    /// One line each way `count` times; `read` says whether an answer was as expected.
+    /// Sends and receives one line `count` times; `read` returns whether an answer is valid.
     void lines(std::size_t count, std::string_view expected, const Write& write, const Read& read);
-    /// Rows of doubles each way; `told` shows a request in a message.
+    /// Rows of doubles in both directions; `describe` formats a request for a message.
     struct Rows {
         const char* operation;  // four letters
         std::size_t count, given, got;
@@ -102,33 +102,33 @@ public:
     };
     void blocks(const Rows& rows);
 
-    /// Says what is wrong with the answer to request i of those under way.
+    /// Throws an error for the answer to request i of the current exchange.
     [[noreturn]] void fault(
         const std::string& request, std::size_t i, const std::string& what, std::string_view expected);
-    void greeted() { greeted_ = true; }
+    void finish_handshake() { handshake_done_ = true; }
     const std::string& broken() const { return broken_; }
     QueryUsage spending() const { return {requests_, seconds_since(began_), limits_.total_seconds}; }
-    /// What it had time to say is read no more; half a second to end by itself, unless it was given up.
+    /// Ends the program without reading more output; it has half a second to exit by itself, unless it failed.
     void stop() { program_.end(broken_.empty() ? 500 : 0); }
 
 private:
     using Clock = std::chrono::steady_clock;
-    /// Requests under way: how many answers are due, how many requests are written, how many answers came.
+    /// A series of requests: number of answers expected, requests written, answers received.
     struct Exchange {
         std::size_t count;
         std::string_view expected;
         std::function<std::string(std::size_t)> describe;  // request i, for a message
-        std::function<void()> produce, take;               // more requests into `outgoing`; answers out of what came
+        std::function<void()> produce, take;  // appends requests to `outgoing`; reads answers from the received bytes
         std::size_t written = 0, answered = 0, sent = 0;
         std::string outgoing{};
     };
     PipeLimits limits_;
-    mutable Process program_;  // asked how it ended where a message says so
+    mutable Process program_;  // mutable, to query the exit status for a message
     std::string incoming_;
     std::size_t read_from_ = 0;
     std::uint64_t requests_ = 0;
-    std::string broken_;  // what went wrong; nothing is asked from then on
-    bool greeted_ = false, slow_ = false;
+    std::string broken_;  // the error; no requests are sent after it
+    bool handshake_done_ = false, slow_ = false;
     Clock::time_point began_ = Clock::now();
 
     static double seconds_since(Clock::time_point then) {
@@ -137,7 +137,7 @@ private:
     void run(Exchange& x);
     void check_open() const;
     std::size_t send(Exchange& x, std::string_view bytes, bool answers_wait);
-    void mind_the_time(Exchange& x, Clock::time_point last);
+    void check_time_limits(Exchange& x, Clock::time_point last);
     void take_lines(Exchange& x, const Read& read);
     bool take_block(Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read);
     [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
@@ -145,9 +145,9 @@ private:
     }
     bool fill();
     std::string_view pending() const { return std::string_view(incoming_).substr(read_from_); }
-    std::string how_it_ended(int milliseconds) const;
-    std::string why_closed() const;
-    std::string why_silent() const;
+    std::string exit_text(int milliseconds) const;
+    std::string close_reason() const;
+    std::string silence_reason() const;
     std::string end_of_output() const;
 };
 

@@ -1,4 +1,5 @@
-// Hosts are started when a thread calls and none is free, and kept. Requests carry the surface once a run of rows.
+// A host process is started if a thread calls and none is free, and then kept. A request has the surface once for each
+// run of rows.
 #include "check/sources/plugin.h"
 
 #include <dlfcn.h>
@@ -36,8 +37,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The program to execute: the one that this code is a part of, else a small one beside the library that it is a part
-/// of (the Python module), else one in PATH. CRESCENT_PLUGIN_HOST names another.
+/// The program to execute: the one that contains this code, or a small one next to the library that contains it (the
+/// Python module), or one in PATH. CRESCENT_PLUGIN_HOST overrides it.
 std::string host_program() {
     if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
     Dl_info own{};
@@ -47,13 +48,13 @@ std::string host_program() {
     if (dladdr(reinterpret_cast<const void*>(getauxval(AT_PHDR)), &program) != 0 && own.dli_fbase == program.dli_fbase)
         return "/proc/self/exe";
 #endif
-    const std::filesystem::path beside = std::filesystem::path(own.dli_fname).parent_path() / plugin_host_name;
+    const std::filesystem::path host = std::filesystem::path(own.dli_fname).parent_path() / plugin_host_name;
     std::error_code unknown;
-    return std::filesystem::exists(beside, unknown) ? beside.string() : plugin_host_name;
+    return std::filesystem::exists(host, unknown) ? host.string() : plugin_host_name;
 }
 
-/// What a library says of itself in the greeting of its host.
-struct About {
+/// The declaration of a library in the handshake of its host.
+struct PluginInfo {
     std::string name;
     int numbers = 2;
     bool pdf = false, f = false, serial = false;
@@ -69,7 +70,7 @@ struct Call {
     }
 };
 
-/// Memory of one size that a host has too.
+/// Memory of fixed size that a host shares.
 class SharedMemory {
 public:
     SharedMemory() {
@@ -84,7 +85,7 @@ public:
             memory_ = ::mmap(nullptr, PluginRows::bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
         if (memory_ == MAP_FAILED) throw OutputError(fmt::format("no shared memory: {}", std::strerror(errno)));
 #ifdef __linux__
-        ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // a plugin cannot take it away
+        ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // a plugin cannot remove it
 #endif
     }
     ~SharedMemory() {
@@ -101,7 +102,7 @@ private:
     void* memory_ = MAP_FAILED;
 };
 
-/// A process with the library loaded. Used by one thread at a time; nothing can be asked of it after a fault.
+/// A process with the library loaded. Used by one thread at a time, and not after a fault.
 class Host {
 public:
     Host(const std::string& library, const PipeLimits& limits)
@@ -123,26 +124,27 @@ public:
     Host(const Host&) = delete;
     Host& operator=(const Host&) = delete;
 
-    const About& about() const { return about_; }
+    const PluginInfo& info() const { return info_; }
 
-    /// One request: its runs, and the random numbers or directions of its rows. The answer is there until the next.
-    PluginRows ask(
+    /// Sends one request: its runs, and the random numbers or directions of its rows. The answer is valid until the
+    /// next request.
+    PluginRows query(
         char operation, const ExternalBatch& batch, std::span<const double> given, std::size_t rows, const Call& call) {
         const PluginRows block(memory_.at(), rows, given.size() / rows);
         std::ranges::copy(given, block.given);
         const std::size_t lights = batch.lights.size();
-        const std::size_t surface = about_.uses.empty() ? 4 : context_columns(about_.uses, lights);
+        const std::size_t surface = info_.uses.empty() ? 4 : context_columns(info_.uses, lights);
         const PluginRequest head{operation, static_cast<std::uint32_t>(batch.runs.size()),
             static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(surface)};
         std::vector<double> columns;
         for (std::size_t i = 0; i < batch.runs.size(); ++i) {
             const ExternalRun& r = batch.runs[i];
             columns.insert(columns.end(), {static_cast<double>(r.rows), r.wo.x, r.wo.y, r.wo.z});
-            if (about_.uses.empty())
+            if (info_.uses.empty())
                 columns.insert(columns.end(), {r.surface.s, r.surface.alpha, r.surface.diffuse, r.surface.lobe});
             else
                 add_context(
-                    about_.uses, r, batch.lights, batch.lights_at.subspan(lights ? i * lights : 0, lights), columns);
+                    info_.uses, r, batch.lights, batch.lights_at.subspan(lights ? i * lights : 0, lights), columns);
         }
         std::string front(reinterpret_cast<const char*>(&head), sizeof head);
         front.append(reinterpret_cast<const char*>(columns.data()), columns.size() * sizeof(double));
@@ -163,7 +165,7 @@ private:
     PipeLimits limits_;
     SharedMemory memory_;
     Process process_;
-    About about_;
+    PluginInfo info_;
 
     void send(std::string_view bytes, const std::string& what) {
         for (Clock::time_point last = Clock::now(); !bytes.empty();) {
@@ -197,7 +199,7 @@ private:
     }
 
     void read_uses(std::string_view names) {
-        if (!take_context_names(names, about_.uses))
+        if (!take_context_names(names, info_.uses))
             throw OutputError(
                 fmt::format("cannot open the plugin {}: crescent_sampler_uses gives '{}': expected {}, each "
                             "once, separated by commas",
@@ -206,28 +208,28 @@ private:
 
     void read_handshake(std::string_view line) {
         const std::string expected = fmt::format("{}... name=NAME", plugin_handshake);
-        const auto refuse = [&](std::string_view got) {
+        const auto reject = [&](std::string_view got) {
             throw OutputError(fmt::format("cannot open the plugin {}: {} answers '{}', expected '{}'", library_,
                 printable(host_program()), printable(got, 200), expected));
         };
-        if (!line.starts_with(plugin_handshake)) refuse(line);
+        if (!line.starts_with(plugin_handshake)) reject(line);
         std::string_view rest = line.substr(std::strlen(plugin_handshake));
         if (rest.starts_with("error "))
             throw OutputError(fmt::format("cannot open the plugin {}: {}", library_, printable(rest.substr(6))));
-        while (!rest.empty() && about_.name.empty()) {
+        while (!rest.empty() && info_.name.empty()) {
             const std::size_t equals = std::min(rest.find('='), rest.size() - 1);
             const std::string_view key = rest.substr(0, equals);
             rest.remove_prefix(equals + 1);
             const std::string_view value = key == "name" ? rest : rest.substr(0, rest.find(' '));
             rest.remove_prefix(std::min(value.size() + 1, rest.size()));
-            if (key == "name") about_.name = printable(value);
-            if (key == "numbers") std::from_chars(value.data(), value.data() + value.size(), about_.numbers);
-            if (key == "pdf") about_.pdf = value == "1";
-            if (key == "f") about_.f = value == "1";
-            if (key == "serial") about_.serial = value == "1";
+            if (key == "name") info_.name = printable(value);
+            if (key == "numbers") std::from_chars(value.data(), value.data() + value.size(), info_.numbers);
+            if (key == "pdf") info_.pdf = value == "1";
+            if (key == "f") info_.f = value == "1";
+            if (key == "serial") info_.serial = value == "1";
             if (key == "uses") read_uses(value);
         }
-        if (about_.name.empty()) refuse(line);
+        if (info_.name.empty()) reject(line);
     }
 };
 
@@ -236,24 +238,24 @@ public:
     Plugin(const std::string& path, const PipeLimits& limits, const ExternalSurface& surface)
         : path_(path), limits_(limits), surface_(surface) {
         free_.push_back(std::make_unique<Host>(path_, limits_));
-        about_ = free_.front()->about();
+        info_ = free_.front()->info();
     }
 
-    std::string name() const override { return about_.name; }
-    int numbers() const override { return about_.numbers; }
-    bool serial() const override { return about_.serial; }
+    std::string name() const override { return info_.name; }
+    int numbers() const override { return info_.numbers; }
+    bool serial() const override { return info_.serial; }
     Traits traits() const override {
         Traits traits;
-        traits.numbers = about_.numbers;
-        traits.has_pdf = about_.pdf;
+        traits.numbers = info_.numbers;
+        traits.has_pdf = info_.pdf;
         return traits;
     }
-    bool has_f() const override { return about_.f; }
+    bool has_f() const override { return info_.f; }
 
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const Call call{"crescent_sampler_sample", batch.runs.front().wo};
         on_host([&](Host& host) {
-            const PluginRows rows = host.ask('s', batch, batch.u, out.pdf.size(), call);
+            const PluginRows rows = host.query('s', batch, batch.u, out.pdf.size(), call);
             std::copy_n(rows.wi, 3 * out.wi.size(), doubles(out.wi).data());
             std::copy_n(rows.values, out.pdf.size(), out.pdf.begin());
         });
@@ -266,7 +268,7 @@ public:
             const std::size_t rows = std::min<std::size_t>(plugin_rows, u.size() - first);
             numbers.clear(), wi.resize(rows), pdf.resize(rows);
             for (const PrimarySample& row : u.subspan(first, rows))
-                for (int k = 0; k < about_.numbers; ++k) numbers.push_back(row[k]);
+                for (int k = 0; k < info_.numbers; ++k) numbers.push_back(row[k]);
             const std::vector<ExternalRun> run = {on_surface(wo, surface_, rows)};
             draw(with_example_light(run, numbers), {wi, pdf});
             for (std::size_t i = 0; i < rows; ++i) out[first + i] = Draw{wi[i], pdf[i]};
@@ -279,13 +281,13 @@ public:
     void f(std::span<const Pair> at, std::span<double> out) const override {
         values('f', "crescent_sampler_f", at, surface_, out);
     }
-    bool uses_lights() const override { return std::ranges::find(about_.uses, "lights") != about_.uses.end(); }
-    bool has_density() const override { return about_.pdf; }
+    bool uses_lights() const override { return std::ranges::find(info_.uses, "lights") != info_.uses.end(); }
+    bool has_density() const override { return info_.pdf; }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         std::vector<Vec3d> directions(wi.begin(), wi.end());
         const Call call{"crescent_sampler_pdf", batch.runs.front().wo};
         on_host([&](Host& host) {
-            const PluginRows block = host.ask('p', batch, doubles(directions), directions.size(), call);
+            const PluginRows block = host.query('p', batch, doubles(directions), directions.size(), call);
             std::copy_n(block.values, directions.size(), out.begin());
         });
     }
@@ -295,7 +297,7 @@ private:
     static ExternalRun on_surface(Vec3d wo, const ExternalSurface& surface, std::size_t rows) {
         return {wo, surface, rows, {surface.diffuse, surface.diffuse, surface.diffuse}};
     }
-    /// Below the light of a check, if the plugin uses lights.
+    /// Adds the light of a check if the plugin uses lights.
     ExternalBatch with_example_light(std::span<const ExternalRun> runs, std::span<const double> u) const {
         if (!uses_lights()) return {runs, u};
         static thread_local std::vector<ExternalLightAt> at;
@@ -320,18 +322,18 @@ private:
             }
             on_host([&](Host& host) {
                 const PluginRows block =
-                    host.ask(operation, with_example_light(runs, {}), doubles(wi), rows, {function, runs[0].wo});
+                    host.query(operation, with_example_light(runs, {}), doubles(wi), rows, {function, runs[0].wo});
                 std::copy_n(block.values, rows, out.subspan(first, rows).begin());
             });
         }
         count(at.size());
     }
 
-    /// Calls with a host that no other thread uses. One that failed is not used again, and neither is the plugin.
+    /// Calls with a host that no other thread uses. After a failure neither the host nor the plugin is used again.
     template <class Work> void on_host(const Work& work) const {
         std::unique_lock<std::mutex> one_at_a_time(serial_, std::defer_lock);
-        if (about_.serial) one_at_a_time.lock();
-        std::unique_ptr<Host> host = taken();
+        if (info_.serial) one_at_a_time.lock();
+        std::unique_ptr<Host> host = take_host();
         try {
             if (!host) host = std::make_unique<Host>(path_, limits_);
             work(*host);
@@ -343,7 +345,7 @@ private:
         const std::lock_guard<std::mutex> guard(lock_);
         free_.push_back(std::move(host));
     }
-    std::unique_ptr<Host> taken() const {
+    std::unique_ptr<Host> take_host() const {
         const std::lock_guard<std::mutex> guard(lock_);
         if (!fault_.empty()) throw SamplerExited("the plugin was given up: " + fault_);
         if (free_.empty()) return nullptr;
@@ -355,10 +357,10 @@ private:
     std::string path_;
     PipeLimits limits_;
     ExternalSurface surface_;
-    About about_;
+    PluginInfo info_;
     ExampleLight example_ = example_light();
     mutable std::mutex serial_, lock_;
-    mutable std::vector<std::unique_ptr<Host>> free_;  // both under lock_
+    mutable std::vector<std::unique_ptr<Host>> free_;  // both guarded by lock_
     mutable std::string fault_;
 };
 

@@ -1,6 +1,6 @@
 // A sampler in a shared library with the C interface of sampler_plugin.h: checked by itself, or an arm of an
-// experiment. The library is loaded by a process of its own (plugin_host.h), one for each thread that calls,
-// where all that it does to its process stays.
+// experiment. A separate process (plugin_host.h), one for each calling thread, loads the library, so that changes to
+// the process stay there.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@
 
 namespace crescent::inline sources {
 
-/// Drawn for any surface point as an arm; checked on one surface.
+/// As an arm it takes any surface point; a check uses one surface.
 class PluginSampler : public ExternalSampler, public InProcessAdapter {
 public:
     std::string name() const override = 0;
 };
 
-/// Opens the library at `path`; as a SamplerAdapter it is called on `surface`. Throws OutputError if the file is no
-/// such library, with what is missing, and SamplerError if it ends its process, throws or takes longer than
+/// Opens the library at `path`; as a SamplerAdapter it is called on `surface`. Throws OutputError if the file is not
+/// such a library, with what is missing, and SamplerError if it ends its process, throws or takes longer than
 /// limits.call_seconds, here or in a later call.
 std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
     const ExternalSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});

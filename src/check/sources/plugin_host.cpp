@@ -1,6 +1,7 @@
-// dlopen() and dlsym(); the functions of sampler_plugin.h are called by one thread, block by block. The pipes are moved
-// to descriptors of our own before the plugin is loaded, and its stdout goes to stderr. A second thread ends the group
-// when crescent is gone, also in the middle of a call. Needs nothing of crescent, so that it is a small program too.
+// dlopen() and dlsym(); one thread calls the functions of sampler_plugin.h, block by block. The pipes are moved to
+// separate descriptors before the plugin is loaded, and its stdout goes to stderr. A second thread ends the process
+// group if crescent exits, also during a call. Does not depend on other code of crescent, so that it is also a small
+// program.
 #include "check/sources/plugin_host.h"
 
 #include <dlfcn.h>
@@ -33,22 +34,23 @@ const char* const plugin_host_name = "crescent-plugin-host";
 
 namespace {
 
-/// Ends the host and all that the plugin started in its group. Its exit handlers do not run: it may have threads.
+/// Ends the host and all processes that the plugin started in its group. Exit handlers do not run, because there may be
+/// threads.
 [[noreturn]] void end_group() {
     if (::getpgrp() == ::getpid()) ::kill(0, SIGKILL);
     ::_exit(0);
 }
 
 [[noreturn]] void leave() {
-    std::fflush(nullptr);  // what the plugin printed
+    std::fflush(nullptr);  // flush the output of the plugin
     end_group();
 }
 
-/// Where crescent is at the other ends.
+/// The pipes to crescent.
 struct Pipes {
     int in = ::fcntl(0, F_DUPFD_CLOEXEC, 64), out = ::fcntl(1, F_DUPFD_CLOEXEC, 64);
 
-    /// False at the end of the input.
+    /// Returns false at the end of the input.
     bool read(void* to, std::size_t size) const {
         for (auto* at = static_cast<char*>(to); size > 0;) {
             const ssize_t n = ::read(in, at, size);
@@ -69,7 +71,7 @@ struct Pipes {
     void write(const std::string& text) const { write(text.data(), text.size()); }
 };
 
-/// Waits until the other end of the input is closed. A host that is idle then ends by itself.
+/// Waits until the other end of the input is closed. An idle host then ends by itself.
 void* watch(void* input) {
     pollfd end{*static_cast<int*>(input), 0, 0};
     while (::poll(&end, 1, -1) < 0) {}
@@ -78,7 +80,7 @@ void* watch(void* input) {
     end_group();
 }
 
-/// The program that this is a part of may have set handlers already.
+/// The program that contains this code may have installed handlers already.
 void reset_signals() {
     for (int s = 1; s < NSIG; ++s) ::signal(s, SIG_DFL);
 }
@@ -91,19 +93,19 @@ void start_watching(int& input) {
     if (pthread_create(&thread, nullptr, watch, &input) != 0) ::_exit(1);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
 #ifdef __linux__
-    ::prctl(PR_SET_PDEATHSIG, 0);  // which would end this process alone, and leave its group
+    ::prctl(PR_SET_PDEATHSIG, 0);  // it would end this process alone, but not its group
 #endif
 }
 
 struct Fault {
-    std::string text, function = "";  // that was called; "": none
+    std::string text, function = "";  // the called function; "": none
 };
 
-/// Calls a function of the plugin in the floating-point environment that every program begins with.
+/// Calls a function of the plugin with the default floating-point environment.
 template <class Call> auto called(const char* function, Call&& call) {
     const pid_t self = ::getpid();
     const auto same_process = [&] {
-        if (::getpid() != self) ::_exit(0);  // a child of the plugin, which returned here as well
+        if (::getpid() != self) ::_exit(0);  // a child process of the plugin that returned here too
     };
     std::fesetenv(FE_DFL_ENV);
     try {
@@ -128,7 +130,7 @@ struct Library {
     std::string name, uses;
 
     explicit Library(const std::string& path) {
-        // dlopen takes a name without a slash for one of the system's libraries.
+        // For a name without a slash dlopen would search the system's libraries.
         const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
         void* library = called("dlopen", [&] { return ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); });
         if (!library) throw Fault{::dlerror()};
@@ -166,7 +168,7 @@ struct Library {
     }
 };
 
-/// What the rows of a request share, one copy a row. Reused, so that memory is taken once.
+/// The columns that the rows of a request share, one copy for each row. Reused, so that memory is allocated once.
 struct Columns {
     std::vector<double> run, wo, surface;
 
@@ -207,7 +209,7 @@ std::string handshake(const Library& library) {
         (library.uses.empty() ? "" : "uses=" + library.uses + " ") + "name=" + library.name + "\n";
 }
 
-/// Loaded for good: a plugin may have threads, and is never unloaded.
+/// Loads the plugin permanently: it may have threads, so it is never unloaded.
 const Library& load(const Pipes& pipes, const char* path) {
     try {
         const Library* library = new Library(path);
@@ -248,7 +250,7 @@ void serve_plugin(const char* path) {
 
 namespace {
 
-/// Before main() and the constructors of the program that this is a part of. glibc and macOS hand the arguments over.
+/// Runs before main() and the constructors of the program that contains this code. glibc and macOS pass the arguments.
 [[gnu::constructor(101)]] void serve_if_host(int count, char** words) {
     if (count == 2 && std::strcmp(words[0], plugin_host_name) == 0) serve_plugin(words[1]);
 }

@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A plugin that does `on_call` in each call, in a folder that lives as long as the test.
+/// A plugin that executes `on_call` in each call, in a folder that exists as long as the test.
 class Plugins : public ::testing::Test {
 protected:
     std::string compiled(const std::string& on_call) {
@@ -31,7 +31,7 @@ protected:
         EXPECT_EQ(std::system(command.c_str()), 0);
         return file;
     }
-    /// What is thrown where it is drawn from.
+    /// The message of the error thrown by a draw.
     template <class Error> std::string error(const PluginSampler& plugin) {
         const std::vector<PrimarySample> u(10, {0.25, 0.5});
         std::vector<Draw> out(u.size());
@@ -57,7 +57,7 @@ TEST_F(Plugins, AnswerManyThreadsAtOnce) {
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([&] {
-            // More rows than one request holds.
+            // More rows than one request can contain.
             std::vector<PrimarySample> u;
             for (int i = 0; i < 70000; ++i) u.push_back({(i + 0.5) / 70000, 0.25});
             std::vector<Draw> out(u.size());
@@ -73,7 +73,7 @@ TEST_F(Plugins, AnswerManyThreadsAtOnce) {
     EXPECT_EQ(plugin->spending().answers, 4u * 2 * 70000);
 }
 
-TEST_F(Plugins, ThatEndTheirProcessAreGivenUp) {
+TEST_F(Plugins, EndingTheProcessIsAnError) {
     const auto plugin = open_plugin(compiled("raise(SIGFPE)"));
     const std::string message = error<SamplerError>(*plugin);
     EXPECT_THAT(message, HasSubstr("libodd.so"));
@@ -82,7 +82,7 @@ TEST_F(Plugins, ThatEndTheirProcessAreGivenUp) {
     EXPECT_THAT(error<SamplerExited>(*plugin), HasSubstr("SIGFPE"));
 }
 
-TEST_F(Plugins, ThatLoopAreStoppedAfterTheirTimeOrByTheMonitor) {
+TEST_F(Plugins, EndlessCallsAreStopped) {
     const std::string file = compiled("for (;;) {}");
     PipeLimits limits;
     limits.limit_answers(0.3);
@@ -95,7 +95,7 @@ TEST_F(Plugins, ThatLoopAreStoppedAfterTheirTimeOrByTheMonitor) {
     EXPECT_EQ(error<Interrupted>(*plugin), "interrupted");
 }
 
-TEST_F(Plugins, ThatAreNoneSayWhatIsMissing) {
+TEST_F(Plugins, MissingFunctionsAreReported) {
     EXPECT_THROW(open_plugin("nowhere.so"), OutputError);
     EXPECT_THROW(open_plugin(CRESCENT_SOURCE_DIR "/README.md"), OutputError);
 }

@@ -1,5 +1,5 @@
-// Random numbers in pairs from the stream of the pixel; even ones by Roberts' additive recurrence, whose steps are
-// powers of the generalised golden ratio. All stay at or under 1 - 2^-24.
+// Random numbers in pairs from the stream of the pixel; even covers by Roberts' additive recurrence, whose steps are
+// powers of the generalised golden ratio. All numbers are at most 1 - 2^-24.
 #include "check/sources/primary_sample.h"
 
 #include <algorithm>

@@ -1,16 +1,16 @@
-// The random numbers that samplers on case are given: drawn, or spread evenly. Multiples of 2^-24 where a sampler may
-// compute in single precision.
+// The random numbers for samplers under test: drawn, or spread evenly. Multiples of 2^-24 if a sampler may compute in
+// single precision.
 #pragma once
 
 #include "check/sources/sampler_adapter.h"
 
 namespace crescent::inline sources {
 
-/// Sample i of a stream: pairs of numbers from pcg4d, as the estimator draws them. Blocks of dimensions are told apart
-/// by `technique`.
+/// Sample i of a stream: pairs of numbers from pcg4d, as the estimator draws them. `technique` selects the block of
+/// dimensions.
 PrimarySample drawn_numbers(
     std::uint32_t seed, std::uint32_t pixel, std::uint64_t i, std::uint32_t technique, int count);
-/// An even cover of the cube, the same for every seed: Roberts' sequence, moved by `shift`.
+/// An even cover of the cube, the same for every seed: Roberts' sequence, shifted by `shift`.
 PrimarySample even_cover(std::uint64_t i, const PrimarySample& shift, int count);
 /// "u = (0, 0.5)".
 std::string describe(const PrimarySample& u, int count, int digits = 9);

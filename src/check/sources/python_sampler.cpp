@@ -26,8 +26,8 @@ bool names_python_sampler(const std::string& word) {
 std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits) {
     const char* given = std::getenv("CRESCENT_PYTHON");
     const std::string python = given && *given ? given : "python3";
-    // -P: a file of the current folder does not take the place of a module that the package imports. An interpreter
-    // that the shell cannot start (126, 127) is reported as a package that is missing is.
+    // -P: a file in the current folder does not replace a module that the package imports. An interpreter that the
+    // shell cannot start (126, 127) is reported in the same way as a missing package.
     const std::string command = fmt::format(
         "{} -P -m crescent.serve {}; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] "
         "|| code=1; exit $code",

@@ -1,6 +1,6 @@
-// CSV with a header by its columns' names, in any order; NPY of floats, two-dimensional, by its
-// number of columns. PrimarySample that overflow are infinite, those that underflow are 0. Every mistake is named with
-// line and column.
+// Reads CSV with a header of column names in any order, and two-dimensional NPY arrays of floats by their number of
+// columns. Numbers that overflow become infinite, those that underflow become 0. Every mistake is reported with line
+// and column.
 #include "check/sources/sample_file.h"
 
 #include <algorithm>
@@ -94,9 +94,9 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
     file.read(first.data(), static_cast<std::streamsize>(first.size()));
     first.resize(static_cast<std::size_t>(file.gcount()));
     const NpyHeader h = read_npy_header(in.path, first);
-    const auto refuse = [&](const std::string& message) { in.add(0, 0, message), in.throw_if_any(); };
+    const auto reject = [&](const std::string& message) { in.add(0, 0, message), in.throw_if_any(); };
     if (h.shape.size() != 2)
-        refuse(fmt::format("expected a two-dimensional array, not one of {} dimensions", h.shape.size()));
+        reject(fmt::format("expected a two-dimensional array, not one of {} dimensions", h.shape.size()));
     const std::size_t rows = h.shape[0], columns = h.shape[1];
     NumberTable t;
     std::string expected;
@@ -104,12 +104,12 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
         if (layout.size() == columns) t.columns = layout;
         expected += fmt::format("{}{} ({})", expected.empty() ? "" : " or ", layout.size(), fmt::join(layout, ","));
     }
-    if (t.columns.empty()) refuse(fmt::format("expected {} columns, not {}", expected, columns));
+    if (t.columns.empty()) reject(fmt::format("expected {} columns, not {}", expected, columns));
     file.clear();
     file.seekg(0, std::ios::end);
     const std::size_t bytes = static_cast<std::size_t>(file.tellg()) - h.end;
     if (bytes / h.bytes / columns < rows)
-        refuse(fmt::format("the file ends in row {} of {}", bytes / h.bytes / columns + 1, rows));
+        reject(fmt::format("the file ends in row {} of {}", bytes / h.bytes / columns + 1, rows));
     file.seekg(static_cast<std::streamoff>(h.end));
     std::vector<char> raw(rows * columns * h.bytes);
     file.read(raw.data(), static_cast<std::streamsize>(raw.size()));
@@ -137,8 +137,8 @@ NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<s
     return t;
 }
 
-// ---- The table is a full grid in cos theta and phi: cells where nine of ten samples carry their cell's very value,
-// else points with straight lines between, whose error is told by how much p bends.
+// ---- The table is a full grid in cos theta and phi: cells if nine of ten samples have exactly the value of their
+// cell, otherwise points with linear interpolation, whose error is estimated from the curvature of p.
 
 namespace {
 
@@ -149,7 +149,7 @@ std::vector<double> edges_of(const std::vector<double>& centres, double first, d
     return out;
 }
 
-/// The values that differ by more than `tolerance`, ascending.
+/// The values that differ by more than `tolerance`, in ascending order.
 std::vector<double> distinct(std::vector<double> v, double tolerance) {
     std::sort(v.begin(), v.end());
     std::vector<double> out;
@@ -189,7 +189,7 @@ void SampleFile::read_samples(const std::string& path) {
     with.emplace_back("f");
     const NumberTable t = read_table_file(in, {without, with});
     if (t.rows() < 1000)
-        in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())),
+        in.add(0, 0, fmt::format("{} samples are too few for a check; expected at least 1000", t.rows())),
             in.throw_if_any();
     const int f = t.column("f");
     has_drawn_f_ = f >= 0;
@@ -239,10 +239,10 @@ void SampleFile::read_table(const std::string& path) {
         values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
     for (double v : values_)
         if (std::isnan(v))
-            in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.throw_if_any();
+            in.add(0, 0, "expected a full grid: a cell is missing and another occurs twice"), in.throw_if_any();
 }
 
-/// Nine of ten samples carry the very value of their cell.
+/// Whether nine of ten samples have exactly the value of their cell.
 bool SampleFile::agrees_as_cells() const {
     std::size_t drawn = 0, alike = 0;
     for (const Draw& d : draws_) {
@@ -253,9 +253,9 @@ bool SampleFile::agrees_as_cells() const {
     return 10 * alike >= 9 * drawn;
 }
 
-/// A straight line from point to point is off by a quarter of what p bends by where p is smooth, and by all of it at a
-/// kink. At the first and the last row the line is prolonged: twice what it bends by next to it, and where a pole lies
-/// beyond, what p differs by around it.
+/// Linear interpolation has an error of a quarter of the bend of p where p is smooth, and of all of it at a kink. At
+/// the first and the last row the line is extrapolated: the error is twice the bend of the next row, and towards a pole
+/// the variation of p around it.
 void SampleFile::find_bends() {
     const std::size_t m = rows_.size(), n = columns_.size();
     bent_.assign(values_.size(), 0);

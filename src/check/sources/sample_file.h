@@ -1,5 +1,5 @@
-// Rows of numbers under named columns, from CSV with a header line or from NPY; every mistake with its file, line and
-// column.
+// Rows of numbers with named columns, from CSV with a header line or from NPY; every mistake is reported with file,
+// line and column.
 #pragma once
 
 #include <memory>
@@ -16,12 +16,12 @@ namespace crescent::inline sources {
 struct FileDiagnostics {
     std::string path;
     std::vector<Diagnostic> all;
-    /// Throws InputError with all of them at the tenth.
+    /// Throws InputError with all mistakes at the tenth.
     void add(unsigned line, unsigned column, const std::string& message) {
         all.push_back({{path, line, column}, message});
         if (all.size() >= 10) throw InputError(all);
     }
-    /// Throws InputError with all of them, if there are any.
+    /// Throws InputError with all mistakes, if there are any.
     void throw_if_any() const {
         if (!all.empty()) throw InputError(all);
     }
@@ -31,25 +31,25 @@ struct FileDiagnostics {
 struct NumberTable {
     std::vector<std::string> columns;
     std::vector<double> values;   // row by row
-    std::vector<unsigned> lines;  // of the file, by row; empty where it has none
+    std::vector<unsigned> lines;  // line of the file by row; empty if it has none
     std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
     double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }
     int column(std::string_view name) const;
 };
 
-/// .npy has no names: the one of `layouts` with as many columns applies. CSV must have all columns of one layout and no
-/// others.
+/// .npy has no names: the layout with the same number of columns applies. CSV must have exactly the columns of one
+/// layout.
 NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts);
 
 // ---- Samples of a user's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array,
 // columns in this order).
 //   u1,u2,wix,wiy,wiz,pdf[,f]         f without the cosine, 1/sr
-// The density comes from a table, wix,wiy,wiz,pdf or cos_theta,phi,pdf (phi in radians): a full grid in cos theta and
-// phi, over the sphere or over the hemisphere. It is read as cells, p constant in each and the entries at their
-// centres, where the pdf of the samples says so; else as a grid of points with p bilinear between them, which is then
-// known only to the curvature from point to point, and that much is granted.
+// The density is from a table, wix,wiy,wiz,pdf or cos_theta,phi,pdf (phi in radians): a full grid in cos theta and phi,
+// over the sphere or over the hemisphere. It is read as cells, with constant p and the entries at their centres, if the
+// pdf of the samples agrees with that; otherwise as a grid of points with bilinear p, which is known only to the
+// curvature between points, and the tests allow for that error.
 
-/// Draws from a file, with the density of a second file where there is one. See docs/samplers.md for both formats.
+/// Draws from a file, with the density from an optional second file. docs/samplers.md has both formats.
 class SampleFile : public RecordedSampler {
 public:
     /// Throws InputError with file, line and column of every mistake, at most ten.
@@ -70,8 +70,8 @@ private:
     std::vector<unsigned> lines_;
     std::vector<double> rows_, columns_;  // cos theta and phi of the entries
     std::vector<double> row_edges_, column_edges_;
-    std::vector<double> values_, bent_;     // p by row; how far p bends away from a straight line there
-    double cap_below_ = 0, cap_above_ = 0;  // what p differs by around the poles, where it is prolonged to them
+    std::vector<double> values_, bent_;     // p by row; deviation of p from a straight line there
+    double cap_below_ = 0, cap_above_ = 0;  // variation of p around the poles, for the extrapolation
     void read_samples(const std::string& path);
     void read_table(const std::string& path);
     void find_bends();

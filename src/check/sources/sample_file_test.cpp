@@ -1,4 +1,4 @@
-// Files as spreadsheets and NumPy write them, and broken ones, each of which is refused with its place.
+// Files as spreadsheets and NPY writers produce them, and invalid ones, each of which is rejected with its place.
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -26,7 +26,7 @@ NumberTable read(const std::string& path) {
     return t;
 }
 
-/// What is said of a file that cannot be read.
+/// The message for a file that cannot be read.
 std::string error_of(const std::string& path) {
     try {
         read(path);
@@ -34,7 +34,7 @@ std::string error_of(const std::string& path) {
     return "nothing";
 }
 
-/// An array as NumPy writes it, with this text in place of its header's dictionary.
+/// An array in the format of NumPy, with this text in place of its header's dictionary.
 std::string npy(const std::string& dictionary, const std::string& numbers) {
     const auto length = static_cast<std::uint16_t>(dictionary.size());
     return std::string("\x93NUMPY\x01\0", 8) + static_cast<char>(length & 255) + static_cast<char>(length >> 8) +
@@ -46,7 +46,7 @@ template <class F> std::string bytes_of(std::initializer_list<F> numbers) {
     return out;
 }
 
-TEST(TableFiles, AreReadByTheNamesOfTheirColumns) {
+TEST(TableFiles, ColumnsAreReadByName) {
     const NumberTable t = read(file_of("t.csv",
         "\xef\xbb\xbf"
         "c, b,a\r\n1,2,+3e-1\n\n-4,inf,nan\n"));
@@ -59,7 +59,7 @@ TEST(TableFiles, AreReadByTheNamesOfTheirColumns) {
     EXPECT_EQ(t.column("d"), -1);
 }
 
-TEST(TableFiles, OfNumPyAreTheSameInEitherOrderAndPrecision) {
+TEST(TableFiles, NpyFilesAreEqualInEitherOrderAndPrecision) {
     const std::string rows = "'fortran_order': False, 'shape': (3, 2), }",
                       columns = "'fortran_order': True, 'shape': (3, 2), }";
     const auto values = ElementsAre(1, 2, 3, 4, 5, 6);
@@ -69,8 +69,8 @@ TEST(TableFiles, OfNumPyAreTheSameInEitherOrderAndPrecision) {
         read(file_of("c.npy", npy("{'descr': '<f4', " + columns, bytes_of<float>({1, 3, 5, 2, 4, 6})))).values, values);
 }
 
-// A number too large for a double is none that a density may have; 0 in its place would be a legal one.
-TEST(TableFiles, TakeWhatOverflowsForInfinityAndWhatUnderflowsForZero) {
+// A density must not be infinite, so a number too large for a double is rejected; as 0 it would be accepted.
+TEST(TableFiles, OverflowIsInfiniteAndUnderflowIsZero) {
     const NumberTable t = read(file_of("o.csv", "a,b\n1e999,-1e999\n1e-999,-1e-999\n"));
     EXPECT_EQ(t.at(0, 0), INFINITY);
     EXPECT_EQ(t.at(0, 1), -INFINITY);
@@ -87,7 +87,7 @@ TEST(TableFiles, NameEveryMistakeWithItsPlace) {
     EXPECT_THAT(error_of(testing::TempDir() + "absent.csv"), HasSubstr("cannot be read"));
 }
 
-TEST(TableFiles, OfNumPyThatAreBrokenAreRefused) {
+TEST(TableFiles, InvalidNpyFilesAreRejected) {
     const std::string numbers = bytes_of<double>({1, 2});
     const std::string order = "'fortran_order': False, ";
     for (const auto& [dictionary, message] :
@@ -103,8 +103,8 @@ TEST(TableFiles, OfNumPyThatAreBrokenAreRefused) {
     EXPECT_THAT(error_of(file_of("s.npy", "\x93NUM")), HasSubstr("expected an NPY file"));
 }
 
-// Gaps as long as the header may be, which an expression that calls itself once a character would not survive.
-TEST(TableFiles, OfNumPyMayHaveLongGaps) {
+// Gaps as long as the header allows, which a regular expression that recurses for each character would not survive.
+TEST(TableFiles, NpyHeadersMayHaveLongGaps) {
     const std::string gap(20000, ' ');
     const std::string dictionary = "{'descr':" + gap + "'<f8', 'fortran_order': False, 'shape':" + gap + "(1, 2), }";
     EXPECT_THAT(read(file_of("g.npy", npy(dictionary, bytes_of<double>({7, 8})))).values, ElementsAre(7, 8));

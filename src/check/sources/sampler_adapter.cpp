@@ -1,4 +1,4 @@
-// Of lights the nearest along w_i counts. Disks shine from the side that their normal points to; distances in m.
+// The nearest light along w_i counts. Disks emit from the side of their normal; distances in m.
 #include "check/sources/sampler_adapter.h"
 
 #include <cmath>

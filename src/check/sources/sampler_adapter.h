@@ -1,4 +1,4 @@
-// A sampler under test behind one interface, whatever it is written in, with the errors of one from outside and the
+// The interface of a sampler under test, independent of its language, with the errors of external samplers and the
 // adapters that forward, record or limit calls.
 #pragma once
 
@@ -17,28 +17,28 @@
 
 namespace crescent::inline sources {
 
-// ---- How a sampler from outside fails to answer: what is thrown to whoever asked it.
+// ---- Errors of an external sampler.
 
-/// The sampler cannot be talked with any more: what happened, at which request.
+/// The sampler does not answer any more: the event and the request.
 struct SamplerError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// It was given up in an earlier case.
+/// The sampler failed in an earlier case.
 struct SamplerExited : SamplerError {
     using SamplerError::SamplerError;
 };
 
-/// The program keeps to the protocol but needs more than PipeLimits::total_seconds.
+/// The program follows the protocol but needs more than PipeLimits::total_seconds.
 struct SamplerTimeout : SamplerError {
     using SamplerError::SamplerError;
 };
 
-// ---- A sampler on case, whatever it is written in: built-in arm, planted fault, a user's struct, a file, a pipe.
-// Local frame, n = +z, wo given, wi drawn, both leave the surface; pdf in 1/sr; f without the cosine, in 1/sr.
-// Calls come in batches, so that a pipe can be kept full.
+// ---- A sampler under test: a built-in arm, a planted fault, a user's struct, a file or a pipe. Local frame, n = +z,
+// wo given, wi drawn, both leave the surface; pdf in 1/sr; f without the cosine, in 1/sr. Calls are in batches, so that
+// a pipe is used efficiently.
 
-/// The random numbers of one sample, each in [0, 1): radius and angle first, then as many more as it takes.
+/// The random numbers of one sample, each in [0, 1): radius and angle first, then as many more as the sampler takes.
 struct PrimarySample {
     static constexpr int most = 8;
     double x = 0, y = 0;
@@ -51,7 +51,7 @@ struct PrimarySample {
     operator Vec2d() const { return {x, y}; }
 };
 
-/// The index below over above: of each channel, of all alike where one number is given, or not known.
+/// The index below over above: one for each channel, one for all channels, or unknown.
 struct Index : std::optional<Vec3d> {
     Index() = default;
     Index(double of_all) : optional({of_all, of_all, of_all}) {}
@@ -59,48 +59,48 @@ struct Index : std::optional<Vec3d> {
     Index(std::optional<Vec3d> by_channel) : optional(by_channel) {}
 };
 
-/// What a sampler is, apart from its answers: what it takes, what it gives, and what is known of its surface.
+/// The properties of a sampler: its inputs and outputs, and what is known of its surface.
 struct Traits {
-    enum class WoDomain { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
+    enum class WoDomain { upper, both, none };  // the w_o that it accepts; none: it does not depend on w_o
     using Asked = WoDomain;
     int numbers = 2;   // random numbers of a sample
     int channels = 1;  // of f and of the weight, 1 or 3
     WoDomain wo = WoDomain::upper;
     bool has_pdf = true;      // false: no pdf(w), and the pdf of a draw is 1 or 0
-    bool own_random = false;  // it draws random numbers of its own: the same u may give another answer
-    bool delta = false;       // some of its draws are of delta parts
-    bool reciprocal = true;   // false: f is known not to be
+    bool own_random = false;  // it uses its own random numbers: the same u may give another answer
+    bool delta = false;       // some of its draws belong to delta parts
+    bool reciprocal = true;   // false: f is known not to be reciprocal
     Index eta{};              // index below over above
-    bool importance = false;  // f is not scaled by eta^2 as radiance is, but the other way
-    int bits = 0;             // of what it computes in: 24, 53; 0: read off the answers
+    bool importance = false;  // f is scaled by eta^2 as importance is, not as radiance
+    int bits = 0;             // precision of its arithmetic: 24, 53; 0: determined from the answers
 };
 
-/// A direction and the density it came with; pdf 0: nothing drawn. weight: f cos / p where the sampler itself says it.
+/// A direction and its density; pdf 0: no sample. weight: f cos / p if the sampler returns it.
 struct Draw {
     Vec3d wi{};
     double pdf = 0;
-    std::optional<double> weight{};  // of three channels: their luminance
-    std::optional<double> f{};       // where it is known at the draws alone
-    /// Not 0: a draw of a delta part, with the probability that it was chosen with; pdf is 0 then, and weight is there.
+    std::optional<double> weight{};  // for three channels: their luminance
+    std::optional<double> f{};       // if it is known only at the draws
+    /// Not 0: a draw of a delta part, with the probability of its selection; then pdf is 0, and weight is set.
     double delta = 0;
-    Vec3d weights{};  // by channel, where there are three and weight is there
+    Vec3d weights{};  // by channel, if there are three and weight is set
 };
 
-/// The probability of a delta part that says it was chosen with 0; valid tells of it.
+/// Marks a delta part with selection probability 0; the verdict `valid` reports it.
 inline constexpr double delta_never_chosen = -std::numeric_limits<double>::infinity();
 
-/// wo and wi of one question.
+/// wo and wi of one evaluation.
 struct Pair {
     Vec3d wo, wi;
 };
 
-/// Answers that a sampler from outside gave; of a program, the time they took and the time it has in all, in s.
+/// Number of answers of an external sampler; for a program, the time they took and its total time limit, in s.
 struct QueryUsage {
     std::uint64_t answers = 0;
-    double seconds = 0, allowed = 0;  // allowed 0: it is never cut short
+    double seconds = 0, allowed = 0;  // allowed 0: no limit
 };
 
-/// One density with its draws, or two where a pair of samples is weighed by MIS. Thread-safe unless `serial()`.
+/// One density with its draws, or two if MIS combines a pair of samples. Thread-safe unless `serial()`.
 class SamplerAdapter {
 public:
     virtual ~SamplerAdapter() = default;
@@ -109,7 +109,7 @@ public:
     virtual int techniques() const { return 1; }
     virtual void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const = 0;
     virtual void pdf(int technique, std::span<const Pair> at, std::span<double> out) const = 0;
-    /// The same density in double where the sampler has one, for quadrature.
+    /// The same density in double if the sampler has one, for quadrature.
     virtual void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const {
         pdf(technique, at, out);
     }
@@ -121,32 +121,33 @@ public:
     virtual void f(std::span<const Pair> /*at*/, std::span<double> out) const {
         for (double& v : out) v = 0;
     }
-    /// f by channel, where there are three; f is their luminance.
+    /// f by channel if there are three; f is their luminance.
     virtual void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const {
         std::vector<double> y(out.size());
         f(at, y);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
-    /// What f ought to be where that is known apart from f; the same as f elsewhere.
+    /// Whether a reference value of f is known independently of f; reference_f() is f otherwise.
     virtual bool has_true_f() const { return false; }
     virtual void reference_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
-    /// f is known at the draws, though not elsewhere: their weights can be looked at, but compared with no integral.
+    /// Whether f is known at the draws: if only there, their weights are available, but not their integral.
     virtual bool has_drawn_f() const { return has_f(); }
-    /// A tabulated p is known to this much there, 1/sr.
+    /// The error of a tabulated p, 1/sr.
     virtual double tabulation_error(Vec3d /*w*/) const { return 0; }
-    /// Whether the sampler can be asked for draws at any u, not only listed ones.
+    /// Whether the sampler returns draws for any u, not only recorded ones.
     virtual bool can_draw() const { return true; }
-    /// What was asked of a sampler from outside so far; of a program, how long that took.
+    /// Number of queries to an external sampler so far; for a program, the time they took.
     virtual QueryUsage spending() const { return {}; }
-    /// Told by what computes long between two questions, before so many steps: a page may answer its reader meanwhile.
+    /// Called during long computations between two queries, before a number of steps, so that a web page can respond to
+    /// its user.
     virtual void yield_to_host(std::size_t /*steps*/) const {}
-    /// Only one thread may call.
+    /// Whether only one thread may call.
     virtual bool serial() const { return false; }
-    /// Each answer is worth something: it is asked no more often than TestSettings allows.
+    /// Whether answers are expensive, so that TestSettings limits the number of queries.
     virtual bool limited() const { return serial(); }
 };
 
-/// A sampler from outside that is called in this process: its answers are counted, and limited.
+/// An external sampler that is called in this process: its answers are counted and limited.
 class InProcessAdapter : public SamplerAdapter {
 public:
     bool limited() const override { return true; }
@@ -159,22 +160,22 @@ private:
     mutable std::atomic<std::uint64_t> answers_{0};
 };
 
-/// A one-sided disk light: radiance, centre from the surface point and radius in m, unit normal.
+/// A one-sided disk light: radiance, centre relative to the surface point and radius in m, unit normal.
 struct CaseDiskLight {
     double radiance = 0;
     Vec3d center{}, normal{};
     double radius = 0;
-    /// How far wi goes until it meets the emitting side.
+    /// Distance along wi to the emitting side.
     std::optional<double> distance(Vec3d wi) const;
 };
 
-/// A light of another kind, as scenes have it; the surface point is at 0. m.
+/// A light of another kind, as in scenes; the surface point is at 0. m.
 struct CaseAreaLight {
     double radiance = 0;
     LightKinds::Any form;
-    /// How far wi goes until it meets an emitting side.
+    /// Distance along wi to an emitting side.
     std::optional<double> distance(Vec3d wi) const;
-    /// What it is worth choosing by, as in scenes: radiance times the area that it shows, over pi.
+    /// Selection weight, as in scenes: radiance times projected area, over pi.
     double power() const;
 };
 
@@ -182,13 +183,13 @@ struct CaseAreaLight {
 inline double channel_of(Vec3d c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
 inline double luminance(Vec3d c) { return output::luminance(Rgb{c.x, c.y, c.z}); }
 
-/// What shines on the surface: an even fill of the upper hemisphere, and lights that hide it and one another.
+/// The lights of a case: a uniform fill of the upper hemisphere, and lights that occlude it and each other.
 struct CaseLighting {
     double fill = 1;  // radiance
     std::vector<CaseDiskLight> disks;
-    std::vector<CaseAreaLight> area_lights{};  // that are no disks
+    std::vector<CaseAreaLight> area_lights{};  // lights other than disks
     bool even() const { return disks.empty() && area_lights.empty(); }
-    /// The nearest light that wi meets: how far it is and its radiance.
+    /// The nearest light along wi: its distance and its radiance.
     struct Met {
         double distance, radiance;
     };
@@ -197,7 +198,7 @@ struct CaseLighting {
     double operator()(Vec3d wi) const;
 };
 
-/// Named parameter values, in the order in which they are told.
+/// Named parameter values, in the order in which they are printed.
 using Parameters = std::vector<std::pair<std::string, double>>;
 
 /// One sampler at one w_o with one BRDF under one light.
@@ -208,19 +209,19 @@ struct CheckCase {
     Parameters parameters;
     CaseLighting light;
     ExpectedBehaviour theory;
-    bool baseline = false;  // only its efficiency counts, for others to be ranked against
+    bool baseline = false;  // used only for ranks of efficiency
     std::shared_ptr<const SamplerAdapter> adapter;
     std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"
 };
 
-/// The text of a case whose sampler takes no w_o, and of one that never came to be judged.
+/// The text of a case without w_o, and of one that failed before its check.
 inline constexpr std::string_view without_wo = "no w_o";
 inline constexpr std::string_view before_any_case = "start";
 
-/// The direction theta from n, phi from x, in degrees.
+/// The direction at theta from n and phi from x, in degrees.
 Vec3d tilt(double theta_deg, double azimuth_deg = 0);
 
-// ---- A sampler that answers as another one does, but for what a class derived from it changes.
+// ---- A sampler that forwards all calls; derived classes change some.
 
 class ForwardingAdapter : public SamplerAdapter {
 public:
@@ -258,7 +259,7 @@ private:
     std::shared_ptr<const SamplerAdapter> inner_;
 };
 
-// ---- Draws that were made elsewhere, read from a file: judged as they are, since no more can be asked for.
+// ---- Recorded draws from a file: they are checked without further draws.
 
 class RecordedSampler : public SamplerAdapter {
 public:
@@ -266,7 +267,7 @@ public:
     std::size_t rows() const { return draws_.size(); }
     const Draw& row(std::size_t i) const { return draws_[i]; }
     const PrimarySample& row_numbers(std::size_t i) const { return u_[i]; }
-    /// Where a row stands in the file, "samples.csv:17".
+    /// The position of a row in the file, "samples.csv:17".
     virtual std::string place(std::size_t row) const = 0;
     void sample(int, Vec3d, std::span<const PrimarySample>, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = draws_[i % draws_.size()];
@@ -277,9 +278,9 @@ protected:
     std::vector<Draw> draws_;
 };
 
-// ---- A sampler that is asked no more often than it may be: a question beyond that is not put.
+// ---- A sampler with a limited number of queries.
 
-/// Throws SamplerTimeout in place of questions by which `inner` would have given more than `most` answers in all.
+/// Throws SamplerTimeout for a query that would raise the answers of `inner` above `most`.
 class LimitedAdapter : public ForwardingAdapter {
 public:
     LimitedAdapter(std::shared_ptr<const SamplerAdapter> inner, std::uint64_t most)
@@ -308,7 +309,7 @@ public:
 private:
     std::uint64_t most_;
     void allow(std::size_t questions) const {
-        if (spending().answers + questions > most_) throw SamplerTimeout("it may not be asked more");
+        if (spending().answers + questions > most_) throw SamplerTimeout("the limit of queries is reached");
     }
 };
 

@@ -1,4 +1,4 @@
-// What a user's sampler is tried on; cases.h has the same of the built-in arms.
+// The cases of a user's sampler; cases.h has those of the built-in arms.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,12 @@
 
 namespace crescent::inline sources {
 
-/// w_o of one's own: theta and azimuth in degrees.
+/// User-defined w_o: theta and azimuth in degrees.
 using Grid = std::vector<std::pair<double, double>>;
 
-/// A user's sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a
-/// BRDF.
-/// A sampler whose draws and p are the same whatever w_o is, and that has no BRDF, as that of an environment light, is
-/// judged once.
+/// A user's sampler over the grid of w_o under a uniform light, with uniform and cosine as baselines if it has a BRDF.
+/// A sampler without BRDF whose draws and p do not depend on w_o, such as that of an environment light, is checked
+/// once.
 std::vector<CheckCase> make_user_cases(
     const std::shared_ptr<const SamplerAdapter>& adapter, bool full, const Grid& grid = {});
 /// The same at one w_o.

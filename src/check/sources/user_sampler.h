@@ -1,5 +1,5 @@
-// How a user's sampler takes directions and random numbers and gives its draws back, read off the signatures
-// of its members: scalars, arrays, spans, pointers, and structs that are built from so many numbers with braces.
+// Determines from the signatures of a user's members how they take directions and random numbers and return draws:
+// scalars, arrays, spans, pointers, and structs that are initialised from numbers with braces.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ template <class R, class S, class... A> struct Signature<R (S::*)(A...) const no
 };
 template <class R, class... A> struct Signature<R (*)(A...)> : CallSignature<R, true, A...> {};
 template <class R, class... A> struct Signature<R (*)(A...) noexcept> : CallSignature<R, true, A...> {};
-/// Data members that can be called: lambdas, function pointers; a std::function, which may hold what is not const.
+/// Callable data members: lambdas, function pointers, and std::function, whose target may not be const.
 template <class C>
 concept Called = std::is_class_v<C> && requires { &C::operator(); };
 template <class S, Called C> struct Signature<C S::*> : Signature<decltype(&C::operator())> {};
@@ -40,7 +40,7 @@ template <class S, class R, class... A> struct Signature<std::function<R(A...)> 
 template <class M>
 concept HasSignature = requires { typename Signature<M>::Parameters; };
 
-/// The sampler itself, of one that is handed over behind a pointer: T*, unique_ptr, shared_ptr.
+/// The sampler itself, for one that is passed by a pointer: T*, unique_ptr, shared_ptr.
 template <class S>
 concept Pointing = std::is_pointer_v<S> || requires(const S s) {
     typename S::element_type;
@@ -55,14 +55,14 @@ template <Pointing S> struct Sampler<S> {
     using Type = std::remove_reference_t<decltype(*std::declval<S&>())>;
     static Type& of(S& s) { return *s; }
 };
-/// What can be copied of a sampler that is looked at: itself, or a pointer to it.
-template <class S> auto handed(const S& s) {
+/// A copy of a sampler for the check: the sampler itself, or a pointer to it.
+template <class S> auto copy_for_check(const S& s) {
     if constexpr (Pointing<S>) return &*s;
     else return s;
 }
 template <class S> using SamplerOf = std::remove_const_t<typename Sampler<S>::Type>;
 
-/// Turns into whichever number a struct of the sampler's own is built from.
+/// Converts to any number type that initialises a user's struct.
 struct Anything {
     double v = 0;
     template <std::floating_point T> operator T() const { return static_cast<T>(v); }
@@ -75,7 +75,7 @@ template <class C, int n> consteval bool is_built_from() {
 template <class C> using Bare = std::remove_cvref_t<C>;
 template <class C>
 concept Number = std::floating_point<Bare<C>>;
-/// const T*: how many it points to is not written there.
+/// const T*: the type does not state how many numbers it points to.
 template <class C>
 concept Pointer = std::is_pointer_v<Bare<C>> && std::is_const_v<std::remove_pointer_t<Bare<C>>> &&
     std::floating_point<std::remove_cv_t<std::remove_pointer_t<Bare<C>>>>;
@@ -86,12 +86,12 @@ template <class T, std::size_t n> struct SpanOf<std::span<T, n>> : std::bool_con
 };
 template <class C>
 concept Span = SpanOf<Bare<C>>::value;
-/// Written through: V& or V*.
+/// An output parameter: V& or V*.
 template <class C>
 concept Written = (std::is_lvalue_reference_v<C> && !std::is_const_v<std::remove_reference_t<C>>) ||
     (std::is_pointer_v<Bare<C>> && !std::is_const_v<std::remove_pointer_t<Bare<C>>>);
 
-/// How many numbers a parameter holds; 0: it does not say; -1: it holds none.
+/// The number of numbers in a parameter; 0: not stated by the type; -1: not a container of numbers.
 template <class C> consteval int size_of() {
     using B = Bare<C>;
     if constexpr (Written<C>) return -1;
@@ -110,7 +110,7 @@ template <class C> consteval int size_of() {
     } else return -1;
 }
 
-/// A parameter filled with numbers; it lives as long as the call.
+/// A parameter filled with numbers; it exists as long as the call.
 template <class C> struct Filled {
     Bare<C> value;
     explicit Filled(std::span<const double> v)
@@ -143,7 +143,7 @@ template <Span C> struct Filled<C> : Stored<typename SpanOf<Bare<C>>::Value> {
     Bare<C> get() const { return Bare<C>(this->value.data(), count); }
 };
 
-/// How many numbers [0], [1] ... reach; 0: the type does not say.
+/// The number of numbers that [0], [1] ... access; 0: not stated by the type.
 template <class V> consteval std::size_t length_of() {
     if constexpr (std::is_array_v<V>) return std::extent_v<V>;
     else if constexpr (requires { std::tuple_size<V>::value; }) return std::tuple_size_v<V>;
@@ -158,7 +158,7 @@ concept Xyz = requires(const V v) {
 };
 template <class V>
 concept Indexed = requires(const V v) { static_cast<double>(v[0]); };
-/// A direction that is given back: {x, y, z}, or at least three in a row.
+/// A returned direction: {x, y, z}, or at least three numbers in a row.
 template <class V>
 concept Three = Xyz<V> || (Indexed<V> && (length_of<V>() == 0 || length_of<V>() >= 3));
 
@@ -181,7 +181,7 @@ concept Rgb3 = requires(const P p) {
 /// Three channels: an array of three, or a struct {r, g, b} or {x, y, z}.
 template <class P>
 concept Coloured = !Scalar<P> && (Rgb3<P> || Xyz<P> || (Three<P> && length_of<P>() <= 3));
-/// What f and a weight may be.
+/// The types of f and of a weight.
 template <class P>
 concept Channels = Scalar<P> || Coloured<P>;
 template <Channels P> Vec3d colour(const P& p) {
@@ -195,13 +195,12 @@ concept Optional = requires(const D d) {
     *d;
 };
 
-// ---- Calls of a user's sampler: which parameter is w_o, which are random numbers, what is written through, and
-// what a draw says.
+// ---- Calls of a user's sampler: the parameters that are w_o, random numbers or outputs, and the result of a draw.
 //
 //   sample(wo, u)   sample(wo, uc, u)   sample(wo, u, wi&, pdf&)   sample(u), of a sampler without w_o
 //
-// Numbers go to the first parameter that holds two or more of them, then to the others in their order: uc of (wo,
-// uc, u) is the third.
+// Numbers are assigned to the first parameter that holds two or more of them, then to the others in their order: uc of
+// (wo, uc, u) is the third.
 
 template <class S>
 concept HasSample = requires { &S::sample; } && HasSignature<decltype(&S::sample)>;
@@ -210,8 +209,8 @@ concept HasPdf = requires { &S::pdf; } && HasSignature<decltype(&S::pdf)>;
 template <class S>
 concept HasF = requires { &S::f; } && HasSignature<decltype(&S::f)>;
 
-/// A class that inherits a name from both of its bases cannot say which it means: so a name shows that S has it, though
-/// it be overloaded, private or a template, which would else pass for a sampler without.
+/// A name inherited from two bases is ambiguous, which shows that S has a member of that name even if it is overloaded,
+/// private or a template; otherwise S would count as a sampler without it.
 struct Names {
     int sample, pdf, f;
 };
@@ -236,15 +235,15 @@ template <class S> using SampleParameters = typename OfSample<S>::Parameters;
 template <class T> inline constexpr std::size_t count_of = std::tuple_size_v<T>;
 template <class T, std::size_t i> using At = std::tuple_element_t<i, T>;
 
-/// Parameters of a tuple that are not written through; those that are stand at the end.
-template <class T> consteval std::size_t read_of() {
+/// Number of input parameters of a tuple; output parameters are at its end.
+template <class T> consteval std::size_t input_count() {
     return []<std::size_t... i>(std::index_sequence<i...>) {
         return (std::size_t{0} + ... + (Written<At<T, i>> ? 0 : 1));
     }(std::make_index_sequence<count_of<T>>{});
 }
-template <class T> consteval std::size_t written_of() { return count_of<T> - read_of<T>(); }
+template <class T> consteval std::size_t output_count() { return count_of<T> - input_count<T>(); }
 
-/// A pointer to u says by S::numbers how many there are, else two.
+/// For a pointer to u S::numbers gives the number of its elements, by default two.
 template <class S, class C> consteval int numbers_in() {
     constexpr int n = size_of<C>();
     if constexpr (n != 0) return n;
@@ -254,16 +253,16 @@ template <class S, class C> consteval int numbers_in() {
 template <class C>
 concept Direction = size_of<C>() == 3 || size_of<C>() == 0 || size_of<C>() == 4;  // the fourth of a padded one is 0
 
-/// sample(u): w_o is not asked for.
-template <class S> consteval bool without_wo() { return read_of<SampleParameters<S>>() == 1; }
+/// Whether the member is sample(u), without w_o.
+template <class S> consteval bool without_wo() { return input_count<SampleParameters<S>>() == 1; }
 
-/// Which numbers parameter `i` of sample gets: the first of them, and how many.
+/// The numbers of parameter `i` of sample: the first one, and how many.
 struct Share {
     int first = 0, count = 0;
 };
 template <class S> consteval auto shares() {
     using T = SampleParameters<S>;
-    constexpr std::size_t reads = read_of<T>(), from = without_wo<S>() ? 0 : 1;
+    constexpr std::size_t reads = input_count<T>(), from = without_wo<S>() ? 0 : 1;
     std::array<Share, reads + 1> out{};
     int next = 0;
     [&]<std::size_t... i>(std::index_sequence<i...>) { ((out[i].count = numbers_in<S, At<T, i>>()), ...); }(
@@ -277,11 +276,11 @@ template <class S> consteval auto shares() {
     out[reads].count = next;
     return out;
 }
-template <class S> consteval int numbers() { return shares<S>()[read_of<SampleParameters<S>>()].count; }
+template <class S> consteval int numbers() { return shares<S>()[input_count<SampleParameters<S>>()].count; }
 
-/// What is written through stands as a value; handed over as it is wanted.
+/// The value type of an output parameter; passed as the parameter declares.
 template <class C> using Value = std::remove_cv_t<std::remove_pointer_t<Bare<C>>>;
-template <class C> decltype(auto) hand(Value<C>& v) {
+template <class C> decltype(auto) pass_output(Value<C>& v) {
     if constexpr (std::is_pointer_v<Bare<C>>) return &v;
     else return (v);
 }
@@ -296,14 +295,16 @@ template <class S, class C, std::size_t i> Filled<C> filled(Vec3d wo, const Prim
     return Filled<C>(std::span<const double>(v).first(static_cast<std::size_t>(share.count)));
 }
 
-/// f, a weight or nothing of a draw that says so by its members.
+/// Adds f and the weight of a draw if its type has these members.
 template <class D> Draw described(const D& d) {
     Draw out{direction(d.wi), 1};
     if constexpr (requires { d.pdf; }) out.pdf = number_of(d.pdf);
-    const auto weigh = [&](Vec3d w, bool coloured) { out.weights = w, out.weight = coloured ? luminance(w) : w.x; };
-    if constexpr (requires { d.weight; }) weigh(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
+    const auto set_weight = [&](Vec3d w, bool coloured) {
+        out.weights = w, out.weight = coloured ? luminance(w) : w.x;
+    };
+    if constexpr (requires { d.weight; }) set_weight(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
     else if constexpr (requires { colour(d.f); }) {
-        if (out.pdf > 0) weigh(colour(d.f) * (std::fabs(out.wi.z) / out.pdf), Coloured<Bare<decltype(d.f)>>);
+        if (out.pdf > 0) set_weight(colour(d.f) * (std::fabs(out.wi.z) / out.pdf), Coloured<Bare<decltype(d.f)>>);
     }
     double q = 0;
     if constexpr (requires {
@@ -327,30 +328,30 @@ template <Optional D> struct Inner<D> {
 };
 template <class S> using Result = typename Inner<Bare<typename OfSample<S>::Result>>::Type;
 template <class D>
-concept TellsDelta = requires(const D d) {
+concept HasDelta = requires(const D d) {
     { d.delta } -> std::convertible_to<double>;
 } || requires(const D d) { d.IsSpecular(); } || requires(const D d) { d.specular; };
 template <class D>
-concept TellsWeight = requires(const D d) { d.weight; } || requires(const D d) { d.f; };
+concept HasWeight = requires(const D d) { d.weight; } || requires(const D d) { d.f; };
 
-/// bool or void, with wi and pdf written through, and then a weight.
+/// bool or void with wi and pdf as outputs, and then a weight.
 template <class S, class... C>
 Draw written(S& s, Vec3d wo, const PrimarySample& u, std::type_identity<std::tuple<C...>>) {
     using T = std::tuple<C...>;
-    constexpr std::size_t reads = read_of<T>();
+    constexpr std::size_t reads = input_count<T>();
     std::tuple<Value<C>...> store{};
     bool is_drawn = true;
     [&]<std::size_t... i, std::size_t... k>(std::index_sequence<i...>, std::index_sequence<k...>) {
         const auto given = std::make_tuple(filled<S, At<T, i>, i>(wo, u)...);
         const auto call = [&] {
-            return s.sample(std::get<i>(given).get()..., hand<At<T, reads + k>>(std::get<reads + k>(store))...);
+            return s.sample(std::get<i>(given).get()..., pass_output<At<T, reads + k>>(std::get<reads + k>(store))...);
         };
         if constexpr (std::convertible_to<typename OfSample<S>::Result, bool>) is_drawn = static_cast<bool>(call());
         else call();
-    }(std::make_index_sequence<reads>{}, std::make_index_sequence<written_of<T>()>{});
+    }(std::make_index_sequence<reads>{}, std::make_index_sequence<output_count<T>()>{});
     if (!is_drawn) return {{0, 0, 1}, 0};
     Draw out{direction(std::get<reads>(store)), number_of(std::get<reads + 1>(store))};
-    if constexpr (written_of<T>() > 2) {
+    if constexpr (output_count<T>() > 2) {
         const auto& weight = std::get<reads + 2>(store);
         out.weights = colour(weight);
         out.weight = Coloured<Bare<decltype(weight)>> ? luminance(out.weights) : out.weights.x;
@@ -360,14 +361,14 @@ Draw written(S& s, Vec3d wo, const PrimarySample& u, std::type_identity<std::tup
 
 template <class S> Draw sample(S& s, Vec3d wo, const PrimarySample& u) {
     using T = SampleParameters<S>;
-    if constexpr (written_of<T>() > 0) return written(s, wo, u, std::type_identity<T>{});
+    if constexpr (output_count<T>() > 0) return written(s, wo, u, std::type_identity<T>{});
     else
         return [&]<std::size_t... i>(std::index_sequence<i...>) {
             return drawn(s.sample(filled<S, At<T, i>, i>(wo, u).get()...));
         }(std::make_index_sequence<count_of<T>>{});
 }
 
-/// pdf and f: of (wo, wi), or of wi alone.
+/// Calls pdf or f: with (wo, wi), or with wi alone.
 template <class T, class Call> decltype(auto) with_pair(const Pair& p, Call&& call) {
     const auto four = [](Vec3d w) { return std::array<double, 4>{w.x, w.y, w.z, 0}; };
     const auto take = []<class C>(std::type_identity<C>, const std::array<double, 4>& w) {

@@ -1,5 +1,5 @@
-// Answers are kept by the bits of (w_o, w_i); draws by the bits of w_o and u. Only what is new is asked, in the order
-// in which it came. A sampler that throws leaves nothing behind of that call.
+// Caches answers by the bits of (w_o, w_i), and draws by the bits of w_o and u. Only new pairs are evaluated, in their
+// order. If a sampler throws, nothing of that call is cached.
 #include "check/sources/wrappers.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct KeyHash {
 
 template <class Value> using Cache = std::unordered_map<Key, Value, KeyHash>;
 
-/// Answers from what is kept; `ask` is called once, with the pairs that are new, in their order.
+/// Returns cached answers; `forward` is called once with the new pairs, in their order.
 template <class Value, class Forward>
 void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out, const Forward& forward) {
     std::vector<Pair> fresh;
@@ -52,7 +52,7 @@ void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out,
 
 bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
 
-/// What one case asks, whichever others ask the same sampler meanwhile.
+/// Counts the calls of one case, independent of other cases of the same sampler.
 class Counted : public ForwardingAdapter {
 public:
     using ForwardingAdapter::ForwardingAdapter;
@@ -88,9 +88,9 @@ private:
 class CachingAdapter : public ForwardingAdapter {
 public:
     CachingAdapter(std::shared_ptr<const SamplerAdapter> sampler, bool draws)
-        : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), keeps_draws_(draws) {}
+        : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), caches_draws_(draws) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        if (!keeps_draws_) return inner().sample(t, wo, u, out);
+        if (!caches_draws_) return inner().sample(t, wo, u, out);
         for (const Drawn& d : drawn_)
             if (d.technique == t && Key({wo, wo}) == Key({d.wo, d.wo}) && std::ranges::equal(d.u, u, same)) {
                 std::ranges::copy(d.draws, out.begin());
@@ -100,7 +100,7 @@ public:
         drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
     }
     void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        if (!keeps_draws_ || t > 1) return inner().pdf(t, at, out);
+        if (!caches_draws_ || t > 1) return inner().pdf(t, at, out);
         answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
             [&](std::span<const Pair> a, std::span<double> o) { inner().pdf(t, a, o); });
     }
@@ -123,7 +123,7 @@ public:
         if (has_true_f()) inner().reference_f(at, out);
         else f(at, out);
     }
-    const SamplerAdapter& anew() const { return inner(); }
+    const SamplerAdapter& uncached_sampler() const { return inner(); }
 
 private:
     struct Drawn {
@@ -132,7 +132,7 @@ private:
         std::vector<PrimarySample> u;
         std::vector<Draw> draws;
     };
-    bool keeps_draws_;
+    bool caches_draws_;
     mutable std::vector<Drawn> drawn_;
     mutable std::array<Cache<double>, 2> plain_pdf_;  // by technique
     mutable std::array<Cache<double>, 2> pdf_;        // by technique
@@ -150,7 +150,7 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
     Side out{check_case, stream};
     if (!check_case.adapter->limited()) return out;
     if (!check_case.adapter->serial())
-        return out.check_case.adapter = cached(check_case.adapter), out;  // of many threads
+        return out.check_case.adapter = cached(check_case.adapter), out;  // called by many threads
     const std::array<double, 3> wo = {check_case.wo.x, check_case.wo.y, check_case.wo.z};
     if (cached_of_ != check_case.adapter || wo != wo_)
         cached_of_ = check_case.adapter, wo_ = wo, stream_ = stream, cache_ = cached(check_case.adapter, true);
@@ -161,20 +161,20 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
 
 const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
     const auto* cache = dynamic_cast<const CachingAdapter*>(&sampler);
-    return cache ? cache->anew() : sampler;
+    return cache ? cache->uncached_sampler() : sampler;
 }
 
-// ---- A fault is thrown again with the side in front and with its kind kept: too slow, given up before, or new.
+// ---- Adds the side to the message of an error and throws it again with the same type.
 
 namespace {
 
-constexpr std::string_view opening = "sampler ";  // no fault of a sampler itself begins so
+constexpr std::string_view side_prefix = "sampler ";  // no error of a sampler begins with it
 
 class LabelledAdapter : public ForwardingAdapter {
 public:
     LabelledAdapter(std::shared_ptr<const SamplerAdapter> sampler, const std::string& side)
         : ForwardingAdapter(std::move(sampler)),
-          who_(fmt::format("{}{} ({}): ", opening, side, printable(inner().name(), 40))) {}
+          prefix_(fmt::format("{}{} ({}): ", side_prefix, side, printable(inner().name(), 40))) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         forward([&] { inner().sample(t, wo, u, out); });
     }
@@ -198,11 +198,11 @@ public:
     }
 
 private:
-    std::string who_;
+    std::string prefix_;
 
     std::string message_of(const SamplerError& fault) const {
         const std::string_view what = fault.what();
-        return what.starts_with(opening) ? std::string(what) : who_ + std::string(what);
+        return what.starts_with(side_prefix) ? std::string(what) : prefix_ + std::string(what);
     }
     template <class Call> void forward(Call&& call) const {
         try {

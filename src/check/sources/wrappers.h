@@ -1,4 +1,4 @@
-// Adapters around a sampler: answers at a pair of directions are cached for one check, and a side gets its own label.
+// Adapters of a sampler: a cache of answers for one check, and a label for one side of a comparison.
 #pragma once
 
 #include <array>
@@ -9,24 +9,23 @@
 
 namespace crescent::inline sources {
 
-// ---- A sampler that is asked for the same thing once: what p and f are at a pair of directions is kept as long as a
-// case lasts. Integrals of one case start from the same cells, so that a sampler answers for their nodes a single
-// time.
+// ---- A cache of p and f at pairs of directions for the duration of a case. Integrals of one case start from the same
+// cells, so that each of their points is evaluated once.
 
-/// `sampler`, with its answers for quadrature and for f kept, and those that it gives counted; for one thread. draws:
-/// those for the same u, and pdf(w) at them, are kept too.
+/// `sampler` with a cache of its exact densities and f and a counter of its answers; for one thread. draws: also caches
+/// draws for the same u, and pdf(w) at them.
 std::shared_ptr<const SamplerAdapter> cached(std::shared_ptr<const SamplerAdapter> sampler, bool draws = false);
-/// What answers anew, whatever was kept.
+/// The sampler without its cache.
 const SamplerAdapter& uncached(const SamplerAdapter& sampler);
 
-/// One side of a comparison and the stream that it draws from.
+/// One side of a comparison and its random stream.
 struct Side {
     CheckCase check_case;
     std::uint32_t stream = 0;
 };
 
-/// A program is asked once at each w_o: its answers and its draws there serve every case that has this w_o, whatever
-/// the surface and the light of the other side are. CheckCases of one w_o come one after the other.
+/// Queries a program once for each w_o: its answers and draws serve every case with this w_o, independent of the
+/// surface and the light of the other side. Cases of one w_o must be consecutive.
 class PerDirectionCache {
 public:
     Side of(const CheckCase& check_case, std::uint32_t stream);
@@ -37,10 +36,10 @@ private:
     std::uint32_t stream_ = 0;
 };
 
-// ---- Two samplers are asked in turn: what breaks off says which of them it was.
+// ---- Errors in a comparison of two samplers name the failing sampler.
 
-/// `sampler`, whose faults begin with `side`, "A", and its name; a fault that has a side already keeps it. What is
-/// recorded, or cannot fail, is given back as it is.
+/// `sampler`, whose errors begin with `side`, such as "A", and its name, unless they already name a side. A recorded
+/// sampler, or one that cannot fail, is returned unchanged.
 std::shared_ptr<const SamplerAdapter> named_side(
     std::shared_ptr<const SamplerAdapter> sampler, const std::string& side);
 

@@ -1,4 +1,4 @@
-// density, by bands of theta and of phi at every scale: how h divides between a band and the rest.
+// density, by bands of theta and of phi at every scale: the share of h in a band.
 #include <array>
 #include <cmath>
 
@@ -10,14 +10,14 @@ namespace crescent::check {
 
 namespace {
 
-/// Sums of a band, and the draws that rounding may move over its edges, as a share of all.
+/// Sums of a band, and the share of the draws that rounding may move across its edges.
 struct Band {
     NodeSums sums;
     double moved = 0;
 };
 
-/// What the leaves that touch a band add: their points may have missed as much in the band as in the whole leaf, and
-/// their draws may be rounded to the other side of its edges.
+/// Adds the uncertainty of the leaves that overlap a band: their points may miss as much in the band as in the whole
+/// leaf, and rounding may move their draws across its edges.
 void add_leaves(const Evidence& e, ByBand<Band>& to) {
     const Tree& tree = e.plan.tree;
     const double all = e.integrals.sums[bridge].value;

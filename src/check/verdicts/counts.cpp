@@ -1,4 +1,4 @@
-// identity and valid, by draws counted one at a time: values, pointwise, zero, weight, and directions that come again.
+// identity and valid, from counts of single draws: values, pointwise, zero, weight, and repeated directions.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,15 +11,16 @@ namespace crescent::check {
 
 namespace {
 
-/// More than a share of the draws, and more than a few. per: how many each one counted stands for.
+/// Fails for more than a share of the draws, and more than a few. per: number of draws that each counted one
+/// represents.
 void test_share(Family family, const Count& count, double of, double tolerated, const Visit& visit, double per = 1) {
     const double times = per * static_cast<double>(count.times);
     visit({family, 0, of > 0 ? times / of : 0, 0, tolerated, times > tolerated * of + tolerated_breaks ? 0.0 : 1.0, 0});
 }
 
-/// Pairs of equal directions, against those that the lattice of the arithmetic makes: N^2 / 2 pairs, of which a step^2
-/// of the sphere holds the integral of p^2 = E[p]. In single precision a small disk about an axis is one direction
-/// (`one_direction`), which then comes N p times.
+/// Pairs of equal directions compared with the number that the lattice of the arithmetic causes: N^2 / 2 pairs, of
+/// which a step^2 of the sphere contains the integral of p^2 = E[p]. In single precision a small disk about an axis is
+/// one direction (`one_direction`), which is then drawn N p times.
 void test_repeats(const Evidence& e, const Visit& visit) {
     const Observations& o = e.observations;
     std::vector<Observations::Met> met = o.met;
@@ -43,11 +44,12 @@ void test_repeats(const Evidence& e, const Visit& visit) {
 void test_counts(const Evidence& e, const Visit& visit) {
     const DrawChecks& c = e.observations.checks;
     const double followed = static_cast<double>(c.followed);
-    // All rows of a file were looked at before.
+    // All rows of a file were tested before.
     const std::uint64_t of_draws = e.source.recorded() ? 0 : c.invalid.times;
     const double invalid = static_cast<double>(of_draws + e.source.invalid());
     visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
-    const double per = static_cast<double>(c.odd) / static_cast<double>(std::max<std::uint64_t>(c.odd_compared, 1));
+    const double per =
+        static_cast<double>(c.differing) / static_cast<double>(std::max<std::uint64_t>(c.differing_compared, 1));
     test_share(Family::pointwise, c.pointwise, followed, tolerated_share, visit, std::max(per, 1.0));
     test_share(Family::zero, c.zero, followed, tolerated_zeros, visit, std::max(per, 1.0));
     test_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
@@ -55,12 +57,12 @@ void test_counts(const Evidence& e, const Visit& visit) {
     if (!e.source.traits.delta) test_repeats(e, visit);
 }
 
-// ---- density and identity of delta parts: each is drawn as often as it says, by one weight, and there are few of
+// ---- density and identity of delta parts: each is drawn as often as stated, with one weight, and there are few of
 // them.
 
 namespace {
 
-/// A number for a part that is the same at both stages: direction, q and weight to three decimals.
+/// A number that identifies a part at both stages: direction, q and weight to three decimals.
 int member_of(const DeltaPart& p) {
     std::size_t h = 0;
     for (double v : {p.wi.x, p.wi.y, p.wi.z, p.q, p.weight.x, p.weight.y, p.weight.z})
@@ -68,7 +70,7 @@ int member_of(const DeltaPart& p) {
     return static_cast<int>((h ^ h >> 16) & 0x7fffffff);
 }
 
-/// Draws of a part against q, by Bennett's bound: it holds at every count.
+/// Compares the draws of a part with q by Bennett's inequality, which holds at every count.
 void test_delta_share(const DeltaPart& p, double n, const Visit& visit) {
     const double share = static_cast<double>(p.drawn) / n, floor = detection_floor * p.q, v = p.q * (1 - p.q) / n;
     Answer a{Family::delta_share, member_of(p), share - p.q, std::sqrt(std::max(v, 0.0)), floor, 1, p.q};

@@ -1,4 +1,4 @@
-// What each verdict needs of a sampler: a pdf, f, weights.
+// The requirements of each verdict: a pdf, f, weights.
 #include "check/verdicts/kinds.h"
 
 namespace crescent::check::kinds {

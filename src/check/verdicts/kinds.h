@@ -1,5 +1,5 @@
-// What is known of each verdict of the list (results/all.h) beside its name and question. A verdict is wrong if a
-// family of questions.h that names it fails; what else it looks at is said here.
+// The properties of each verdict of the list (verdict_names.h) besides its name and question. A verdict is wrong if a
+// family of questions.h that names it fails; other tests are defined here.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@ namespace crescent::check {
 
 /// One verdict of the list.
 struct VerdictKind {
-    /// Whether a sampler provides what the verdict needs; else it is skipped.
+    /// Whether a sampler provides what the verdict needs; otherwise it is skipped.
     bool (*applies)(const SamplerAdapter&);
-    const char* needs = "";  // said of a verdict that is skipped
-    /// Adds to the verdict at one w_o what no family says; null: nothing.
+    const char* needs = "";  // message of a skipped verdict
+    /// Adds to the verdict at one w_o what no family tests; null: nothing.
     void (*add)(const CheckAt&, Verdict&) = nullptr;
 };
 

@@ -1,5 +1,5 @@
-// mean: bridged weights against the integral of f cos. support: light where p is 0. physics: no more comes back than
-// arrives. All by channel.
+// mean: bridged weights compared with the integral of f cos. support: light where p is 0. physics: the albedo is at
+// most 1. All by channel.
 #include <algorithm>
 #include <cmath>
 
@@ -21,45 +21,45 @@ Estimate mean_of(const Sums& s, double n) {
 void test_mean(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
-    const Estimate drawn = mean_of(o.mean[c], o.weighed), &due = e.integrals.light.mean[c];
-    const double v = drawn.variance + due.variance, floor = detection_floor * due.value;
-    Answer a{
-        Family::mean, channel, drawn.value - due.value, std::sqrt(v), floor, 1, due.value, due.variance / (v + 1e-300)};
+    const Estimate drawn = mean_of(o.mean[c], o.weighted_draws), &expected = e.integrals.light.mean[c];
+    const double v = drawn.variance + expected.variance, floor = detection_floor * expected.value;
+    Answer a{Family::mean, channel, drawn.value - expected.value, std::sqrt(v), floor, 1, expected.value,
+        expected.variance / (v + 1e-300)};
     const bool bridged = is_bridged(e.source);
-    const double largest = bridged ? e.plan.usual[c] : 0;  // a bridged weight is at most that
+    const double largest = bridged ? e.plan.usual[c] : 0;  // upper bound of a bridged weight
     if (bridged && !(largest > 0)) return;
-    a.p = bridged
-        ? bennett_p(bennett_z2(std::fabs(a.difference) - floor, v, largest / o.weighed, freedom(v, due.doubt)))
-        : 2 * normal_p_of(std::fabs(a.difference) - floor, v);
+    a.p = bridged ? bennett_p(bennett_z2(
+                        std::fabs(a.difference) - floor, v, largest / o.weighted_draws, freedom(v, expected.doubt)))
+                  : 2 * normal_p_of(std::fabs(a.difference) - floor, v);
     visit(a);
 }
 
-/// Without a density the weights alone say where the draws go: their sum in each node of the upper tree against the
-/// integral of f cos there.
+/// Without a density only the weights show the distribution of the draws: compares their sum in each node of the upper
+/// tree with the integral of f cos there.
 void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const auto c = static_cast<std::size_t>(channel);
-    const double n = e.observations.weighed;
+    const double n = e.observations.weighted_draws;
     std::vector<WeightSums> drawn(nodes.size());
-    std::vector<Estimate> due(nodes.size());
+    std::vector<Estimate> expected(nodes.size());
     for (std::size_t i = nodes.size(); i-- > 0;) {
         if (nodes[i].child < 0) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
-            drawn[i] = e.observations.weight_leaves[l][c], due[i] = e.integrals.light.leaves[l][c];
+            drawn[i] = e.observations.weight_leaves[l][c], expected[i] = e.integrals.light.leaves[l][c];
             continue;
         }
         for (int half : {0, 1}) {
             const auto k = static_cast<std::size_t>(nodes[i].child + half);
-            drawn[i].add(drawn[k]), due[i].add(due[k]);
+            drawn[i].add(drawn[k]), expected[i].add(expected[k]);
         }
         const WeightSums& w = drawn[i];
         if (i == 0 || nodes[i].depth > mean_depth || w.count < mean_draws || w.largest * w.largest * 20 > w.square)
             continue;
-        const double mean = w.sum / n, v = std::max(w.square / n - mean * mean, 0.0) / n + due[i].variance;
-        const double floor = detection_floor * due[i].value;
-        Answer a{
-            Family::mean, static_cast<int>(3 * i) + channel, mean - due[i].value, std::sqrt(v), floor, 1, due[i].value};
-        a.p = student_p_of(std::fabs(a.difference) - floor, v, freedom(v, due[i].doubt));
+        const double mean = w.sum / n, v = std::max(w.square / n - mean * mean, 0.0) / n + expected[i].variance;
+        const double floor = detection_floor * expected[i].value;
+        Answer a{Family::mean, static_cast<int>(3 * i) + channel, mean - expected[i].value, std::sqrt(v), floor, 1,
+            expected[i].value};
+        a.p = student_p_of(std::fabs(a.difference) - floor, v, freedom(v, expected[i].doubt));
         visit(a);
     }
 }
@@ -89,8 +89,8 @@ bool tail_may_be_heavy(std::span<const double> weights) {
 
 bool mean_can_be_tested(const Evidence& e) {
     const Observations& o = e.observations;
-    // A mean that is not bridged needs a variance.
-    return o.weighed > 0 && o.weightless == 0 && (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
+    // A mean that is not bridged must have a finite variance.
+    return o.weighted_draws > 0 && o.weightless == 0 && (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
 }
 
 void test_light(const Evidence& e, const Visit& visit) {
@@ -105,8 +105,8 @@ void test_light(const Evidence& e, const Visit& visit) {
     const LightIntegrals& l = e.integrals.light;
     const double least = lost_light * l.lit.value;
     Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value, 1};
-    // If no more than `least` were lost, the sum over points that hold at most b each would have a variance of at most
-    // b times `least`.
+    // If at most `least` were lost, the sum over points with contributions of at most b would have a variance of at
+    // most b times `least`.
     a.p = l.lost_again.value > least
         ? bennett_p(bennett_z2(l.lost_again.value - least, l.largest_lost * least, l.largest_lost, 1e12))
         : 1;

@@ -1,6 +1,6 @@
-// density, at every scale: how h divides between the halves of each node, given its whole; and all nodes of one depth
-// together, for many small faults. The variance is predicted from the claim, so that draws in a half that should be
-// empty show fully.
+// density, at every scale: the share of h in one half of each node, given the whole; and all nodes of one depth
+// together, for many small faults. The variance is predicted from the claimed density, so that draws in a half that
+// must be empty are fully significant.
 #include <cmath>
 
 #include "check/constants.h"
@@ -116,7 +116,8 @@ void test_nodes(const Evidence& e, const Visit& visit) {
         if (s.smaller_half < e.least) continue;
         const auto depth = static_cast<std::size_t>(nodes[i].depth);
         chi[depth] += std::min(z2, 1e6), ++degrees[depth];
-        // A replicate's mean must be near normal: with fewer draws Student's t errs by orders of magnitude in its tail.
+        // The mean of a replicate must be nearly normal: with fewer draws the tail of Student's t is wrong by orders of
+        // magnitude.
         if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
             visit(answer_of_sets(e, sets, i, s));
     }

@@ -1,4 +1,4 @@
-// The one list of families, in the order of the enumeration.
+// The list of families, in the order of the enumeration.
 #include "check/verdicts/questions.h"
 
 #include <array>

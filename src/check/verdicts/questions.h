@@ -1,5 +1,5 @@
-// The list of questions. Each is E[h(draw)] = integral of h p for one h, or a small test beside it; questions of one
-// kind are a family, whose p-value is the least of its members' times their number.
+// The list of tests. Each is E[h(draw)] = integral of h p for one h, or another small test. Tests of one kind form a
+// family, whose p-value is the least of its members times their number.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace crescent::check {
 
 enum class Family {
-    values,     // numbers that cannot be used
+    values,     // unusable numbers
     corners,    // the same at corners of u, w_o and w_i
     mass,       // h = 1
     mass_sets,  // the same by replicates; likewise below
@@ -21,26 +21,26 @@ enum class Family {
     slope_sets,
     centre,  // h (x - mean), y and z likewise
     centre_sets,
-    node,  // how h divides between the halves of a node
+    node,  // share of h in one half of a node
     node_sets,
-    band,           // how h divides between a band of theta or phi and the rest
+    band,           // share of h in a band of theta or phi
     depth,          // sum of squares over all nodes of one depth
-    delta_share,    // draws of a delta part against the probability they state
+    delta_share,    // draws of a delta part against the stated probability
     delta_scatter,  // too many directions for delta parts
     delta_weight,   // draws of one delta part with several weights
     pointwise,      // pdf with the draw against pdf(w)
-    zero,           // p = 0 where something is drawn
+    zero,           // p = 0 at a draw
     weight,         // weight with the draw against f cos / pdf
     jacobian,       // p against the derivatives of sample(u)
-    repeats,        // directions that come again
+    repeats,        // repeated directions
     state,          // the same u gives another draw, alone or in another batch
     support,        // f cos where p is 0
     mean,           // bridged weights against the integral of f cos
-    reference_f,    // f against what it ought to be
+    reference_f,    // f against its reference value
     mis,            // weights of combined techniques sum to 1
-    albedo,         // more light comes back than arrives
+    albedo,         // more light is reflected than arrives
     reciprocity,
-    delta_direction,  // where delta parts lead, against the index and the way back
+    delta_direction,  // directions of delta parts against the index and the reverse path
     families
 };
 
@@ -49,10 +49,10 @@ struct FamilyInfo {
     std::string_view name, verdict;
 };
 const FamilyInfo& info(Family family);
-/// Whether f has a part in it.
+/// Whether the family uses f.
 bool is_of_f(Family family);
 
-/// One question with its result at some stage.
+/// The result of one test at some stage.
 struct Answer {
     Family family = Family::values;
     int member = 0;         // channel, axis, node, band or depth
@@ -60,22 +60,22 @@ struct Answer {
     double sd = 0, floor = 0;
     double p = 1;         // two-sided
     double expected = 0;  // right side
-    double claimed = 0;   // share of the variance that is of the integrals
+    double claimed = 0;   // share of the variance that is due to the integrals
 };
 
 using Visit = std::function<void(const Answer&)>;
 
-/// What questions are put to: the plan and both sides of (1).
+/// The data of the tests: the plan and both sides of (1).
 struct Evidence {
     const Source& source;
     const Plan& plan;
     const Integrals& integrals;
     const Observations& observations;
-    /// Expected draws below which a node is not tested.
+    /// Nodes with fewer expected draws are not tested.
     double least = least_count;
 };
 
-// Each visits every member of its families.
+// Each calls `visit` for every member of its families.
 void test_sums(const Evidence& e, const Visit& visit);
 void test_nodes(const Evidence& e, const Visit& visit);
 void test_bands(const Evidence& e, const Visit& visit);
@@ -88,39 +88,39 @@ bool tail_may_be_heavy(std::span<const double> weights);
 /// Whether their mean can be compared with the integral of f cos.
 bool mean_can_be_tested(const Evidence& e);
 
-/// What a deviation of a whole sum may be: a share of the sum itself (mass, bridge) or of the spread of h (slope,
-/// centre), and for a logarithm the rounding of p in single precision.
+/// The tolerance of a whole sum: a share of the sum itself (mass, bridge) or of the spread of h (slope, centre), and
+/// for a logarithm the rounding of p in single precision.
 double floor_of_sum(const Evidence& e, int integrand);
-/// False for the mass where every draw is a direction: the draws then have no part in its variance. A share of draws
-/// that are nothing and that none of 2^16 shows at either stage is below the detection floor but for one in 10^11.
+/// False for the mass if every draw is a direction: the draws then add no variance. If none of 2^16 draws at either
+/// stage is without a sample, the share of such draws is below the detection floor with probability 1 - 1e-11.
 bool draws_vary(const Evidence& e, int integrand);
-/// The variance of a whole sum by independent draws: of these, or what takes its place where they do not vary.
+/// The variance of a whole sum from independent draws, or its replacement if the draws do not vary.
 double drawn_variance(const Evidence& e, int integrand);
-/// What leaves that no draw met add to the variance of one draw: replicates that all miss them show nothing of it.
+/// The variance of one draw due to leaves without draws: replicates that all miss them do not show it.
 Values unmet_variance(const Evidence& e);
 /// Mean of a whole sum over the replicates.
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 
-/// O and C of every node, from its leaves, and how its h splits between its halves.
+/// O and C of every node, from its leaves, and the division of its h between its halves.
 struct NodeSums {
     double drawn = 0, claimed = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0, known_to = 0;
 };
 std::vector<NodeSums> node_sums(const Evidence& e);
 NodeSums& operator+=(NodeSums& to, const NodeSums& other);
-/// What the test of a whole and its part compares.
+/// The test of a part given the whole.
 struct NodeSplit {
     double share = 0;       // of h p in the part
     double difference = 0;  // of the part, given the whole
     double floor = 0, variance = 0, doubt = 0, claim_variance = 0;
     double smaller_half = 0;  // expected draws
-    double one_draw = 0;      // what one counts for: E[h^2] / E[h]
+    double one_draw = 0;      // weight of one draw: E[h^2] / E[h]
 };
-/// What a cut's difference must exceed, in shares of the node's draws: the detection floor of its smaller half, and
-/// what rounding by the node's step moves over the cut and over the node's other edges.
+/// The tolerance of a cut, in shares of the node's draws: the detection floor of its smaller half, and the draws that
+/// rounding by the node's step moves across the cut and across the other edges of the node.
 double floor_of_cut(const TreeNode& node, double share);
 /// Sums over replicates below each node down to the replicated depth, from those of its lowest rows.
 std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicates> lowest);
-/// Of a whole into a part `a` and the rest `b`. floor: shares of the whole's draws that are allowed.
+/// Divides a whole into a part `a` and the rest `b`. floor: tolerance in shares of the draws of the whole.
 NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor);
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node);
 

@@ -1,4 +1,4 @@
-// p-values of differences whose variance is partly an estimate.
+// p-values of differences whose variance is partly estimated.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,19 @@
 
 namespace crescent::check {
 
-/// Degrees of freedom of an estimated variance v that itself has variance w (Satterthwaite 1946).
+/// Degrees of freedom of an estimated variance v whose own variance is w (Satterthwaite 1946).
 inline double freedom(double v, double w) {
     if (w == 0) return 1e12;
-    const double ratio = v / std::sqrt(w);  // squares of a density's peak may overflow
+    const double ratio = v / std::sqrt(w);  // squares of the peak of a density may overflow
     return std::isfinite(ratio) ? std::clamp(2 * ratio * ratio, 0.5, 1e12) : 0.5;
 }
 
-/// Twice the exponent of Bennett's inequality (1962): a sum of independent terms of variance v in all, none more than b
-/// above its mean, exceeds its expectation by d with probability at most exp(-z2 / 2). It holds at every count: it is
-/// Chernoff's bound for a Poisson count and d^2 / v for many terms. Where v has nu degrees of freedom z2 shrinks as
-/// Student's t does.
+/// Twice the exponent of Bennett's inequality (1962): a sum of independent terms with total variance v, none more than
+/// b above its mean, exceeds its expectation by d with probability at most exp(-z2 / 2). It holds at every count: it is
+/// Chernoff's bound for a Poisson count and d^2 / v for many terms. If v has nu degrees of freedom, z2 decreases as for
+/// Student's t.
 inline double bennett_z2(double d, double v, double b, double nu) {
-    if (!(d > 0) || !std::isfinite(v)) return 0;  // a variance that overflows allows everything
+    if (!(d > 0) || !std::isfinite(v)) return 0;  // an infinite variance allows any difference
     v = std::max(v, 1e-30);
     const double x = b * d / v;
     const double z2 = x < 1e-4 ? d * d / v : 2 * v / (b * b) * ((1 + x) * math::log1p(x) - x);
@@ -32,7 +32,7 @@ inline double bennett_z2(double d, double v, double b, double nu) {
 inline double bennett_p(double z2) { return std::min(1.0, 2 * math::exp(-z2 / 2)); }
 
 inline constexpr double power_quantile = 1.2816;  // P(Z < 1.2816) = stated_power
-/// The difference that Bennett's test finds with the stated power.
+/// The difference that Bennett's test detects with the stated power.
 inline double needed_by_bennett(double floor, double v, double b, double nu, double level) {
     const double z2 = -2 * math::log(level / 2);
     double low = 0, high = 1;
@@ -44,9 +44,9 @@ inline double needed_by_bennett(double floor, double v, double b, double nu, dou
     return floor + high + power_quantile * std::sqrt(v);
 }
 
-/// Mean and variance of the mean of replicates, of which one draw more or less moves a replicate by `jump`. The
-/// variance is at least `least_jumps`^2 of a jump: a count that is n in most replicates and n + 1 in a few shows no
-/// spread at times, and Student's t would then be infinite.
+/// Mean and variance of the mean of replicates, where one draw changes a replicate by `jump`. The variance is at least
+/// `least_jumps`^2 of a jump: a count that is n in most replicates and n + 1 in a few sometimes shows no spread, and
+/// Student's t would then be infinite.
 template <class Values> struct ReplicateMean {
     double mean = 0, variance = 0;
     ReplicateMean(const Values& y, double jump) {
@@ -61,7 +61,7 @@ template <class Values> struct ReplicateMean {
 inline double student_p_of(double d, double v, double nu) {
     return d > 0 && std::isfinite(v) ? statistics::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
 }
-/// One-sided: the chance that a normal exceeds its mean by d.
+/// One-sided: the probability that a normal variable exceeds its mean by d.
 inline double normal_p_of(double d, double v) {
     return d > 0 ? statistics::normal_two_sided(d / std::sqrt(v + 1e-30)) / 2 : 1;
 }

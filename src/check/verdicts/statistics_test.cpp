@@ -1,4 +1,4 @@
-// p-values against exact laws.
+// p-values compared with exact distributions.
 #include "check/verdicts/statistics.h"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace {
 double above(double n, double p, double k) { return k <= 0 ? 1 : statistics::beta_i(k, n - k + 1, p, 1 - p); }
 double below(double n, double p, double k) { return k >= n ? 1 : 1 - above(n, p, k + 1); }
 
-TEST(CheckStatistics, BennettIsNeverLessThanTheBinomialTail) {
+TEST(CheckStatistics, BennettBoundsTheBinomialTail) {
     for (double n : {100.0, 1e4, 1e6})
         for (double mean : {0.1, 3.0, 20.0, 90.0}) {
             const double p = mean / n;
@@ -26,14 +26,14 @@ TEST(CheckStatistics, BennettIsNeverLessThanTheBinomialTail) {
         }
 }
 
-TEST(CheckStatistics, BennettIsNearTheNormalLawForManyTerms) {
+TEST(CheckStatistics, BennettApproachesTheNormalDistribution) {
     const double z2 = bennett_z2(5, 1, 1e-6, 1e12);
     EXPECT_NEAR(z2, 25, 0.01);
     EXPECT_GT(bennett_p(z2), statistics::normal_two_sided(5));
     EXPECT_LT(bennett_p(z2), 20 * statistics::normal_two_sided(5));
 }
 
-TEST(CheckStatistics, VarianceThatIsHardlyKnownWeakensATest) {
+TEST(CheckStatistics, UncertainVarianceWeakensATest) {
     EXPECT_GT(bennett_p(bennett_z2(6, 1, 1e-3, 2)), 0.01);
     EXPECT_LT(bennett_p(bennett_z2(6, 1, 1e-3, 1e12)), 1e-6);
     EXPECT_EQ(freedom(1, 0), 1e12);
@@ -44,12 +44,12 @@ TEST(CheckStatistics, VarianceThatIsHardlyKnownWeakensATest) {
     EXPECT_LE(freedom(1e200, std::numeric_limits<double>::quiet_NaN()), 1);
 }
 
-TEST(CheckStatistics, ReplicatesThatShowNoSpreadKeepThatOfAPartOfAJump) {
+TEST(CheckStatistics, ReplicatesWithoutSpreadHaveALeastVariance) {
     std::array<double, 32> all;
     all.fill(7.0);
     const ReplicateMean alike(all, 1.0);
     EXPECT_EQ(alike.mean, 7);
-    // One replicate in five has a draw more and none of these 32 shows it: probability 8e-4. It must pass.
+    // If one replicate in five has one more draw, none of these 32 shows it with probability 8e-4. The test must pass.
     EXPECT_GT(student_p_of(0.2, alike.variance, 31), alpha2 / 10);
     EXPECT_GT(student_p_of(0.1, alike.variance, 31), 1e-2);
 }

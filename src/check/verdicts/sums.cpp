@@ -47,7 +47,7 @@ double floor_of_sum(const Evidence& e, int integrand) {
     const auto q = static_cast<std::size_t>(integrand);
     const Sums& s = e.observations.sums[q];
     const double n = e.observations.independent;
-    // Rounding that is always to one side moves h by half a step in the mean.
+    // Rounding always to one side changes h by half a step on average.
     const double known_to = e.integrals.known_to[q] + e.plan.per_step[q] / 2;
     if (integrand < slope) return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to;
     return detection_floor * std::sqrt(s.square / n) + (integrand == slope ? ulp : 0) + known_to;

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Other people's tests on the same samples: Mitsuba 3's chi-square and ArviZ's k-hat beside crescent's verdicts.
+"""Tests of other projects on the same samples: Mitsuba 3's chi-square and ArviZ's k-hat next to crescent's verdicts.
 
     python3 -m venv v && v/bin/pip install mitsuba numpy 'arviz<1'
     v/bin/python tests/calibration/peers/peers.py build/crescent
 
-Every draw is made once, by the function that Mitsuba's ChiSquareTest samples with, and handed to `crescent check
---samples`, which tests every other row of it first. Densities in 1/sr, w_o = n. Prints a table in Markdown; exit 0 where all
-agree, 1 where they do not, 77 (skipped) where a module is not there."""
+Each draw is made once, by the sampling function of Mitsuba's ChiSquareTest, and passed to `crescent check --samples`.
+Densities in 1/sr, w_o = n. Prints a table in Markdown; the exit code is 0 if all agree, 1 if they do not, and 77
+(skipped) if a module is missing."""
 import json
 import os
 import subprocess
@@ -51,7 +51,7 @@ def even(w):
     return np.where(w[:, 2] >= 0, 1 / TAU, 0)
 
 
-# name, u -> w, w -> p; "wrong" ones draw something else than p
+# name, u -> w, w -> p; "wrong" samplers do not draw from p
 CASES = [
     ("cosine", lambda u: sphere(np.sqrt(1 - u[:, 0]), u[:, 1]), cosine),
     ("power s=8", draw_power(8), power(8)),
@@ -68,7 +68,7 @@ CASES = [
 
 
 def mitsuba_p(draw, p, kept):
-    """p-value of Mitsuba's test before its correction for several tests; what was drawn stays in `kept`."""
+    """p-value of Mitsuba's test before its correction for several tests; stores the draws in `kept`."""
     def sample(u):
         v = np.stack([np.array(u[0]), np.array(u[1])], 1).astype(np.float64)
         w = draw(v)
@@ -100,7 +100,7 @@ def crescent(program, folder, kept, p):
 
 
 def arviz_k(kept, p, draws):
-    """Of the rows whose weights crescent fits: odd rows, the first so many; f is constant, below the surface too."""
+    """k-hat of the rows that crescent uses: the first `draws` odd rows. f is constant, below the surface too."""
     w = kept["w"][1::2][:draws]
     x = np.abs(w[:, 2]) / p(w)
     with np.errstate(divide="ignore"):
@@ -124,10 +124,10 @@ def main():
         density, tail = ours["density"], ours["tail"]
         e, k = density["evidence"], tail["evidence"].get("k")
         k_theirs = float("nan") if k is None else arviz_k(kept, p, int(tail["evidence"]["draws"]))
-        # Theirs rejects: ours must. Ours may see more (rings and sectors apart): then the sampler must be a wrong one.
+        # If Mitsuba's test rejects, crescent's must too. Crescent may detect more, but only for wrong samplers.
         missed = theirs < 1e-6 and density["state"] != "wrong"
-        accused = density["state"] == "wrong" and not name.startswith("wrong")
-        alike = not missed and not accused
+        false_positive = density["state"] == "wrong" and not name.startswith("wrong")
+        alike = not missed and not false_positive
         alike = alike and (k is None or abs(k - k_theirs) <= 0.02)
         agree = agree and alike
         p_ours = min([*e.get("p", {}).values(), *(t["p_first"] for t in e.get("tests", {}).values())])

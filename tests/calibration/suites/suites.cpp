@@ -1,6 +1,6 @@
 // crescent_suites [--suites 100] [--views 50] [--repeats 200] [--seed S]: how often whole suites of unchanged views
 // report a change, and how often a change of the size that a view states is found. Prints a section of
-// docs/error-rates.md. Renders are synthetic, so their truth is known.
+// docs/error-rates.md. Renders are synthetic, so the true values are known.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <fmt/format.h>
@@ -21,11 +21,11 @@ using Kind = SyntheticNoise::Kind;
 constexpr int side = 32, renders = 8;
 constexpr double alpha = 0.05;
 
-/// One kind of view, the same noise on both sides.
+/// One kind of view, with the same noise on both sides.
 struct ViewKind {
     std::string name;
     SyntheticNoise noise;
-    double own = 0;              // 0: grey; else in colour, see SyntheticScene
+    double own = 0;              // 0: grey; otherwise in colour, see SyntheticScene
     bool deterministic = false;  // all renders have the same pixels
     int baseline = renders, candidate = renders;
 };
@@ -50,7 +50,7 @@ std::uint32_t seed_for(std::uint32_t seed, std::uint32_t suite, std::uint32_t vi
     return seed_of(seed_of(seed_of(seed, suite), view), render);
 }
 
-/// The view "K" of a suite; `bias` makes the candidate brighter.
+/// The synthetic views of a suite; `bias` makes the candidate brighter.
 class SyntheticViews {
 public:
     SyntheticViews(std::uint32_t seed, std::uint32_t suite) : seed_(seed), suite_(suite) {}
@@ -139,8 +139,8 @@ void print_false_alarms(
             counts[k].of(ViewState::too_few), counts[k].of(ViewState::same));
 }
 
-/// A view among `views`, brighter by what it states as found with 90 %; level alpha / views, as Holm's method has it
-/// for the first.
+/// One of `views` views, brighter by the difference that it states as found with 90 %; level alpha / views, as in
+/// Holm's method for the first test.
 void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std::uint32_t views, std::uint32_t seed) {
     fmt::print(
         "\n### Power of suites\n\nOne view of {}, brighter by a multiple of the difference that the unchanged view "
