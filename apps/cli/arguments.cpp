@@ -147,7 +147,7 @@ std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
     return text + "\n`" + name + " --help` lists its flags\n";
 }
 
-Work answer(std::FILE* to, const std::string& text, int code) {
+Work print_text(std::FILE* to, const std::string& text, int code) {
     return [=] {
         if (to == stdout) print(text);
         else print_to_stderr(text);
@@ -175,10 +175,12 @@ std::function<int()> parse(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "sweep") return [argv] { return sweep(argv); };
     try {
         app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) { return answer(stdout, app.help(), held); } catch (const CLI::CallForVersion&) {
+    } catch (const CLI::CallForHelp&) {
+        return print_text(stdout, app.help(), passed);
+    } catch (const CLI::CallForVersion&) {
         return [] { return version({}); };
-    } catch (const CLI::ParseError& e) { return answer(stderr, misuse(app, e), misused); }
-    return work ? work : answer(stderr, app.help(), misused);
+    } catch (const CLI::ParseError& e) { return print_text(stderr, misuse(app, e), misused); }
+    return work ? work : print_text(stderr, app.help(), misused);
 }
 
 }  // namespace crescent::cli

@@ -75,7 +75,7 @@ void check_sides(const CheckFlags& flags, const Traits& traits) {
     for (const std::string& text : flags.wo)
         if (direction_of(text).z < 0 && traits.wo != Traits::WoDomain::both)
             throw InputError({"--wo " + text, 0, 0},
-                "is under the surface, and the sampler does not answer there: 0 to less than 90 degrees from the "
+                "is below the surface, which the sampler does not support: 0 to less than 90 degrees from the "
                 "normal, z > 0 (a program for both sides declares wo=both)");
 }
 
@@ -128,14 +128,14 @@ PipeLimits limits_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
 }
 
 int exit_of(State state, const CheckFlags& flags) {
-    return state == State::inconclusive && flags.allow_inconclusive ? held : exit_of(state);
+    return state == State::inconclusive && flags.allow_inconclusive ? passed : exit_of(state);
 }
 
 int exit_of(State state) {
     return state == State::wrong       ? failed
         : state == State::error        ? unwritable
         : state == State::inconclusive ? inconclusive
-                                       : held;
+                                       : passed;
 }
 
 namespace {
@@ -144,7 +144,7 @@ namespace {
 std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
     if (flags.sampler.empty())
         throw InputError({"crescent check " + flags.arm, 0, 0},
-            "expected --sampler NAME beside an experiment: an arm of it, or a built-in sampler");
+            "expected --sampler NAME with an experiment: an arm of it, or a built-in sampler");
     for (const auto& [flag, given] : {std::pair("--wo", !flags.wo.empty()), {"--against", !flags.against.empty()}})
         if (given) throw InputError({flag, 0, 0}, "is not for an arm of an experiment");
     const Experiment experiment = load(flags.arm, flags.settings);
@@ -290,7 +290,7 @@ int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cas
             {"descriptions", check::description_json(all)}};
         write_whole(flags.json, out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
-    return held;
+    return passed;
 }
 
 }  // namespace
@@ -336,7 +336,7 @@ int check(const CheckFlags& given) {
         if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
         log_cost(check_cases, test_settings_of(flags), monitor);
         j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
-    } catch (const SamplerError& fault) { j = complaint(fault, flags, given_sampler(flags)); }
+    } catch (const SamplerError& fault) { j = unchecked_result(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
     const bool all = whole_list(flags);
@@ -352,7 +352,7 @@ int check(const CheckFlags& given) {
 
 // ---- `crescent check A --against B`, and the report for a program that could not be checked.
 
-CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const std::string& command) {
+CheckResult unchecked_result(const SamplerError& fault, const CheckFlags& flags, const std::string& command) {
     CheckResult j;
     j.alpha = flags.alpha;
     j.state = dynamic_cast<const SamplerTimeout*>(&fault) ? State::inconclusive : State::error;
@@ -405,7 +405,7 @@ int check_against(
     try {
         b = others_of(flags, a, monitor);
     } catch (const SamplerError& fault) {  // B's own: A has responded
-        const CheckResult j = complaint(fault, flags, flags.against);
+        const CheckResult j = unchecked_result(fault, flags, flags.against);
         monitor.clear();
         print(verdict_table(j));
         write_files(flags, j);

@@ -14,7 +14,7 @@ int exit_of(State state, const CheckFlags& flags);
 void write_files(const CheckFlags& flags, const CheckResult& j);
 std::string shortest(double v);
 /// Returns the result for a program or plugin that could not be checked.
-CheckResult complaint(const SamplerError& fault, const CheckFlags& flags, const std::string& command);
+CheckResult unchecked_result(const SamplerError& fault, const CheckFlags& flags, const std::string& command);
 /// Returns the limits of a program or plugin.
 PipeLimits limits_of(const CheckFlags& flags, const ProgressMonitor& monitor);
 /// Exit 0: compared; 1: with --expect same, f or the distribution differs; 4: a tail is too heavy to decide.

@@ -68,7 +68,7 @@ int check_right(const CheckFlags& flags, ProgressMonitor& monitor) {
     std::string text;
     for (const std::string& line : study.message) text += line;
     print(text + false_alarm_text(study));
-    return keeps_promise(study) ? held : failed;
+    return keeps_promise(study) ? passed : failed;
 }
 
 }  // namespace crescent::cli

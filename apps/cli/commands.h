@@ -11,7 +11,7 @@ namespace crescent::cli {
 
 /// Exit codes, the same for every command.
 enum Exit : int {
-    held = 0,     // done, and all assertions hold (check: right)
+    passed = 0,   // done, and all assertions hold (check: right)
     failed = 1,   // done, and an assertion fails (check: wrong)
     misused = 2,  // the command line or the experiment file is wrong; nothing was written
     unwritable =

@@ -145,7 +145,7 @@ int error_rates(const CompareFlags& flags) {
         "```sh\ncrescent compare --error-rates {} --seed {}\n```\n\nNot run in the tests: needs minutes of every "
         "core.\n\n{}",
         crescent::version(), commit(), flags.error_rates, flags.seed, text));
-    return held;
+    return passed;
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ int error_rates(const CompareFlags& flags) {
 int compare(const CompareFlags& flags) {
     if (flags.schema)
         return print(flags.schema_as_json ? compare_schema_json() : compare_schema_text() + "\n" + suite_schema_text()),
-               held;
+               passed;
     if (flags.error_rates) return error_rates(flags);
     const bool folders = !flags.baseline.empty() || !flags.candidate.empty();
     if (folders || (!flags.file.empty() && is_suite(flags.file))) return compare_suite(flags);
@@ -171,7 +171,7 @@ int compare(const CompareFlags& flags) {
         crescent::compare_renders(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
     progress.clear();
     print(summary);
-    return result.state == CompareResult::State::holds ? held
+    return result.state == CompareResult::State::holds ? passed
         : result.state == CompareResult::State::fails  ? failed
                                                        : inconclusive;
 }

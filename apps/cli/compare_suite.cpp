@@ -60,7 +60,8 @@ std::string suite_command(const CompareFlags& f) {
     return out;
 }
 
-/// Each view takes and frees planes of the same sizes: without new pages from the system each time.
+/// Each view allocates and frees planes of the same sizes: keeps the freed memory, so that the system need not provide
+/// new pages each time.
 void keep_freed_memory() {
 #ifdef __GLIBC__
     mallopt(M_MMAP_MAX, 0);
@@ -85,7 +86,7 @@ int accept_suite(const CompareFlags& flags, const Suite& suite, Progress& progre
     progress.clear();
     print(fmt::format("{}\n{}/baseline.json has the new baseline of {} view{}.\n", fmt::join(lines, "\n"),
         baseline_folder(suite), lines.size(), lines.size() == 1 ? "" : "s"));
-    return held;
+    return passed;
 }
 
 int plan_suite(const CompareFlags& flags, const Suite& suite, Progress& progress) {
@@ -94,7 +95,7 @@ int plan_suite(const CompareFlags& flags, const Suite& suite, Progress& progress
     progress.clear();
     if (!flags.json.empty()) write_whole(flags.json, render_plan_json(suite, plans));
     print(render_plan_text(suite, plans));
-    return held;
+    return passed;
 }
 
 }  // namespace

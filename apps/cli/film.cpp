@@ -33,7 +33,7 @@ int film(const FilmFlags& flags) {
     const std::string summary = film_maker()(experiment, options, progress);
     progress.clear();
     print(summary);
-    return held;
+    return passed;
 }
 
 }  // namespace crescent::cli

@@ -9,12 +9,12 @@ namespace crescent::cli {
 namespace {
 
 constexpr const char* check_footer =
-    R"(Without ARM every built-in arm is judged, each case by an eighth of the draws
-where that is conclusive, and 0 means that each gets the verdicts expected of
-it. Else: 0 right, 1 wrong, 3 error (the sampler crashed, stopped answering or
-broke the protocol), 4 inconclusive: something could not be decided, or was not
+    R"(Without ARM every built-in arm is checked, each case with an eighth of the draws
+if these are conclusive, and 0 means that each arm has its expected verdicts.
+Else:  0 right, 1 wrong, 3 error (the sampler crashed, stopped responding or broke
+the protocol), 4 inconclusive: something could not be decided, or was not
 examined. Wrong comes before error, error before inconclusive. docs/check.md
-says what each verdict means, and how a program behind --exec is asked.)";
+explains the verdicts and the protocol of --exec.)";
 
 /// "Verdicts, in order: valid, ...", in lines of at most 80 columns.
 std::string verdicts_in_order() {

@@ -12,8 +12,8 @@ PFM, Radiance HDR, NPY. --arm may be given again for the same NAME. Without a re
 arms are compared with each other. `crescent compare --schema` has the keys of FILE.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml, plates/.
-Exit codes: 0 nothing asked is violated; 1 an assertion fails, or with --expect same a
-difference was found; 4 --expect same, and too few renders to have seen one.
+Exit codes: 0 no assertion fails; 1 an assertion fails, or with --expect same a
+difference was found; 4 --expect same, and too few renders to find one.
 
 A FILE with a table [suite] compares the views of a baseline and a candidate. Written under
 DIR: report.html. Exit codes: 1 a view changed, is noisier or is missing; 4 too few renders.)";
@@ -83,12 +83,12 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_flag("--crop", f->crop, "compare the pixels that the data windows of all renders share");
     c->add_flag("--pair", f->pair, "renders with the same number in their names share random numbers");
     c->add_option("--expect", f->expect, "same: a difference between arms fails")->type_name("same");
-    c->add_option("--smallest", f->smallest, "with it: the difference that must have been seen; default 1%")
+    c->add_option("--smallest", f->smallest, "with it: the difference that must be detectable; default 1%")
         ->type_name("SHARE");
     c->add_option("--exposure", f->exposure, "of photographs; default 1")->type_name("E");
     c->add_option("--alpha", f->alpha, "chance of a false alarm; default 0.01")->type_name("P");
     c->add_option("--trim", f->trim, "share of pixels relMSE and MAPE leave out; default 0")->type_name("SHARE");
-    c->add_option("--brightest", f->brightest, "the most that Y of a pixel of one render can be, e.g. a clamp")
+    c->add_option("--brightest", f->brightest, "largest possible Y of a pixel of one render, e.g. a clamp")
         ->type_name("Y");
     c->add_option("--theme", f->theme, "of plates: dark, light")->type_name("THEME");
     c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(not_empty);

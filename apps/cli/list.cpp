@@ -119,19 +119,19 @@ int list(const ListFlags& flags) {
     }
     if (!known) unknown(flags.what);
     print(out);
-    return held;
+    return passed;
 }
 
 // ---- crescent schema and crescent version: descriptions of the input and of the program.
 
 int schema(const SchemaFlags& flags) {
     print(flags.json ? schema_json() : schema_text());
-    return held;
+    return passed;
 }
 
 int version(const VersionFlags&) {
     print("crescent " + crescent::version() + " (" + commit() + ", " + compiler() + ")\n");
-    return held;
+    return passed;
 }
 
 }  // namespace crescent::cli

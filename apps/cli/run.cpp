@@ -35,7 +35,7 @@ int show_preview(const Experiment& experiment, const RunOptions& options, Progre
     progress.clear();
     print(fmt::format(
         "{}/preview.png: the reference, its regions and the crops of plates on rulers of pixels\n", options.out));
-    return held;
+    return passed;
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ int run(const RunFlags& flags) {
     const RunResult result = crescent::run(experiment, options, progress);
     progress.clear();
     print(result.summary);
-    return result.metrics.all_hold() ? held : failed;
+    return result.metrics.all_hold() ? passed : failed;
 }
 
 // ---- Looks the word up among the registered kinds of back end and opens the one it finds with the two --gl flags,
@@ -107,7 +107,7 @@ int join(const JoinFlags& flags) {
     ProgressMonitor monitor;
     write_metrics(joined, flags.out, monitor);
     print(terminal_summary(report_inputs(joined), {}, flags.out, {true, false, false, false}));
-    return joined.metrics.all_hold() ? held : failed;
+    return joined.metrics.all_hold() ? passed : failed;
 }
 
 }  // namespace crescent::cli

@@ -20,15 +20,16 @@ namespace {
 std::atomic<ProgressMonitor*> watched{nullptr};
 std::atomic<bool> let_finish{false};
 std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
-constexpr itimerval patience{{}, {0, 500'000}};        // a large process needs time to end
-constexpr itimerval moving_patience{{}, {5, 0}};       // outputs being moved are completed, if the disk is fast enough
+constexpr itimerval grace_period{{}, {0, 500'000}};    // a large process needs time to end
+constexpr itimerval moving_grace_period{{}, {5, 0}};   // outputs being moved are completed, if the disk is fast enough
 
 /// Returns the state of the outputs when the process ends here.
-const char* last_words() {
+const char* last_message() {
     const ProgressMonitor* monitor = watched.load();
     switch (monitor ? monitor->outputs.load() : left_behind.load()) {
-        case Outputs::moving: return "crescent: interrupted; the outputs are either all of before or all of this run\n";
-        case Outputs::stand: return "crescent: interrupted; the outputs of this run are complete\n";
+        case Outputs::moving:
+            return "crescent: interrupted; the outputs are either all of the earlier run or all of this run\n";
+        case Outputs::complete: return "crescent: interrupted; the outputs of this run are complete\n";
         default: return "crescent: interrupted; existing outputs were not changed\n";
     }
 }
@@ -36,7 +37,7 @@ const char* last_words() {
 // All handlers use only async-signal-safe calls (POSIX.1-2017, 2.4.3) and setitimer, which that list lacks and which is
 // one system call on Linux, the BSDs and macOS; macOS has no timer_settime.
 extern "C" void end_now(int) {
-    const char* words = last_words();
+    const char* words = last_message();
     static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
     Process::kill_all();
     ::_exit(interrupted);
@@ -45,13 +46,13 @@ extern "C" void end_now(int) {
 extern "C" void time_is_up(int signal) {
     const ProgressMonitor* monitor = watched.load();
     if (!monitor || monitor->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
-    else ::setitimer(ITIMER_REAL, &moving_patience, nullptr);
+    else ::setitimer(ITIMER_REAL, &moving_grace_period, nullptr);
 }
 
 extern "C" void request_stop(int signal) {
     ProgressMonitor* monitor = watched.load();
     if (!monitor || monitor->stop.exchange(true)) end_now(signal);
-    else ::setitimer(ITIMER_REAL, &patience, nullptr);
+    else ::setitimer(ITIMER_REAL, &grace_period, nullptr);
 }
 
 void handle(int signal, void (*handler)(int)) {

@@ -20,7 +20,7 @@ const Arguments colour = {
     "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"};
 
 /// Inputs in this order: frames, captions, chapters, poster, voice.
-Arguments arguments(const Ingredients& in) {
+Arguments arguments(const EncoderInputs& in) {
     Arguments a = {"ffmpeg", "-hide_banner", "-nostdin", "-loglevel", "error", "-y"};
     append(a,
         {"-f", "rawvideo", "-pix_fmt", "yuv420p", "-video_size", fmt::format("{}x{}", in.width, in.height),
@@ -89,7 +89,7 @@ void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Prog
             throw OutputError("this ffmpeg has no encoder '" + encoder + "', which the film needs");
 }
 
-Encoder::Encoder(const Ingredients& in)
+Encoder::Encoder(const EncoderInputs& in)
     : in_(in), process_({.argv = arguments(in), .stdout_file = "/dev/null", .stderr_file = in.log}) {}
 
 void Encoder::fail(const std::string& what) {

@@ -11,7 +11,7 @@
 namespace crescent::explainer {
 
 /// The input and output files; "" if there is none.
-struct Ingredients {
+struct EncoderInputs {
     int width = 0, height = 0;
     std::string captions, chapters, poster, voice;  // .srt, ffmetadata, .png, .wav
     std::string mp4, webm;                          // to be written
@@ -23,7 +23,7 @@ void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Prog
 
 class Encoder {
 public:
-    explicit Encoder(const Ingredients& in);
+    explicit Encoder(const EncoderInputs& in);
     void take(const Raster& raster, const ProgressMonitor& monitor);
     /// Waits for ffmpeg to finish. OutputError if it failed, or wrote no video.
     void finish(const ProgressMonitor& monitor);
@@ -31,7 +31,7 @@ public:
 private:
     [[noreturn]] void fail(const std::string& what);
 
-    Ingredients in_;
+    EncoderInputs in_;
     Process process_;
 };
 

@@ -50,9 +50,9 @@ std::vector<std::pair<std::string, std::string>> attributes_of(const Data& data)
 }
 
 /// A video in production.
-class Making {
+class VideoWriter {
 public:
-    Making(const Data& data, const Timeline& timeline, const ExplainerOptions& options, Staging& staging,
+    VideoWriter(const Data& data, const Timeline& timeline, const ExplainerOptions& options, Staging& staging,
         ProgressMonitor& monitor)
         : data_(data),
           timeline_(timeline),
@@ -103,7 +103,7 @@ private:
     }
 
     std::vector<std::uint64_t> encode(const Part& part, Voice* voice) {
-        Ingredients in;
+        EncoderInputs in;
         in.width = options_.height * 16 / 9, in.height = options_.height;
         in.captions = staging_.path("crescent.srt"), in.mp4 = staging_.path("crescent.mp4");
         in.chapters = scratch("chapters.txt", chapters(timeline_, part, data_.experiment.title));
@@ -175,18 +175,18 @@ std::string make(const Experiment& experiment, const ExplainerOptions& options, 
                               : std::function<double(const Words&)>([&](const Words& w) { return voice.seconds(w); }));
     data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
-    Making making(data, timeline, options, staging, monitor);
-    const std::string texts = !options.still.empty() ? making.one_still()
-        : options.stills                             ? making.stills(part)
-                                                     : making.film(part, options.voice.empty() ? nullptr : &voice);
+    VideoWriter writer(data, timeline, options, staging, monitor);
+    const std::string texts = !options.still.empty() ? writer.one_still()
+        : options.stills                             ? writer.stills(part)
+                                                     : writer.film(part, options.voice.empty() ? nullptr : &voice);
     staging.commit(monitor);
     return texts;
 }
 
 const bool registered = [] {
     film_maker() = [](const Experiment& experiment, const ExplainerOptions& options, ProgressMonitor& monitor) {
-        const int asked = options.threads > 0 ? options.threads : usable_threads();
-        const int threads = std::min(asked, oneapi::tbb::info::default_concurrency());
+        const int requested = options.threads > 0 ? options.threads : usable_threads();
+        const int threads = std::min(requested, oneapi::tbb::info::default_concurrency());
         return on_threads(threads, [&] { return make(experiment, options, monitor); });
     };
     return true;

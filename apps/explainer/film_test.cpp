@@ -53,7 +53,7 @@ TEST(Film, EveryTextIsUncutAndLargeEnough) {
     }
 }
 
-TEST(Film, OnNoStillDoTextsRunIntoEachOther) {
+TEST(Film, TextsDoNotOverlapOnAnyStill) {
     Painter painter(timeline(), small_height);
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         painter.draw(timeline().still(k));
@@ -95,7 +95,7 @@ TEST(Film, StillsHaveEnoughTextContrast) {
     }
 }
 
-TEST(Film, NoDigitIsTyped) {
+TEST(Film, NoDigitIsHardCoded) {
     EXPECT_THROW(Words("off by 6.18"), Bug);
     EXPECT_NO_THROW(Words("off by <span foreground='#112233'>", figure(6.18, 3, "rmse"), "</span>"));
     Painter painter(timeline(), small_height);
@@ -118,7 +118,7 @@ TEST(Film, NoDigitIsTyped) {
     }
 }
 
-TEST(Film, ItsNumbersFollowTheRun) {
+TEST(Film, NumbersComeFromTheRun) {
     Data other = test::small_data();
     for (RunMetrics& run : other.metrics.runs)
         for (RegionMetrics& region : run.regions) region.rmse *= 1.37;
@@ -156,7 +156,7 @@ void expect_valid_timeline(const Timeline& t) {
     }
 }
 
-TEST(Film, CaptionsKeepTheirLawsSilentAndSpoken) {
+TEST(Film, CaptionsFollowTheirRulesSilentAndSpoken) {
     expect_valid_timeline(timeline());
     const Timeline spoken(shots_of(test::small_data()), [](const Words& w) { return 0.2 * double(length(w.plain())); });
     expect_valid_timeline(spoken);
@@ -197,7 +197,7 @@ TEST(Film, UnchangedFramesWouldBeDrawnTheSame) {
     EXPECT_GT(taken, 20);
 }
 
-TEST(Film, ColoursComeOutAsBt709SaysInLimitedRange) {
+TEST(Film, ColoursAreBt709InLimitedRange) {
     Canvas canvas(4, 2, {1, 1, 1});
     const auto white = raster_of(canvas);
     EXPECT_EQ(white->bytes, (std::vector<unsigned char>{235, 235, 235, 235, 235, 235, 235, 235, 128, 128, 128, 128}));
@@ -209,7 +209,7 @@ TEST(Film, ColoursComeOutAsBt709SaysInLimitedRange) {
     EXPECT_EQ(raster_of(canvas)->bytes[0], 16);
 }
 
-TEST(Film, WhatAnExperimentLacksIsNamed) {
+TEST(Film, MissingPartsOfAnExperimentAreReported) {
     Experiment e = test::small_experiment();
     std::erase_if(e.arms, [](const ArmPlan& a) { return a.name == "phong"; });
     e.regions.resize(1);

@@ -13,7 +13,7 @@ Colour faded(Colour c, double alpha) { return c.a *= alpha, c; }
 
 }  // namespace
 
-double Frame::answer(const Question& q, double t) {
+double Frame::evaluate(const TimeQuery& q, double t) {
     const double x = q.to > q.from ? std::clamp((t - q.from) / (q.to - q.from), 0.0, 1.0) : double(t >= q.from);
     switch (q.kind) {
         case Kind::ramp: return x;
@@ -24,14 +24,15 @@ double Frame::answer(const Question& q, double t) {
     return 0;
 }
 
-double Frame::ask(Question q) {
-    q.answer = answer(q, t_);
-    asked_.push_back(q);
-    return q.answer;
+double Frame::query(TimeQuery q) {
+    q.result = evaluate(q, t_);
+    queries_.push_back(q);
+    return q.result;
 }
 
 bool Frame::same_at(double t) const {
-    return std::all_of(asked_.begin(), asked_.end(), [t](const Question& q) { return answer(q, t) == q.answer; });
+    return std::all_of(
+        queries_.begin(), queries_.end(), [t](const TimeQuery& q) { return evaluate(q, t) == q.result; });
 }
 
 Rect Frame::text(const Rect& box, const Words& words, Text how, double alpha) {

@@ -31,16 +31,16 @@ public:
     Frame(Canvas& canvas, double t) : canvas_(canvas), t_(t) {}
 
     /// Returns 0 until `from`, 1 from `to` on, linear between.
-    double ramp(double from, double to) { return ask({Kind::ramp, from, to}); }
+    double ramp(double from, double to) { return query({Kind::ramp, from, to}); }
     /// The same with a smooth start and end: 3x^2 - 2x^3.
-    double ease(double from, double to) { return ask({Kind::ease, from, to}); }
-    bool after(double at) { return ask({Kind::after, at, at}) > 0; }
+    double ease(double from, double to) { return query({Kind::ease, from, to}); }
+    bool after(double at) { return query({Kind::after, at, at}) > 0; }
     /// Returns 1 between the two, eased over `over` seconds on either side.
     double during(double from, double to, double over = 0.4) {
         return ease(from - over, from) * (1 - ease(to, to + over));
     }
     /// Returns 0 .. n: how many of n equal steps from `from` to `to` are complete.
-    int steps(double from, double to, int n) { return static_cast<int>(ask({Kind::steps, from, to, n})); }
+    int steps(double from, double to, int n) { return static_cast<int>(query({Kind::steps, from, to, n})); }
 
     /// Sets words in a box; For `alpha` 0 nothing is drawn. Returns their extents.
     Rect text(const Rect& box, const Words& words, Text how, double alpha = 1);
@@ -69,18 +69,18 @@ public:
 
 private:
     enum class Kind { ramp, ease, after, steps };
-    struct Question {
+    struct TimeQuery {
         Kind kind;
         double from, to;
         int n = 0;
-        double answer = 0;
+        double result = 0;
     };
-    static double answer(const Question& q, double t);
-    double ask(Question q);
+    static double evaluate(const TimeQuery& q, double t);
+    double query(TimeQuery q);
 
     Canvas& canvas_;
     double t_;
-    std::vector<Question> asked_;
+    std::vector<TimeQuery> queries_;
     std::vector<Words> texts_;
 };
 

@@ -55,12 +55,12 @@ Line line_of(const Data& data, const std::string& arm, const LogPlot& plot) {
 }
 
 /// Draws the line of an earlier shot.
-void draw_dim(Frame& f, const Line& old) {
+void draw_dim(Frame& f, const Line& earlier) {
     const double in = f.ease(0.6, 1.2);
-    f.polyline(old.points, old.ink, 4, 0.55 * in);
-    for (const Point& p : old.points) f.dot(p, 7, old.ink, 0.55 * in);
-    f.text({old.points.back().x - 250, old.points.back().y - 96, 270, 44}, old.name,
-        with(with(label_text, old.ink), Align::right), in);
+    f.polyline(earlier.points, earlier.ink, 4, 0.55 * in);
+    for (const Point& p : earlier.points) f.dot(p, 7, earlier.ink, 0.55 * in);
+    f.text({earlier.points.back().x - 250, earlier.points.back().y - 96, 270, 44}, earlier.name,
+        with(with(label_text, earlier.ink), Align::right), in);
 }
 
 }  // namespace
@@ -81,42 +81,42 @@ Words slope_words(const Ladder& l) {
     return words;
 }
 
-Shot ladder_shot(const Data& data, const LadderStory& story) {
-    const Ladder& ladder = ladder_of(data, story.arm);
+Shot ladder_shot(const Data& data, const LadderShotText& text) {
+    const Ladder& ladder = ladder_of(data, text.arm);
     const LogPlot plot = plot_of(data);
     const Closeup crop = close_up(data, data.box(data.cast.highlight), {0, 0, 380, 310}, 1.35);
     std::vector<Block> blocks;
     std::vector<Words> labels;
     for (const std::size_t k : shown_of(ladder)) {
-        const RunKey key = data.key(story.arm, ladder.n[k]);
+        const RunKey key = data.key(text.arm, ladder.n[k]);
         blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop.box));
         labels.push_back(Words("N\u00a0=\u00a0", data.n_of(key), ", off by ", data.rmse(key, data.cast.highlight)));
     }
-    const Line line = line_of(data, story.arm, plot);
-    std::optional<Line> old;
-    if (!story.before.empty()) old = line_of(data, story.before, plot);
+    const Line line = line_of(data, text.arm, plot);
+    std::optional<Line> earlier;
+    if (!text.before.empty()) earlier = line_of(data, text.before, plot);
     const Words slope = slope_words(ladder);
     std::vector<std::uint64_t> ticks = ladder.n;
 
     Shot shot;
     shot.kind = Kind::photograph;
-    const double stands = first + each * double(blocks.size());
-    shot.cues = {{0.5, story.opening}};
-    for (std::size_t k = 0; k < story.after.size(); ++k)
-        shot.cues.push_back({stands + 5.4 * double(k), story.after[k]});
-    shot.seconds = stands + 5.4 * double(story.after.size());
+    const double line_start = first + each * double(blocks.size());
+    shot.cues = {{0.5, text.opening}};
+    for (std::size_t k = 0; k < text.after.size(); ++k)
+        shot.cues.push_back({line_start + 5.4 * double(k), text.after[k]});
+    shot.seconds = line_start + 5.4 * double(text.after.size());
     shot.still = shot.seconds - 0.8;
     shot.draw = [=](Frame& f) {
         plot.axes(f, ticks, Words("samples a pixel, N"), Words("RMSE in the highlight"), f.ease(0.4, 1));
-        if (old && !old->points.empty()) draw_dim(f, *old);
+        if (earlier && !earlier->points.empty()) draw_dim(f, *earlier);
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const double at = first + each * double(k), in = f.ease(at, at + 0.5);
             const double x = 90 + 430.0 * double(k % 2), y = 122 + 388.0 * double(k / 2);
             show(f, blocks[k], crop.times, {x, y, 380, 310}, in);
             f.text({x, y + 318, 380, 48}, labels[k], with(body_text, Vertical::middle), in);
         }
-        const int n = f.steps(first, stands, static_cast<int>(line.points.size()));
-        f.polyline(begun(line.points, f.ease(stands, stands + 1.5)), line.ink, 5);
+        const int n = f.steps(first, line_start, static_cast<int>(line.points.size()));
+        f.polyline(begun(line.points, f.ease(line_start, line_start + 1.5)), line.ink, 5);
         for (std::size_t k = 0; k < line.points.size(); ++k) {
             const double at = first + each * double(blocks.size()) * double(k) / double(line.points.size());
             f.dot(line.points[k], 11, line.ink, f.ease(at + 0.4, at + 0.9));
@@ -125,7 +125,7 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
         f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, line.name,
             with(label_text, line.ink), f.ease(first, first + 0.6));
         f.text({plot.plot.x + 30, plot.plot.bottom() - 66, plot.plot.w - 40, 48}, slope, with_px(label_text, 34),
-            f.ease(stands + 1.2, stands + 1.8));
+            f.ease(line_start + 1.2, line_start + 1.8));
     };
     return shot;
 }

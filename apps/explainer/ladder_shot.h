@@ -7,14 +7,14 @@
 
 namespace crescent::explainer {
 
-struct LadderStory {
+struct LadderShotText {
     std::string arm, before;   // `before`: the arm whose line is already shown, dimmed; "": none
     Words opening;             // spoken first
     std::vector<Words> after;  // spoken when the line is complete
 };
 
 /// Returns pictures, chart and times; the caller sets name, title and description.
-Shot ladder_shot(const Data& data, const LadderStory& story);
+Shot ladder_shot(const Data& data, const LadderShotText& text);
 
 /// Returns the ladder of an arm in the highlight.
 const Ladder& ladder_of(const Data& data, const std::string& arm);

@@ -46,7 +46,7 @@ void chroma_row(const unsigned char* row0, const unsigned char* row1, unsigned c
 }
 
 /// The painter of a thread, and the last frame that it drew.
-struct Desk {
+struct ThreadPainter {
     Painter painter;
     std::shared_ptr<const Raster> last;
 };
@@ -76,23 +76,23 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas) {
 
 void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& monitor,
     const std::function<void(const Raster&)>& take) {
-    tbb::enumerable_thread_specific<std::unique_ptr<Desk>> desks;
+    tbb::enumerable_thread_specific<std::unique_ptr<ThreadPainter>> painters;
     int next = first;
-    const auto deal = [&](tbb::flow_control& control) {
+    const auto next_chunk = [&](tbb::flow_control& control) {
         if (next >= last || monitor.stop) control.stop();
         return std::exchange(next, std::min(next + chunk, last));
     };
     const auto draw = [&](int begin) {
-        std::unique_ptr<Desk>& desk = desks.local();
-        if (!desk) desk.reset(new Desk{Painter(timeline, height), nullptr});
+        std::unique_ptr<ThreadPainter>& own = painters.local();
+        if (!own) own.reset(new ThreadPainter{Painter(timeline, height), nullptr});
         Chunk rasters;
         for (int frame = begin; frame < std::min(begin + chunk, last) && !monitor.stop; ++frame) {
-            if (desk->painter.draw(frame) || !desk->last) desk->last = raster_of(desk->painter.canvas());
-            rasters.push_back(desk->last);
+            if (own->painter.draw(frame) || !own->last) own->last = raster_of(own->painter.canvas());
+            rasters.push_back(own->last);
         }
         return rasters;
     };
-    const auto hand_over = [&](const Chunk& rasters) {
+    const auto pass_on = [&](const Chunk& rasters) {
         for (const auto& raster : rasters) {
             if (monitor.stop) return;
             take(*raster);
@@ -101,9 +101,9 @@ void for_each_frame(const Timeline& timeline, int height, int first, int last, P
     };
     const std::size_t tokens = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) + 1;
     tbb::parallel_pipeline(tokens,
-        tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, deal) &
+        tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, next_chunk) &
             tbb::make_filter<int, Chunk>(tbb::filter_mode::parallel, draw) &
-            tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, hand_over));
+            tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, pass_on));
     monitor.check();
 }
 

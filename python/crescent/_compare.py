@@ -23,7 +23,7 @@ import numpy as np
 
 from . import _arrays
 
-#: Of a view, the one that decides first: a suite has the first of these that one of its views has.
+#: The states of a view, the most severe first: a suite has the first of these that one of its views has.
 STATES = ("changed", "noisier", "missing", "too few renders", "new", "improved", "same")
 
 _ERRORS: dict[int, type[Exception]] = {2: ValueError, 3: OSError}
@@ -31,7 +31,7 @@ _ERRORS: dict[int, type[Exception]] = {2: ValueError, 3: OSError}
 
 @dataclass(frozen=True)
 class View:
-    """What was found in one view."""
+    """The result for one view."""
 
     name: str
     state: str  #: one of STATES
@@ -42,7 +42,7 @@ class View:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What was found in all views, as `crescent compare` writes it."""
+    """The result for all views, as `crescent compare` writes it."""
 
     state: str  #: the first of STATES that a view has
     sentence: str
@@ -68,7 +68,7 @@ def program() -> str:
 
 
 def run_compare(arguments: Sequence[str]) -> subprocess.CompletedProcess[str]:
-    """Runs `crescent compare`; ValueError for bad input, OSError for what cannot be written."""
+    """Runs `crescent compare`; ValueError for wrong input, OSError for outputs that cannot be written."""
     done = subprocess.run([program(), "compare", *arguments], capture_output=True, text=True, check=False)
     if done.returncode in (0, 1, 4):
         return done
@@ -102,12 +102,12 @@ def _renders(side: Any, what: str) -> list[Any]:
 
 
 def file_name(view: str) -> str:
-    """The name of a view as the name of a file."""
+    """A file name for a view."""
     return "".join("_" if c in '/\\*?"{}%' or ord(c) < 32 else c for c in view)
 
 
 def write_renders(folder: Path, view: str, side: Any, what: str) -> None:
-    """The renders as FOLDER/VIEW/K.npy, or links to their files."""
+    """Writes the renders as FOLDER/VIEW/K.npy, or links to their files."""
     to = folder / file_name(view)
     to.mkdir(parents=True, exist_ok=True)
     for k, render in enumerate(_renders(side, what)):
@@ -120,7 +120,7 @@ def write_renders(folder: Path, view: str, side: Any, what: str) -> None:
 def suite_text(
     baseline: str, candidate: str, options: Mapping[str, Any], regions: Mapping[str, Mapping[str, Sequence[int]]]
 ) -> str:
-    """A suite file. JSON's text and numbers are TOML's."""
+    """The text of a suite file. JSON's text and numbers are also valid TOML."""
     lines = ["[suite]", f"baseline = {json.dumps(baseline)}", f"candidate = {json.dumps(candidate)}"]
     lines += [f"{key} = {json.dumps(value)}" for key, value in options.items() if value is not None]
     for view, boxes in regions.items():

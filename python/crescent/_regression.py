@@ -1,7 +1,7 @@
 """The fixture `render_regression`: the renders of a test against the baseline that is committed next to it.
 
-The baseline of `test_lamp` in `tests/test_scene.py` is `tests/test_scene/test_lamp-moments.exr`: mean and variance of
-each pixel. `pytest --crescent-accept` makes the renders of the tests that run the baseline.
+The baseline of `test_box` in `tests/test_scene.py` is `tests/test_scene/test_box-moments.exr`: mean and variance of
+each pixel. `pytest --crescent-accept` replaces the baseline by the renders of the tests that run.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""pytest: one alpha over a whole session, and at its end how often a right suite fails.
+"""pytest: one alpha for a whole session, and at its end the probability that a right suite fails.
 
     def test_mine(assert_sampler):          # or crescent.testing.assert_sampler itself
         assert_sampler(sample, pdf, f)      # or "samplers/mine.py:sampler", from pytest's rootdir
 
-`pytest --crescent-alpha 1e-4` changes alpha. Under pytest-xdist every worker collects the whole suite, and has the
-same shares.
+`pytest --crescent-alpha 1e-4` changes alpha. Under pytest-xdist every worker collects the whole suite and
+computes the same shares.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 @pytest.fixture
 def assert_sampler() -> Iterator[Callable[..., Any]]:
-    """crescent.testing.assert_sampler, which takes its share of the session's alpha."""
+    """crescent.testing.assert_sampler, which uses its share of the session's alpha."""
     yield testing.assert_sampler
 
 
@@ -79,7 +79,7 @@ def render_regression(request: pytest.FixtureRequest) -> RenderRegression:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    output = getattr(session.config, "workeroutput", None)  # of a worker of pytest-xdist
+    output = getattr(session.config, "workeroutput", None)  # set in a worker of pytest-xdist
     if output is not None:
         mine = session.config.stash[_KEY]
         output["crescent"] = (mine.tests, mine.checked, mine.spent)
@@ -87,10 +87,10 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any, error: Any) -> None:
-    told = getattr(node, "workeroutput", {}).get("crescent")
-    if told:
+    counts = getattr(node, "workeroutput", {}).get("crescent")
+    if counts:
         mine = node.config.stash[_KEY]
-        mine.tests, checked, spent = told
+        mine.tests, checked, spent = counts
         mine.checked += checked
         mine.spent += spent
 

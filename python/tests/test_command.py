@@ -100,7 +100,7 @@ def test_an_exception_is_an_error_of_the_sampler(run):
         (["cosin"], "did you mean 'cosine'"),
         (["mine.py", "--set", "s=3"], "is for built-in samplers"),
         (["mine.py", "--exec", "./mine"], "excludes"),
-        (["mine.py", "--wo", "120"], "under the surface"),
+        (["mine.py", "--wo", "120"], "below the surface"),
         (["cosine", "--patience", "3"], "needs --exec or a sampler in a Python file"),
     ],
 )

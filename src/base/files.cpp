@@ -41,7 +41,7 @@ bool move_to(const fs::path& from, const fs::path& to) {
     about_to_change();
     return ::rename(from.c_str(), to.c_str()) == 0;
 }
-bool take_away(const fs::path& path) {
+bool remove_entry(const fs::path& path) {
     about_to_change();
     return ::remove(path.c_str()) == 0;
 }
@@ -125,7 +125,7 @@ std::vector<std::string> entries(const fs::path& folder) {
     return out;
 }
 
-bool holds(const std::vector<std::string>& all, const std::string& one) {
+bool contains(const std::vector<std::string>& all, const std::string& one) {
     return std::find(all.begin(), all.end(), one) != all.end();
 }
 bool any_below(const std::vector<std::string>& all, const fs::path& folder) {
@@ -176,8 +176,8 @@ Moving read_moving(const fs::path& work) {
     return out;
 }
 
-std::mutex held_mutex;
-std::set<fs::path>& held_here() {
+std::mutex lock_mutex;
+std::set<fs::path>& locked_here() {
     static std::set<fs::path> all;
     return all;
 }
@@ -200,7 +200,7 @@ bool must_stay(const fs::path& out, const fs::path& by) {
 }
 
 /// Returns whether a folder can exist next to `out` from which names can be moved into it.
-bool can_be_beside(const fs::path& out) {
+bool can_be_next_to(const fs::path& out) {
     struct stat s{}, above{};
     const fs::path parent = out.parent_path();
     const bool other_device =
@@ -234,7 +234,8 @@ Staging::Staging(const std::string& folder, std::string kind) : shown_(folder), 
     const fs::path inside = out_ / ".crescent-work";
     if (is_folder(inside)) complete(inside);  // of a run for which OUT was a mount point
     lock_.reset();
-    complete(can_be_beside(out_) ? out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string()) : inside);
+    complete(
+        can_be_next_to(out_) ? out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string()) : inside);
     if (!make_folders(work_ / "new") || !make_folders(work_ / "scratch"))
         fail("cannot write in", folder, std::strerror(errno));
 }
@@ -255,9 +256,9 @@ void Staging::complete(const Path& work) {
 /// Takes a lock of the process, which no child inherits, on a file that still exists afterwards.
 bool Staging::take_lock() {
     const fs::path path = work_ / "lock";
-    const std::lock_guard one_at_a_time(held_mutex);
+    const std::lock_guard one_at_a_time(lock_mutex);
     const OutputError in_use(fmt::format("{} is in use by another run; wait for it or choose another --out", shown_));
-    if (held_here().contains(work_)) throw in_use;
+    if (locked_here().contains(work_)) throw in_use;
     const std::vector<std::string> there = entries(work_);
     const bool fresh = there.empty() || there == std::vector<std::string>{"lock"};
     struct stat s{};
@@ -278,12 +279,12 @@ bool Staging::take_lock() {
         if (!taken) throw in_use;
         return false;
     }
-    held_here().insert(work_);
+    locked_here().insert(work_);
     lock_ = std::shared_ptr<void>(nullptr, [file, work = work_](void*) {
-        const std::lock_guard one_at_a_time(held_mutex);
-        if (entries(work) == std::vector<std::string>{"lock"} && take_away(work / "lock")) ::rmdir(work.c_str());
+        const std::lock_guard one_at_a_time(lock_mutex);
+        if (entries(work) == std::vector<std::string>{"lock"} && remove_entry(work / "lock")) ::rmdir(work.c_str());
         close(file);
-        held_here().erase(work);
+        locked_here().erase(work);
     });
     if (pwrite(file, lock_text.data(), lock_text.size(), 0) != static_cast<ssize_t>(lock_text.size()))
         fail("cannot write in", shown_, std::strerror(errno));
@@ -295,7 +296,7 @@ Staging::~Staging() {
     for (const char* name : {"new", "scratch", "one-by-one"}) remove_tree(work_ / name);
 }
 
-/// Returns why a file cannot be brought to that name; "" if it can.
+/// Returns why a file cannot be moved to that name; "" if it can.
 std::string Staging::obstacle(const std::string& name) const {
     fs::path folder = out_;
     for (const fs::path& step : fs::path(name).parent_path()) {
@@ -315,7 +316,7 @@ void Staging::expect(const std::vector<std::string>& names) const {
     for (const std::string& name : names)
         if (const std::string why = obstacle(name); !why.empty())
             throw OutputError(
-                fmt::format("cannot write {}/{}: {}; every output there is the one of before", shown_, name, why));
+                fmt::format("cannot write {}/{}: {}; the earlier outputs there are unchanged", shown_, name, why));
 }
 
 std::string Staging::path(const std::string& name) {
@@ -323,7 +324,7 @@ std::string Staging::path(const std::string& name) {
     std::error_code error;
     fs::create_directories(at.parent_path(), error);
     if (error) fail("cannot make the folder", at.parent_path(), error.message());
-    if (!holds(names_, name)) names_.push_back(name);
+    if (!contains(names_, name)) names_.push_back(name);
     return at;
 }
 
@@ -337,38 +338,39 @@ void Staging::write(const std::string& name, const std::string& text) {
 }
 
 void Staging::adopt(const Names& names) {
-    const fs::path list = out_ / list_of(kind_), made = work_ / "scratch" / "list";
+    const fs::path list = out_ / list_of(kind_), new_list = work_ / "scratch" / "list";
     if (!is_there(out_)) return;
     Names all = names_in(list);
     for (const std::string& name : names)
-        if (stays_inside(name) && is_there(out_ / name) && !holds(all, name)) all.push_back(name);
+        if (stays_inside(name) && is_there(out_ / name) && !contains(all, name)) all.push_back(name);
     std::string text(list_head);
     for (const std::string& name : all) text += name + "\n";
-    if (!put(made, text) || !sync(made) || !move_to(made, list))
+    if (!put(new_list, text) || !sync(new_list) || !move_to(new_list, list))
         fail("cannot write", list.string(), std::strerror(errno));
 }
 
 void Staging::commit(ProgressMonitor& monitor) {
-    const fs::path made = work_ / "new", list = list_of(kind_);
+    const fs::path fresh_outputs = work_ / "new", list = list_of(kind_);
     std::sort(names_.begin(), names_.end());
     std::string text(list_head);
     for (const std::string& name : names_) text += name + "\n";
     Names all = names_;
     all.push_back(list);
-    if (!put(made / list, text)) fail("cannot write", (made / list).string(), std::strerror(errno));
+    if (!put(fresh_outputs / list, text)) fail("cannot write", (fresh_outputs / list).string(), std::strerror(errno));
     expect(all);
     Names ours = names_in(out_ / list);
     ours.push_back(list);
     link_users_files("", ours);
     std::set<fs::path> synced;
     for (const std::string& name : all) {
-        synced.insert(made / name);
-        for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path()) synced.insert(made / up);
+        synced.insert(fresh_outputs / name);
+        for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path())
+            synced.insert(fresh_outputs / up);
     }
-    synced.insert(made);
+    synced.insert(fresh_outputs);
     for (const fs::path& path : synced)
         if (!sync(path)) fail("cannot write", path.string(), std::strerror(errno));
-    if (!put(work_ / "moving", fmt::format("{} {} end\n", inode(made), kind_)) || !sync(work_ / "moving") ||
+    if (!put(work_ / "moving", fmt::format("{} {} end\n", inode(fresh_outputs), kind_)) || !sync(work_ / "moving") ||
         !sync(work_))
         fail("cannot write in", shown_, std::strerror(errno));
     monitor.outputs = Outputs::moving;
@@ -380,10 +382,10 @@ void Staging::commit(ProgressMonitor& monitor) {
         throw;
     }
     moving_ = false;
-    monitor.outputs = Outputs::stand;
+    monitor.outputs = Outputs::complete;
     names_.clear();
-    for (const std::string& line : said_) monitor.log(line);
-    said_.clear();
+    for (const std::string& line : messages_) monitor.log(line);
+    messages_.clear();
 }
 
 /// Makes a second name in new/ for each file of the user next to the outputs; what cannot be linked is moved later.
@@ -393,7 +395,7 @@ void Staging::link_users_files(const Path& below, const Names& ours) const {
         if (out_ / name == work_) continue;
         if (is_folder(out_ / name)) {
             if (is_folder(to) || any_below(ours, name)) link_users_files(name, ours);
-        } else if (!holds(ours, name) && !is_there(to)) {
+        } else if (!contains(ours, name) && !is_there(to)) {
             make_folders(to.parent_path());
             about_to_change();
             static_cast<void>(!linkat(AT_FDCWD, (out_ / name).c_str(), AT_FDCWD, to.c_str(), 0));
@@ -404,57 +406,58 @@ void Staging::link_users_files(const Path& below, const Names& ours) const {
 /// Continues from "moving"; repeated after a kill. Throws OutputError if it cannot be completed now.
 void Staging::finish() {
     const Moving moving = read_moving(work_);
-    const fs::path made = work_ / "new", old = work_ / "old";
-    if (inode(made) == moving.folder && !bring_whole()) bring_one_by_one(moving.kind);
+    const fs::path fresh_outputs = work_ / "new", old = work_ / "old";
+    if (inode(fresh_outputs) == moving.folder && !publish_whole()) publish_one_by_one(moving.kind);
     sync(out_.parent_path());
-    for (const fs::path& before : {made, old}) {  // after an exchange, and after two renames
+    for (const fs::path& before : {fresh_outputs, old}) {  // after an exchange, and after two renames
         if (!is_there(before)) continue;
         const std::string list = list_of(moving.kind);
         Names ours = names_in(before / list);
         ours.push_back(list);
         clear(before, "", ours, others_lists(out_, list));
-        take_away(before / list), take_away(before);
+        remove_entry(before / list), remove_entry(before);
     }
-    if (!is_there(made) && !is_there(old)) take_away(work_ / "one-by-one"), take_away(work_ / "moving");
-    else said_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
+    if (!is_there(fresh_outputs) && !is_there(old)) remove_entry(work_ / "one-by-one"), remove_entry(work_ / "moving");
+    else messages_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
 }
 
 /// Makes new/ the folder OUT by one rename or exchange, else by two; returns false if OUT is unchanged.
-bool Staging::bring_whole() const {
-    const fs::path made = work_ / "new", old = work_ / "old";
+bool Staging::publish_whole() const {
+    const fs::path fresh_outputs = work_ / "new", old = work_ / "old";
     if (work_.parent_path() == out_ || is_there(work_ / "one-by-one")) return false;
-    if (!is_there(out_)) return move_to(made, out_);
-    if (publishing_faults().no_rename_of_folders || must_stay(out_, made)) return false;
-    if (exchange(made, out_)) return true;
+    if (!is_there(out_)) return move_to(fresh_outputs, out_);
+    if (publishing_faults().no_rename_of_folders || must_stay(out_, fresh_outputs)) return false;
+    if (exchange(fresh_outputs, out_)) return true;
     if (!move_to(out_, old)) return false;
-    return move_to(made, out_) || (static_cast<void>(move_to(old, out_)), false);
+    return move_to(fresh_outputs, out_) || (static_cast<void>(move_to(old, out_)), false);
 }
 
-void Staging::bring_one_by_one(const std::string& kind) {
-    const fs::path made = work_ / "new", list = list_of(kind);
-    if (!is_there(made / list)) return remove_tree(made);  // which was moved last
+void Staging::publish_one_by_one(const std::string& kind) {
+    const fs::path fresh_outputs = work_ / "new", list = list_of(kind);
+    if (!is_there(fresh_outputs / list)) return remove_tree(fresh_outputs);  // which was moved last
     if (!put(work_ / "one-by-one", "")) fail("cannot write in", shown_, std::strerror(errno));
-    const Names before = names_in(out_ / list), now = names_in(made / list), others = others_lists(out_, list);
+    const Names before = names_in(out_ / list), now = names_in(fresh_outputs / list), others = others_lists(out_, list);
     const auto bring = [&](const std::string& name) {
         expect({name});
-        const bool users = is_there(out_ / name) && name != list && !holds(before, name) && !holds(others, name);
+        const bool users = is_there(out_ / name) && name != list && !contains(before, name) && !contains(others, name);
         if (make_folders((out_ / name).parent_path()) && (!users || keep_aside(out_ / name, name)) &&
-            move_to(made / name, out_ / name))
+            move_to(fresh_outputs / name, out_ / name))
             return;
         const int why = errno;
-        if ((now.empty() || name == now.front()) && take_away(work_ / "moving"))
+        if ((now.empty() || name == now.front()) && remove_entry(work_ / "moving"))
             moving_ = false;  // nothing has changed
         errno = why;
         fail("cannot write", (out_ / name).string(), std::strerror(errno));
     };
     for (const std::string& name : now)
-        if (is_there(made / name)) bring(name);
-    for (const std::string& gone : before)
-        if (!holds(now, gone) && is_there(out_ / gone) && obstacle(gone).empty() && take_away(out_ / gone))
-            for (fs::path up = fs::path(gone).parent_path(); !up.empty() && ::rmdir((out_ / up).c_str()) == 0;)
+        if (is_there(fresh_outputs / name)) bring(name);
+    for (const std::string& removed : before)
+        if (!contains(now, removed) && is_there(out_ / removed) && obstacle(removed).empty() &&
+            remove_entry(out_ / removed))
+            for (fs::path up = fs::path(removed).parent_path(); !up.empty() && ::rmdir((out_ / up).c_str()) == 0;)
                 up = up.parent_path();
     bring(list);
-    remove_tree(made);  // only second names of the user's files are left
+    remove_tree(fresh_outputs);  // only second names of the user's files are left
 }
 
 /// Removes our outputs from the former OUT and moves the rest into OUT. The list of our outputs is kept until the end.
@@ -463,10 +466,10 @@ void Staging::clear(const Path& old, const Path& below, const Names& ours, const
         const fs::path name = below / leaf, from = old / name, to = out_ / name;
         if (name == ours.back()) continue;
         if (is_folder(from) && (is_folder(to) || any_below(ours, name)))
-            clear(old, name, ours, others), take_away(from);
-        else if (holds(ours, name) || (!is_folder(from) && same_file(from, to))) take_away(from);
+            clear(old, name, ours, others), remove_entry(from);
+        else if (contains(ours, name) || (!is_folder(from) && same_file(from, to))) remove_entry(from);
         else if (!is_there(to)) static_cast<void>(make_folders(to.parent_path()) && move_to(from, to));
-        else if (holds(others, name)) take_away(from);
+        else if (contains(others, name)) remove_entry(from);
         else keep_aside(from, name);
     }
 }
@@ -476,7 +479,7 @@ bool Staging::keep_aside(const Path& from, const Path& name) {
     const auto as = [&] { return fmt::format("{}.~{}~", name.string(), k); };
     while (is_there(out_ / as())) ++k;
     if (!move_to(from, out_ / as())) return false;
-    said_.push_back(fmt::format(
+    messages_.push_back(fmt::format(
         "{}/{} was not written by crescent: it is now {}", shown_, name.string(), fs::path(as()).filename().string()));
     return true;
 }

@@ -64,16 +64,16 @@ private:
     std::string obstacle(const std::string& name) const;
     void link_users_files(const Path& below, const Names& ours) const;
     void finish();
-    bool bring_whole() const;
-    void bring_one_by_one(const std::string& kind);
+    bool publish_whole() const;
+    void publish_one_by_one(const std::string& kind);
     void clear(const Path& old, const Path& below, const Names& ours, const Names& others);
     bool keep_aside(const Path& from, const Path& name);
 
-    std::string shown_, kind_;    // shown_: OUT as it was given
+    std::string shown_, kind_;    // shown_: the OUT of the caller
     Path out_, work_;             // absolute, links followed
     std::shared_ptr<void> lock_;  // its destruction removes an empty work folder
     bool moving_ = false;         // outputs are being moved to their places
-    Names names_, said_;
+    Names names_, messages_;
 };
 
 /// For tests: a function called before each change that moves outputs, and missing features of the file system.

@@ -184,7 +184,7 @@ TEST_P(Publishing, ReplacesItsOwnFilesAndKeepsTheUsers) {
     EXPECT_EQ(text_of(out_ / "film.mp4"), "film");
     EXPECT_EQ(users_files_seen(), users.size());
     EXPECT_FALSE(fs::exists(out_ / "films/a"));
-    EXPECT_EQ(monitor_.outputs, Outputs::stand);
+    EXPECT_EQ(monitor_.outputs, Outputs::complete);
 }
 
 TEST_F(Publishing, ForTheFirstTimeShowsAllOrNothing) {
@@ -208,7 +208,7 @@ TEST_F(Publishing, KeepsPermissionsAndFollowsALink) {
     EXPECT_EQ(std::distance(fs::directory_iterator(top_ / "real"), {}), 1);
 }
 
-TEST_F(Publishing, GoesWhereThePathLedWhenItBegan) {
+TEST_F(Publishing, WritesToTheFolderOfThePathAtItsStart) {
     fs::create_directories(top_ / "elsewhere");
     fs::current_path(top_);
     Staging staging("out");
@@ -218,7 +218,7 @@ TEST_F(Publishing, GoesWhereThePathLedWhenItBegan) {
     EXPECT_EQ(text_of(out_ / "metrics.json"), "new");
 }
 
-TEST_F(Publishing, IsNotLedElsewhereByALink) {
+TEST_F(Publishing, DoesNotFollowALink) {
     put(top_ / "victim/hero.png", "victim");
     fs::create_directories(out_);
     fs::create_directory_symlink(top_ / "victim", out_ / "plates");
@@ -269,7 +269,7 @@ TEST_F(Publishing, IsForOneRunAtATimeAndNoChildKeepsTheLock) {
     waitpid(child, nullptr, 0);
 }
 
-TEST_F(Publishing, NamesWhatCannotBeWritten) {
+TEST_F(Publishing, NamesTheFileThatCannotBeWritten) {
     put(out_, "a file");
     EXPECT_THROW(Staging{out_.string()}, OutputError);
     EXPECT_THROW(Staging{(out_ / "below").string()}, OutputError);

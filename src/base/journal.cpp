@@ -31,7 +31,7 @@ Journal::Journal(Journal&& other) noexcept
       key_(std::move(other.key_)),
       monitor_(other.monitor_),
       file_(std::exchange(other.file_, -1)),
-      off_(other.off_) {}
+      disabled_(other.disabled_) {}
 
 #ifndef CRESCENT_NO_FILESYSTEM
 
@@ -77,13 +77,13 @@ Journal::~Journal() {
 bool Journal::open(int flags) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0666);
     if (file_ < 0) return false;
-    off_ = flock(file_, LOCK_EX | LOCK_NB) != 0;
+    disabled_ = flock(file_, LOCK_EX | LOCK_NB) != 0;
     return true;
 }
 
 void Journal::read(const std::function<void(Bytes)>& take) {
     struct stat about{};
-    if (!open(0) || off_ || fstat(file_, &about) != 0) return;
+    if (!open(0) || disabled_ || fstat(file_, &about) != 0) return;
     const auto size = static_cast<std::uint64_t>(about.st_size);
     std::uint64_t whole = 0;
     std::vector<std::byte> record;
@@ -96,20 +96,20 @@ void Journal::read(const std::function<void(Bytes)>& take) {
 }
 
 void Journal::append(const std::vector<Bytes>& parts) {
-    if (off_) return;
+    if (disabled_) return;
     bool written = file_ >= 0;
     if (!written) {
         std::error_code ignored;  // open() will report the error
         std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), ignored);
         written = open(O_CREAT);
-        if (off_) return;
+        if (disabled_) return;
         written = written && ftruncate(file_, 0) == 0 && write({bytes_of(key_)});
     }
     if (written && write(parts)) return;
     monitor_.log(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", path_,
         std::strerror(errno)));
     remove();
-    off_ = true;
+    disabled_ = true;
 }
 
 bool Journal::write(const std::vector<Bytes>& parts) {
@@ -127,7 +127,7 @@ bool Journal::write(const std::vector<Bytes>& parts) {
 }
 
 void Journal::remove() {
-    if (off_) return;
+    if (disabled_) return;
     ::unlink(path_.c_str());
     if (file_ >= 0) close(std::exchange(file_, -1));
 }

@@ -36,7 +36,7 @@ private:
     std::string path_, key_;
     ProgressMonitor& monitor_;
     int file_ = -1;
-    bool off_ = false;  // another process has the file, or it cannot be written
+    bool disabled_ = false;  // another process has the file, or it cannot be written
 };
 
 }  // namespace crescent::inline base

@@ -74,7 +74,7 @@ TEST_F(Journals, TornRecordIsDroppedAndWritingContinues) {
     }
 }
 
-TEST_F(Journals, WithAWrongByteStopThere) {
+TEST_F(Journals, EndBeforeAWrongByte) {
     write({{"one"}, {"two"}, {"three"}});
     std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -84,12 +84,12 @@ TEST_F(Journals, WithAWrongByteStopThere) {
     EXPECT_EQ(read(), Texts{"one"});
 }
 
-TEST_F(Journals, OfOtherWorkCountAsNone) {
+TEST_F(Journals, OfOtherWorkAreIgnored) {
     write({{"one"}});
     EXPECT_TRUE(read("other work").empty());
 }
 
-TEST_F(Journals, TakeNoRecordThatWasWrittenForOtherWork) {
+TEST_F(Journals, RejectRecordsOfOtherWork) {
     write({{"one"}});
     {
         Journal other(path_ + "-other", "work", monitor_);
@@ -108,7 +108,7 @@ TEST_F(Journals, TakeNoRecordThatWasWrittenForOtherWork) {
         << "of the same work, and whole: the reader must know it from its own";
 }
 
-TEST_F(Journals, AreNotLedElsewhereByALink) {
+TEST_F(Journals, DoNotFollowALink) {
     fs::create_directories(folder_ / "deep");
     std::ofstream(folder_ / "victim") << "victim";
     fs::create_symlink(folder_ / "victim", path_);
@@ -118,7 +118,7 @@ TEST_F(Journals, AreNotLedElsewhereByALink) {
     EXPECT_EQ(monitor_.message, 1);
 }
 
-TEST_F(Journals, ThatCannotBeWrittenSaySo) {
+TEST_F(Journals, ReportThatTheyCannotBeWritten) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "deep") << "a file where the folder should be";
     write({{"one"}, {"two"}});

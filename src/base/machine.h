@@ -28,11 +28,11 @@ std::string host_cpu();
 /// Returns the file of the running program, "" if unknown.
 std::string program_file();
 
-/// ../share/crescent/NAME, seen from the folder of the running program, as `cmake --install` and the Python package lay
-/// it out; "" where there is none.
+/// Returns the path of ../share/crescent/NAME, relative to the folder of the running program, the layout of `cmake
+/// --install` and of the Python package; "" if it does not exist.
 std::string shared_file(const std::string& name);
 
-/// The same read from files below `root` ("" in use), for tests. `own` is the process's /proc/self/cgroup.
+/// The limits in files below `root` (in use: ""), for tests. `own`: the contents of /proc/self/cgroup.
 double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
 std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit
 

@@ -38,7 +38,7 @@ TEST_F(Machines, CgroupV2GrantsTheSmallestLimit) {
     EXPECT_EQ(granted_memory(root_, own_), 500000u);
 }
 
-TEST_F(Machines, WithGroupsOfVersion1GrantWhatTheySay) {
+TEST_F(Machines, CgroupV1GrantsItsLimits) {
     put("own", "4:memory:/\n3:cpu,cpuacct:/box\n0::/\n");
     put("sys/fs/cgroup/cpu/box/cpu.cfs_quota_us", "50000\n");
     put("sys/fs/cgroup/cpu/box/cpu.cfs_period_us", "100000\n");

@@ -152,7 +152,7 @@ struct Start {
     bool dies_with_thread;
 };
 
-[[noreturn]] void become(Start start) {
+[[noreturn]] void exec_program(Start start) {
     ::setpgid(0, 0);  // Ctrl-C of the terminal is passed on by this process
 #ifdef __linux__
     // The signal is sent when the thread that forked ends: only the main thread lives as long as the process.
@@ -224,7 +224,7 @@ Process::Process(const ProcessPlan& plan) : label_(printable(plan.label, 60)), o
     {
         const AllBlocked blocked;
         pid_ = ::fork();
-        if (pid_ == 0) become(start);
+        if (pid_ == 0) exec_program(start);
         why = pid_ < 0 ? errno : 0;
         if (pid_ > 0) {
             ::setpgid(pid_, pid_);  // whichever of the two processes is first

@@ -32,7 +32,7 @@ std::pair<std::string, std::string> run(const std::string& command) {
     return {out, process.ended(5000).value_or(ProcessEnd{-1, 0}).text()};
 }
 
-TEST(Processes, SayHowTheyEnded) {
+TEST(Processes, ReportHowTheyEnded) {
     EXPECT_EQ(run("echo yes; exit 3"), (std::pair<std::string, std::string>{"yes\n", "exit code 3"}));
     EXPECT_THAT(run("kill -SEGV $$").second, HasSubstr("signal 11"));
     EXPECT_THROW(Process({.argv = {"crescent-has-no-such-program"}}), OutputError);
@@ -77,7 +77,7 @@ TEST(Processes, EndWithTheirGroup) {
     EXPECT_FALSE(runs(id));
 }
 
-TEST(Processes, OfAThreadLiveOnWithoutIt) {
+TEST(Processes, OutliveTheThreadThatStartedThem) {
     std::unique_ptr<Process> process;
     std::thread([&] { process.reset(new Process({.argv = {"sleep", "300"}, .stdin_file = "/dev/null"})); }).join();
     EXPECT_FALSE(process->ended(100));
@@ -86,7 +86,7 @@ TEST(Processes, OfAThreadLiveOnWithoutIt) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
-TEST(Processes, EndWhileAChildHoldsTheirPipes) {
+TEST(Processes, EndWhileAChildKeepsTheirPipesOpen) {
     Process process({.argv = {"/bin/sh", "-c", "sleep 300 & exit 4"}, .stdin_file = "/dev/null"});
     const std::optional<ProcessEnd> end = process.ended(5000);
     ASSERT_TRUE(end);

@@ -19,7 +19,7 @@ struct Interrupted : std::exception {
 
 /// The state of the files under the final names of a run's outputs: unchanged; those of either run, complete; the new
 /// ones.
-enum class Outputs { untouched, moving, stand };
+enum class Outputs { untouched, moving, complete };
 
 /// The progress of long work, and whether it should continue. Called from many threads at once; every call is cheap.
 class ProgressMonitor {

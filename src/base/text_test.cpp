@@ -23,7 +23,7 @@ TEST(Text, NothingThatMovesACursorIsPrinted) {
     EXPECT_EQ(printable("na\xefve \xc3\xa9\xe2\x82\xac"), "na\\xefve \xc3\xa9\xe2\x82\xac");
 }
 
-TEST(Text, HasNoControlCharacterWhateverTheBytes) {
+TEST(Text, HasNoControlCharacterForAnyBytes) {
     std::mt19937 random(7);
     for (int round = 0; round < 20000; ++round) {
         std::string text(random() % 12, ' ');
@@ -56,14 +56,14 @@ TEST(Text, IsCutBetweenCharacters) {
     EXPECT_EQ(printable("\xc3\xa9\xc3\xa9", 4), "\xc3\xa9\xc3\xa9");
 }
 
-TEST(Hints, NameAWordThatIsAFewLettersAwayAndNoOther) {
+TEST(Hints, SuggestOnlyWordsAFewLettersAway) {
     EXPECT_EQ(nearest("spere", {"theme", "sphere"}), "sphere");
     EXPECT_EQ(nearest("rsme", {"rmse", "var"}), "rmse");
     EXPECT_EQ(nearest("sphere", {"theme", "title"}), "");
     EXPECT_EQ(nearest("s", {"n", "title"}), "");
 }
 
-TEST(Hints, SayWhatWasExpectedAndWhatIsNear) {
+TEST(Hints, ListTheExpectedWordsAndTheNearest) {
     EXPECT_EQ(expected_one_of({"egl", "osmesa"}, "elg"), "expected one of egl, osmesa, not 'elg'; did you mean 'egl'?");
     EXPECT_EQ(expected_one_of({"cpu", "gl"}, "a\x1b"), "expected one of cpu, gl, not 'a\\x1b'");
     EXPECT_EQ(did_you_mean("egl", {"egl"}), "") << "it is that word";

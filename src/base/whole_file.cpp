@@ -21,16 +21,16 @@ namespace {
     throw OutputError("cannot write " + printable(path) + ": " + why);
 }
 
-/// /dev/stdout, a FIFO, /dev/null.
-bool takes_a_stream(const std::string& path) {
+/// Returns whether the path is a stream, such as /dev/stdout, a FIFO or /dev/null.
+bool is_stream(const std::string& path) {
     struct stat s{};
     return path.starts_with("/dev/") || path.starts_with("/proc/") ||
         (stat(path.c_str(), &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
 }
 
-class Beside {
+class UnnamedFile {
 public:
-    explicit Beside(const std::string& path) : path_(path) {
+    explicit UnnamedFile(const std::string& path) : path_(path) {
         struct stat s{};
         if (stat(path.c_str(), &s) == 0 && S_ISDIR(s.st_mode)) fail(path, "it is a folder");
         const std::size_t slash = path.rfind('/');
@@ -43,15 +43,15 @@ public:
         file_ = mkostemp(name_.data(), O_CLOEXEC);
         if (file_ < 0) fail(path, std::strerror(errno));
     }
-    ~Beside() {
+    ~UnnamedFile() {
         if (file_ >= 0) close(file_);
         if (!name_.empty()) unlink(name_.c_str());
     }
-    Beside(const Beside&) = delete;
-    Beside& operator=(const Beside&) = delete;
+    UnnamedFile(const UnnamedFile&) = delete;
+    UnnamedFile& operator=(const UnnamedFile&) = delete;
 
     int file() const { return file_; }
-    void bring() {
+    void publish() {
         struct stat s{};
         const mode_t mask = umask(0);
         umask(mask);
@@ -63,7 +63,7 @@ public:
     }
 
 private:
-    /// By a name that is always the same for that path: what a kill left between two calls goes.
+    /// Uses the same name for each call with that path, so that the leftover of a killed call is replaced.
     bool name_and_rename() const {
         const std::string own = fmt::format("/proc/self/fd/{}", file_);
         const std::string name = fmt::format("{}.crescent-{:016x}", folder_, std::hash<std::string>{}(path_));
@@ -82,7 +82,7 @@ private:
         return false;
     }
 
-    std::string path_, folder_, name_;  // name_: none for a file without a name
+    std::string path_, folder_, name_;  // name_: empty for a file without a name
     int file_ = -1;
 };
 
@@ -98,14 +98,14 @@ void write_all(int file, const std::string& path, std::string_view text) {
 }  // namespace
 
 void can_write(const std::string& path) {
-    if (!takes_a_stream(path)) Beside{path};
+    if (!is_stream(path)) UnnamedFile{path};
 }
 
 void write_whole(const std::string& path, const std::string& text) {
-    if (!takes_a_stream(path)) {
-        Beside beside(path);
-        write_all(beside.file(), path, text);
-        return beside.bring();
+    if (!is_stream(path)) {
+        UnnamedFile unnamed(path);
+        write_all(unnamed.file(), path, text);
+        return unnamed.publish();
     }
     const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
     if (file < 0) fail(path, std::strerror(errno));

@@ -1,13 +1,13 @@
-// One file that is seen whole or not at all. It is written without a name next to its place, so that a kill leaves
-// nothing, where the file system supports that, else under a name of its own (mkstemp: no file of anybody else is
-// opened, followed or removed); it is synced and renamed. Pipes and devices are written to as they are.
+// Writes one file so that readers find it complete or not at all. It is written without a name next to its place, so
+// that a kill leaves nothing, if the file system supports this; else under a unique name (mkstemp: no other file is
+// opened, followed or removed). Then it is synced and renamed. Pipes and devices are written directly.
 #pragma once
 
 #include <string>
 
 namespace crescent::inline base {
 
-/// Throws OutputError where write_whole() would.
+/// Throws OutputError if write_whole() could not write the file.
 void can_write(const std::string& path);
 /// Writes `text` to a file next to `path` and renames it. Throws OutputError.
 void write_whole(const std::string& path, const std::string& text);

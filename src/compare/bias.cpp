@@ -1,8 +1,9 @@
-// Do two sets of renders have the same expectation? Welch's t-test over renders, of Y and each channel, per region,
-// tile and pixel, after Jung, Hanika & Dachsbacher 2020, "Detecting Bias in Monte Carlo Renderers using Welch's
-// t-test", JCGT 9(2); Student's over the differences of renders that share their random numbers. The chance of a false
-// alarm is shared out: half to the regions (Holm), a quarter each to tiles and pixels (false discoveries); within each,
-// half to Y and a sixth to each channel (Bonferroni). Where values are not finite, half of all of it is for them.
+// Tests whether two sets of renders have the same expectation: Welch's t-test over renders, of Y and each channel, per
+// region, tile and pixel, after Jung, Hanika & Dachsbacher 2020, "Detecting Bias in Monte Carlo Renderers using Welch's
+// t-test", JCGT 9(2). Renders that share their random numbers are compared by Student's t-test over their differences.
+// The level is split: half for the regions (Holm), a quarter each for tiles and pixels (false discovery rate); within
+// each, half for Y and a sixth for each channel (Bonferroni). If some values are not finite, half of the whole level is
+// for them.
 #include "compare/bias.h"
 #include "compare/noise.h"
 
@@ -23,14 +24,14 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr std::size_t named_most = 5;  // places that are named
+constexpr std::size_t named_most = 5;  // largest number of places that are listed
 
-/// The two sides, one for each quantity: with independent renders, and in pairs where there are some.
+/// The two sides, one entry per quantity: as independent renders, and in pairs if there are any.
 struct AllSides {
     std::vector<BiasPair> apart, paired;
 
     const BiasPair& first() const { return apart[0]; }
-    /// Pairs, unless a few of their pixels decide the mean.
+    /// Pairs, missed_events a few of their pixels decide the mean.
     const BiasPair& in_region(std::size_t quantity, std::size_t region) const {
         const bool pairs = !paired.empty() && paired[quantity].heavy_in(region).empty();
         return pairs ? paired[quantity] : apart[quantity];
@@ -51,8 +52,8 @@ std::string why_not(const BiasPair& sides, std::size_t region) {
         if (!arm || arm->name != heavy) continue;
         const auto& needed = arm->regions[region].renders_needed;
         return "heavy tail: " + heavy +
-            (needed ? fmt::format(", from about {:.0f} renders on it could be said", *needed)
-                    : ", and from how many renders on it could be said is not known");
+            (needed ? fmt::format("; about {:.0f} renders are needed", *needed)
+                    : "; how many renders are needed is unknown");
     }
     return heavy.empty() ? "" : "heavy tail: " + heavy;
 }
@@ -67,26 +68,29 @@ MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     if (!t.why.empty()) return t;
     const SetVariance noise = sides.noise_of(set);
     t.welch = sides.test(a, b, noise, false);
-    const double blind = std::max({sides.unseen(1, noise.pixels, level), sides.unseen(-1, noise.pixels, level),
-        sides.blind(t.a, t.b, noise.pixels, noise.own, level)});
-    t.smallest = std::max(detectable(t.welch, level), blind) / std::max(std::fabs(t.b), 1e-300);
+    const double undetectable =
+        std::max({sides.missable_difference(1, noise.pixels, level), sides.missable_difference(-1, noise.pixels, level),
+            sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, level)});
+    t.smallest = std::max(detectable(t.welch, level), undetectable) / std::max(std::fabs(t.b), 1e-300);
     if (std::isnan(t.welch.p)) t.why = "the noise of one side is not a finite number";
     return t;
 }
 
-/// p is small, and events no brighter than some render's or than the files' bound could have been missed.
-std::string doubted(const BiasPair& sides, const MeanTest& t, double pixels, double level) {
-    const auto events = sides.needed({{}, t.a, t.b, t.welch.p, sides.quantity}, pixels, level);
+/// Describes events that could explain a small p: no brighter than those of some render or than the bound of the files,
+/// they may be in none of the renders of one side.
+std::string missed_events_text(const BiasPair& sides, const MeanTest& t, double pixels, double level) {
+    const auto events = sides.events_for({{}, t.a, t.b, t.welch.p, sides.quantity}, pixels, level);
     if (!events) return {};
     return fmt::format(
-        "heavy tail: {} is darker by {}{}, which events brighter than {} in one of {:.0f} pixels could make up that "
-        "none of its renders met",
+        "heavy tail: {} is darker by {}{}, which events brighter than {} in one of {:.0f} pixels would explain if "
+        "its renders contain none",
         events->arm, percent(std::fabs(t.a - t.b) / std::max(t.a, t.b), 2),
         sides.quantity == 0 ? "" : fmt::format(" in {}", quantity_names[sides.quantity]), figures(events->size, 2),
         events->one_in);
 }
 
-/// The tests of one region, a quantity each, and their p with and without what the tests cannot see.
+/// The tests of one region, one per quantity; `p` is plain, `seen` is 1 where the difference is smaller than the tests
+/// can detect.
 struct RegionTests {
     std::vector<MeanTest> each;
     Values p, seen;
@@ -102,23 +106,24 @@ RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
         out.p.push_back(p), out.seen.push_back(p), out.each.push_back(t);
         if (std::isnan(p)) continue;
         const SetVariance noise = sides.noise_of(sides.all.regions[r]);
-        if (std::fabs(t.a - t.b) < sides.blind(t.a, t.b, noise.pixels, noise.own, share)) out.seen.back() = 1;
+        if (std::fabs(t.a - t.b) < sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, share))
+            out.seen.back() = 1;
     }
     return out;
 }
 
-/// What is small by p alone, and is none of the differences that the tests can see.
-std::string doubt_of(const AllSides& all, const RegionTests& tests, std::size_t r, double level) {
+/// Returns why a small p of a region is not reported as a difference; "" if the tests can detect the difference.
+std::string why_not_seen(const AllSides& all, const RegionTests& tests, std::size_t r, double level) {
     const std::size_t q = joint_p(tests.p).quantity;
     const BiasPair& sides = all.in_region(q, r);
     const MeanTest& t = tests.each[q];
     const double pixels = static_cast<double>(sides.all.regions[r].pixels.size()),
                  share = level * level_share(q, tests.each.size());
-    const bool missed = std::fabs(t.a - t.b) < sides.unseen(t.a - t.b, pixels, share);
-    return missed ? doubted(sides, t, pixels, share) : "";
+    const bool missed = std::fabs(t.a - t.b) < sides.missable_difference(t.a - t.b, pixels, share);
+    return missed ? missed_events_text(sides, t, pixels, share) : "";
 }
 
-/// p of "no region differs" (Bonferroni).
+/// Returns p of "no region differs" (Bonferroni).
 double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
     const auto& regions = all.first().all.regions;
     const double level = of.each / static_cast<double>(regions.size()),
@@ -137,14 +142,14 @@ double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
         MeanTest& t = out.regions.emplace_back(test.each[0]);
         t.region = regions[r].name, t.joint_p = seen[r];
         t.channels.assign(test.each.begin() + 1, test.each.end());
-        if (small[r] && !differs[r]) t.doubt = doubt_of(all, tests[r], r, level);
+        if (small[r] && !differs[r]) t.caveat = why_not_seen(all, tests[r], r, level);
     }
     double least = std::nan("");
     for (const double each : seen) least = std::fmin(least, each);
     return std::fmin(1, least * static_cast<double>(regions.size()));
 }
 
-/// The test of one quantity in one tile; p is NaN where it is not made.
+/// The test of one quantity in one tile; p is NaN if there is no test.
 struct TileTest {
     double p = std::nan(""), difference = std::nan("");
     bool left_out = false;
@@ -154,14 +159,15 @@ TileTest test_tile(const BiasPair& sides, std::size_t t, double level) {
     TileTest out;
     const Values a = sides.tile_means(sides.a, t), b = sides.tile_means(sides.b, t);
     const SetVariance noise = sides.noise_of(sides.all.tiles.box(t, sides.all.width, sides.all.height));
-    if (noise.pixels == 0) return out;  // none is finite
+    if (noise.pixels == 0) return out;  // no pixel is finite
     const double d = out.difference = mean_and_error(a).mean - mean_and_error(b).mean;
     out.left_out = sides.lone_pixel_in(t);
     if (out.left_out) return out;
     const Welch w = sides.test(a, b, noise, true);
     if (w.se == 0 && d == 0 && !sides.in_pairs()) return out;  // the same constant on both sides
-    const bool blind = std::fabs(d) < sides.blind(noise.mean_b + d, noise.mean_b, noise.pixels, noise.own, level);
-    out.p = blind ? 1 : w.p;
+    const bool undetectable =
+        std::fabs(d) < sides.undetectable_difference(noise.mean_b + d, noise.mean_b, noise.pixels, noise.own, level);
+    out.p = undetectable ? 1 : w.p;
     out.left_out = std::isnan(out.p);
     return out;
 }
@@ -183,7 +189,7 @@ void name_tiles(const AllSides& all, BiasResult& result) {
     }
 }
 
-/// p of "no tile differs".
+/// Returns p of "no tile differs".
 double test_tiles(const AllSides& all, const BiasLevel& of, BiasResult& result) {
     PlaceTests& out = result.tiles;
     const std::size_t count = all.first().all.tiles.count(), quantities = all.apart.size();
@@ -213,9 +219,9 @@ double test_tiles(const AllSides& all, const BiasLevel& of, BiasResult& result) 
 std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult& found, double alpha) {
     std::optional<MissedEvents> hardest;
     const std::size_t quantities = all.apart.size();
-    const auto look = [&](const Found& place, double pixels, double level) {
+    const auto consider = [&](const Found& place, double pixels, double level) {
         const auto events =
-            all.apart[place.quantity].needed(place, pixels, level * level_share(place.quantity, quantities));
+            all.apart[place.quantity].events_for(place, pixels, level * level_share(place.quantity, quantities));
         if (events && (!hardest || events->size > hardest->size)) hardest = events;
     };
     const auto& regions = all.first().all.regions;
@@ -223,18 +229,18 @@ std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult&
         const double pixels = static_cast<double>(regions[r].pixels.size()),
                      level = alpha / static_cast<double>(regions.size());
         const MeanTest& y = found.regions[r];
-        if (y.differs) look({{}, y.a, y.b, 0, 0}, pixels, level);
+        if (y.differs) consider({{}, y.a, y.b, 0, 0}, pixels, level);
         for (std::size_t c = 0; c < y.channels.size(); ++c)
-            if (y.channels[c].differs) look({{}, y.channels[c].a, y.channels[c].b, 0, c + 1}, pixels, level);
+            if (y.channels[c].differs) consider({{}, y.channels[c].a, y.channels[c].b, 0, c + 1}, pixels, level);
     }
     for (const Found& tile : found.tiles_found)
-        look(
+        consider(
             tile, all.first().noise_of(tile.box).pixels, found.place_alpha / static_cast<double>(found.tiles.p.size()));
-    for (const Found& pixel : found.pixels_found) look(pixel, 1, pixel_level(all.first(), found.place_alpha));
+    for (const Found& pixel : found.pixels_found) consider(pixel, 1, pixel_level(all.first(), found.place_alpha));
     return hardest;
 }
 
-/// Whether the renders of the two sides have the same pixels, one for one.
+/// Returns whether the renders of the two sides have the same pixels, one for one.
 bool same_renders(const ArmStats& a, const ArmStats& b) {
     const auto hashes = [](const ArmStats& arm) {
         std::vector<std::string> out;
@@ -264,8 +270,8 @@ SingleDifference single_difference(const BiasPair& sides) {
     return out;
 }
 
-/// Pairs by the names of the files where that was wished, else by what the renders share where it makes the tests
-/// sharper; `level` is that of one region.
+/// Returns pairs by file name if the plan requests them, else pairs with shared random numbers if these make the tests
+/// more powerful; `level` is that of one region.
 std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides, double level, BiasResult& out) {
     out.shared = shared_seeds(sides.all, sides.a, sides.b);
     out.all_shared = all_paired(out.shared, sides.a, sides.b);
@@ -276,7 +282,7 @@ std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides
     return pairs;
 }
 
-/// What the tests of means say of renders that are not the same.
+/// Tests the means of renders that are not identical.
 void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& all, const BiasLevel& of,
     BiasResult& out, ProgressMonitor& monitor) {
     AllSides sides;
@@ -301,10 +307,10 @@ void test_means(const ComparePlan& plan, const CompareResult& measured, const Re
     }
     out.p = std::fmin(out.p, 1);
     if (first.a.files.size() == 1 && first.b.files.size() == 1) {
-        out.single = single_difference(first);  // the bits of -0 and of NaN differ where values do not
+        out.single = single_difference(first);  // equal values may differ in the bits of -0 and of NaN
         out.identical = out.single->pixels > 0 && out.single->different == 0 && !out.non_finite.differs();
     }
-    if (out.differs()) out.unless = missed_events(sides, out, of.each / 2);
+    if (out.differs()) out.missed_events = missed_events(sides, out, of.each / 2);
 }
 
 }  // namespace
@@ -339,9 +345,10 @@ std::size_t BiasResult::shown() const {
 
 std::string reference_error_from(const ArmStats& reference) {
     if (reference.files.size() > 1) return fmt::format("over its {} files", reference.files.size());
-    if (!reference.film.stated_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
-    return "one file that does not say it: taken from how its difference from the arms varies between neighbouring "
-           "pixels";
+    if (!reference.film.stated_variance.empty())
+        return "as the file states it: " + reference.files[0].variance_channels;
+    return "one file that does not state it: estimated from how its difference from the arms varies between "
+           "neighbouring pixels";
 }
 
 BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
@@ -370,10 +377,10 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const Comp
     return out;
 }
 
-// ---- Welch's t-test at each pixel over the renders (Student's of the differences where they are paired), in chunks
-// side by side, of Y and of each channel. Two p: the histogram's is plain and of Y; the one that names pixels takes a
-// spread for no less than its tile's, since a pixel may give one value in every render by chance. Named pixels are
-// those of a false discovery rate of alpha.
+// ---- Welch's t-test at each pixel over the renders (Student's of the differences of pairs), in parallel chunks, of Y
+// and of each channel. There are two p: that of the histogram is plain and of Y. The p that selects pixels uses at
+// least the spread of the tile, because a pixel may have the same value in every render by chance. Reported pixels have
+// a false discovery rate of at most alpha.
 
 namespace {
 
@@ -381,13 +388,14 @@ constexpr std::size_t bins = 20;                  // of the histogram of p
 constexpr std::size_t pixels_at_once = 1u << 14;  // pixels
 constexpr std::size_t table_from = 1u << 17;
 
-/// Which twentieth a p is in, by t and degrees of freedom (rounded to an eighth): a search instead of a beta function.
+/// Finds the histogram bin of a p from t and the degrees of freedom (rounded to an eighth): a search instead of an
+/// incomplete beta function.
 class Bins {
 public:
-    /// A table is worth its while for many pixels only: without one (most = 0) each p is computed.
+    /// The table is faster only for many pixels; without it (most = 0) each p is computed.
     explicit Bins(double most) {
         for (double df = 1; most > 0 && df <= most + 1; df += 1.0 / 8) {
-            std::array<double, bins> limits{};  // |t| that p = (k + 1)/bins has
+            std::array<double, bins> limits{};  // |t| at p = (k + 1)/bins
             for (std::size_t k = 0; k + 1 < bins; ++k)
                 limits[k] = student_quantile(1 - static_cast<double>(k + 1) / (2.0 * bins), df);
             table_.push_back(limits);
@@ -410,7 +418,7 @@ struct Moments {
     bool known = false;
 };
 
-/// A tile's variance at a pixel's brightness, where that is below the tile's.
+/// Returns a tile's variance scaled to a pixel's brightness, at most the tile's.
 double scaled(const QuantityReadings& read, std::size_t tile, double variance, double value) {
     double mean = 0;
     for (const auto& render : read.tiles) mean += render[tile].mean / static_cast<double>(read.tiles.size());
@@ -418,8 +426,9 @@ double scaled(const QuantityReadings& read, std::size_t tile, double variance, d
     return variance * share * share;
 }
 
-/// A pixel may give the same value in every render by chance (so many hits of so many samples): where `floored`, its
-/// spread is never taken for less than that of its tile, at the pixel's own brightness.
+/// Returns the difference of one pixel, its standard error and degrees of freedom. A pixel may have the same value in
+/// every render by chance, such as the same number of hits among its samples; with `floored`, its variance is at least
+/// that of its tile, scaled to the pixel's brightness.
 Moments moments(const BiasPair& s, std::size_t i, bool floored) {
     const auto x = static_cast<int>(i % static_cast<std::size_t>(s.all.width)),
                y = static_cast<int>(i / static_cast<std::size_t>(s.all.width));
@@ -450,12 +459,13 @@ Moments moments(const BiasPair& s, std::size_t i, bool floored) {
     return m;
 }
 
-/// p of one pixel; NaN where it has no noise and no difference, or its noise is not known. 1 where rare events that no
-/// render met could make up the difference (`level`, see BiasPair::unseen).
+/// Returns p of one pixel: NaN if the pixel has no noise and no difference, or its noise is unknown; 1 if rare events
+/// that are in no render could explain the difference (`level`, see BiasPair::missable_difference).
 double pixel_p(const BiasPair& s, std::size_t i, double level) {
     const Moments m = moments(s, i, true);
     if (!m.known) return std::nan("");
-    if (std::fabs(m.difference) < s.blind(s.mean_b(i) + m.difference, s.mean_b(i), 1, 0, level)) return 1;
+    if (std::fabs(m.difference) < s.undetectable_difference(s.mean_b(i) + m.difference, s.mean_b(i), 1, 0, level))
+        return 1;
     return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : m.difference == 0 ? 1 : 0;
 }
 
@@ -466,17 +476,17 @@ struct Candidate {
     bool operator<(const Candidate& other) const { return p.p != other.p.p ? p.p < other.p.p : pixel < other.pixel; }
 };
 
-/// Counts by pixels_at_once, so that threads need not meet.
+/// Counts of one chunk of pixels, so that threads share nothing.
 struct PixelCounts {
     std::array<std::uint64_t, bins> histogram{};
     std::uint64_t tested = 0;
-    std::vector<Candidate> small;  // p at most alpha
+    std::vector<Candidate> small;  // p <= alpha
 };
 
 double most_degrees(const BiasPair& s) { return static_cast<double>(s.a.files.size() + s.b.files.size()); }
 
-/// |t| of each quantity below which no p is at most alpha: a floored spread makes |t| smaller, and p is smallest with
-/// the most degrees of freedom.
+/// Returns |t| of each quantity below which no p is <= alpha: the floor of the spread makes |t| smaller, and p is
+/// smallest with the most degrees of freedom.
 using LeastT = std::array<double, colour_quantities>;
 LeastT least_t(std::span<const BiasPair> sides, double alpha) {
     LeastT out{};
@@ -485,7 +495,7 @@ LeastT least_t(std::span<const BiasPair> sides, double alpha) {
     return out;
 }
 
-/// `table`: of the histogram; none: it is not counted.
+/// `table`: for the histogram; null: the histogram is not counted.
 PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double alpha, double level, const LeastT& least,
     const Bins* table) {
     const auto& pixels = sides[0].all.regions.back().pixels;

@@ -1,4 +1,4 @@
-// Tests of every pixel over renders, with the false-discovery rate controlled.
+// Tests of each pixel over renders, with the false discovery rate controlled.
 #pragma once
 
 #include "compare/compare.h"
@@ -6,12 +6,11 @@
 
 namespace crescent::inline comparison {
 
-/// Fills what the result says of pixels; `sides` are of the same renders, one for each quantity. Nothing where the
-/// reference is one file that does not say its error at each pixel.
-/// Returns p of "no pixel differs".
+/// Sets the pixel results of `out` and returns p of "no pixel differs"; `sides` are of the same renders, one entry per
+/// quantity. Sets nothing and returns NaN if the reference is one file that does not state its error at each pixel.
 double test_pixels(std::span<const BiasPair> sides, const BiasLevel& level, BiasResult& out);
 
-/// The level of BiasPair::unseen that test_pixels takes.
+/// Returns the level that test_pixels() passes to BiasPair::missable_difference().
 double pixel_level(const BiasPair& sides, double alpha);
 
 }  // namespace crescent::inline comparison

@@ -1,4 +1,4 @@
-// The order of a comparison: read twice, judge, draw, write.
+// Runs a comparison: reads the renders twice, tests, draws and writes the outputs.
 #include "compare/compare.h"
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace crescent::inline comparison {
 
-// ---- Every metric, every test, and what they amount to.
+// ---- Metrics, tests and the state that follows from them.
 
 namespace {
 
-/// What the plan says, else what all files of the arm say alike.
+/// Returns the value of the plan, else the mean over the files of the arm if all of them state it.
 template <class Read>
-std::optional<double> describe(const std::optional<double>& plan, const ArmStats& arm, Read read) {
+std::optional<double> stated_mean(const std::optional<double>& plan, const ArmStats& arm, Read read) {
     if (plan) return plan;
     double sum = 0;
     for (const RenderFile& file : arm.files) {
@@ -35,8 +35,8 @@ ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size
     ArmResult out;
     const ArmStats& arm = all.arms[a];
     out.name = plan.arms[a].name, out.renders = arm.files.size();
-    out.spp = describe(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
-    out.seconds = describe(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
+    out.spp = stated_mean(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
+    out.seconds = stated_mean(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
     const std::vector<Flips> flip = measure_flip(plan, all, a, monitor);
     for (std::size_t r = 0; r < all.regions.size(); ++r)
         out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
@@ -56,8 +56,9 @@ double value_of(const ParsedQuantity& side, const CompareResult& result, std::st
     return std::nan("");
 }
 
-/// Why no number of a region counts: some of its pixels are not finite on one side of some pair; "" where none is.
-std::string spoiled(const RenderStats& all, const CompareResult& result, const std::string& region) {
+/// Returns why no metric of a region can be asserted: some of its pixels are not finite on one side of a pair; "" if
+/// all are.
+std::string why_not_finite(const RenderStats& all, const CompareResult& result, const std::string& region) {
     const auto set =
         std::find_if(all.regions.begin(), all.regions.end(), [&](const PixelSet& s) { return s.name == region; });
     const auto inside = [&](const FailingPixels& failing) {
@@ -82,7 +83,7 @@ AssertionResult asserted(const AssertionPlan& plan, const RenderStats& all, Comp
     out.pass = holds(out.measured, out.op, out.bound);
     for (const ParsedQuantity* side : {&plan.check.left, &plan.check.right}) {
         if (side->number) continue;
-        const std::string bad = spoiled(all, result, side->region);
+        const std::string bad = why_not_finite(all, result, side->region);
         if (bad.empty()) continue;
         out.pass = false, out.text += fmt::format(" (cannot hold in {}: {})", side->region, bad);
         break;
@@ -90,23 +91,23 @@ AssertionResult asserted(const AssertionPlan& plan, const RenderStats& all, Comp
     return out;
 }
 
-/// With expect = "same": what was not seen well enough to say so; "" where all was.
-std::string not_seen(const ComparePlan& plan, const BiasResult& bias) {
+/// Returns what was not tested precisely enough for expect = "same"; "" if everything was.
+std::string why_inconclusive(const ComparePlan& plan, const BiasResult& bias) {
     if (bias.non_finite.undecided)
         return fmt::format(
             "of {} and {}, {} pixels are not finite in half of the renders of one side or more and in "
-            "none of the other; more renders would show whether that is chance",
+            "none of the other; more renders are needed to test whether that is chance",
             bias.a, bias.b, bias.non_finite.undecided);
     for (const MeanTest& t : bias.regions) {
-        if (!t.doubt.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.doubt);
+        if (!t.caveat.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.caveat);
         if (!t.why.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.why);
         for (const MeanTest& c : t.channels)
             if (!c.why.empty())
                 return fmt::format("{} of {} and {} in {}: {}", c.region, bias.a, bias.b, t.region, c.why);
         if (!(t.smallest <= plan.smallest))
             return fmt::format(
-                "{} and {} in {}: a difference of {:.2g} % would have been seen, {:.2g} % was asked; more renders "
-                "would tell",
+                "{} and {} in {}: a difference of {:.2g} % would have been found, {:.2g} % is required; more "
+                "renders are needed",
                 bias.a, bias.b, t.region, 100 * t.smallest, 100 * plan.smallest);
     }
     return "";
@@ -125,10 +126,10 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
     for (const BiasResult& bias : result.bias)
         if (bias.differs()) result.state = State::fails, result.sentence = bias.sentence;
     for (const BiasResult& bias : result.bias) {
-        const std::string why = bias.identical ? "" : not_seen(plan, bias);
+        const std::string why = bias.identical ? "" : why_inconclusive(plan, bias);
         if (why.empty() || result.state != State::holds) continue;
         result.state = State::inconclusive;
-        result.sentence = bias.single ? bias.sentence : "Whether they are the same cannot be said: " + why + ".";
+        result.sentence = bias.single ? bias.sentence : "Equality cannot be stated: " + why + ".";
     }
 }
 
@@ -160,7 +161,7 @@ CompareResult test_differences(const ComparePlan& plan, const RenderStats& all, 
 
 CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary) {
-    const plates::Canvas probe(1, 1, {});  // a missing font is found before the work, and a folder that is in use
+    const plates::Canvas font_check(1, 1, {});  // reports a missing font, and a folder in use, before the work
     Staging staging(options.out);
     const RenderStats all = read_all(plan, monitor);
     const CompareResult result = test_differences(plan, all, monitor);

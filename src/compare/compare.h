@@ -1,4 +1,5 @@
-// crescent compare: renders of other programs -> metrics with their doubt, bias tests, plates, report.
+// crescent compare: computes metrics with their uncertainty, bias tests, plates and a report from renders of other
+// programs.
 #pragma once
 
 #include "base/progress.h"
@@ -8,74 +9,74 @@
 
 namespace crescent::inline comparison {
 
-// ---- RenderStats -> results: the steps that compare_renders() takes, each usable alone.
+// ---- From RenderStats to results: the steps of compare_renders(), each usable alone.
 
-/// What one render of an arm cost, where it is known.
+/// The cost of one render of an arm, if known.
 struct Cost {
     std::optional<double> seconds, spp;
 };
-/// Mean FLIP of a region's pixels, where there is a reference: of radiance, and of the photographs.
+/// Mean FLIP over a region's pixels, if there is a reference: of radiance, and of the photographs.
 struct Flips {
     std::optional<double> hdr, ldr;
 };
 
-/// Of the arm's first render, a region each; none without a reference.
+/// Returns FLIP of the arm's first render, one per region; empty values without a reference.
 std::vector<Flips> measure_flip(
     const ComparePlan& plan, const RenderStats& all, std::size_t arm, ProgressMonitor& monitor);
 
-/// Every metric of one arm in one region.
+/// Returns every metric of one arm in one region.
 RegionResult measure_region(
     const RenderStats& all, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips);
 
-/// Every number of one arm.
+/// Returns the metrics of one arm in all regions.
 ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t arm, ProgressMonitor& monitor);
 
-/// Mean over a region of the squared error of the reference's Y: over its files, else as it says, else estimated from
-/// how roughly arms differ from it (see roughness()).
+/// Returns the mean over a region of the squared error of the reference's Y: over its files, else as its file states
+/// it, else estimated by roughness() from its differences from the arms.
 double reference_variance(const RenderStats& all, std::size_t region);
-/// How that is known, in words.
+/// Returns the source of that error, in words.
 std::string reference_error_from(const ArmStats& reference);
 
-/// The level of a test of two arms, which all its tests share. `each`: of the power that it states and of what it
-/// cannot see. `named`: of the regions, tiles and pixels that it names; larger where several such tests share a level.
+/// The level of a test of two arms, which all its tests share. `each`: of the stated power and of the differences that
+/// cannot be detected. `named`: of the reported regions, tiles and pixels; larger if several such tests share a level.
 struct BiasLevel {
     double each, named;
 };
-/// Whether two arms (b = arms.size(): the reference) have the same expectation.
+/// Tests whether two arms (b = arms.size(): the reference) have the same expectation.
 BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor);
 
-/// What it found, in one sentence; `alpha` is that of its regions.
+/// Returns the result as one sentence; `alpha` is the level of its regions.
 std::string sentence_of(const RenderStats& all, const BiasResult& bias, double alpha);
-/// Pixels of a pair that are not finite and differ, in words; "" where there are none.
+/// Describes the pixels of a pair that differ because they are not finite; "" if there are none.
 std::string failing_pixels(const RenderStats& all, const BiasResult& bias);
 
-/// The sentences of all pairs; of many pairs those in which nothing was found are one sentence.
+/// Returns the sentences of all pairs; of many pairs, those without a difference share one sentence.
 std::vector<std::string> found_about_means(const CompareResult& result);
 
-/// Where the variance of arm a differs from that of b.
+/// Finds where the variance of arm a differs from that of b.
 NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha);
 
-/// Arms in order by what a unit of time or a sample buys, region by region.
+/// Ranks the arms by variance at equal time or at equal samples, in each region.
 std::vector<Ranking> rank(const CompareResult& result);
 
-/// What a ladder shows of an arm in a region, and its name: the RMSE; where there is no reference, the standard
-/// deviation. Both fall as N^-0.5 with independent samples.
-MetricValue sample_count_of(const RegionResult& region);
-const char* sample_count_text(const RegionResult& region);
-/// Arms that are one arm at several samples a pixel, told by their names: "path-16" at 16, "path-64" at 64.
+/// The metric of a ladder in a region and its name: the RMSE; without a reference, the standard deviation. Both fall as
+/// N^-0.5 with independent samples.
+MetricValue ladder_metric(const RegionResult& region);
+const char* ladder_metric_name(const RegionResult& region);
+/// Finds arms that are one sampler at several samples per pixel, by their names: "path-16" at 16, "path-64" at 64.
 std::vector<SppLadder> ladders_of(const CompareResult& result);
 
-/// Measures, tests and checks everything that the plan asks.
+/// Computes the metrics and tests of the plan and checks its assertions.
 CompareResult test_differences(const ComparePlan& plan, const RenderStats& all, ProgressMonitor& monitor);
 
-/// Where the outputs go.
+/// The folder of the outputs.
 struct CompareOptions {
     std::string out = "out/compare";
 };
 
-/// Reads, measures and writes everything under options.out; outputs appear whole or not at all. `summary` is for the
-/// terminal. Throws InputError, OutputError, Interrupted.
+/// Reads and measures the renders and writes all outputs to options.out, which appear all at once. `summary` receives
+/// the text for the terminal. Throws InputError, OutputError, Interrupted.
 CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary);
 

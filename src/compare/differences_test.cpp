@@ -1,4 +1,5 @@
-// Which differences are found, and by which test: values that are not finite, channels, equal seeds, identical files.
+// Tests which differences are found, and by which test: values that are not finite, channels, equal seeds, identical
+// files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 const CompareFlag same{{"expect"}, "same", false, ""}, wide{{"smallest"}, "0.5", true, ""},
     loose{{"alpha"}, "0.05", true, ""};
 
-/// Two arms of so many renders.
+/// Returns two arms with this number of renders.
 MemoryRenders arms(int renders, int side = 16) {
     MemoryRenders out;
     for (int k = 0; k < renders; ++k)
@@ -29,17 +30,17 @@ MemoryRenders arms(int renders, int side = 16) {
     return out;
 }
 
-/// Sets a pixel in the first so many renders of an arm.
-void spoil(MemoryRenders& of, char arm, std::size_t pixel, int renders, float value = nan) {
+/// Sets a pixel to a value in the first `renders` renders of an arm.
+void set_pixel(MemoryRenders& of, char arm, std::size_t pixel, int renders, float value = nan) {
     for (auto& [name, render] : of.renders)
         if (name[0] == arm && renders-- > 0) render.g[pixel] = value;
 }
 
-TEST(NonFinite, WhatEveryRenderOfOneSideHasAndNoneOfTheOtherIsADifference) {
+TEST(NonFinite, PixelsInEveryRenderOfOneSideAndInNoneOfTheOtherAreADifference) {
     for (const int renders : {1, 2, 4, 24}) {
         for (const float value : {nan, INFINITY, -INFINITY}) {
             MemoryRenders m = arms(renders);
-            for (const std::size_t i : {35, 36, 52}) spoil(m, 'b', i, renders, value);
+            for (const std::size_t i : {35, 36, 52}) set_pixel(m, 'b', i, renders, value);
             const CompareResult r = m.compare({same, wide});
             EXPECT_EQ(r.state, State::fails) << renders;
             const NonFinite& found = r.bias[0].non_finite;  // of b against a
@@ -53,21 +54,22 @@ TEST(NonFinite, WhatEveryRenderOfOneSideHasAndNoneOfTheOtherIsADifference) {
     }
 }
 
-TEST(NonFinite, WhatBothSidesHaveIsLeftOutAndSaid) {
+TEST(NonFinite, PixelsOnBothSidesAreLeftOutAndReported) {
     MemoryRenders m = arms(8);
-    for (const char arm : {'a', 'b'}) spoil(m, arm, 35, 8);
+    for (const char arm : {'a', 'b'}) set_pixel(m, arm, 35, 8);
     const CompareResult r = m.compare({same, wide});
     EXPECT_EQ(r.state, State::holds) << r.sentence;
     EXPECT_EQ(r.bias[0].non_finite.both, 1u);
     EXPECT_THAT(r.bias[0].sentence, HasSubstr("1 pixel not finite on both sides is left out."));
 }
 
-TEST(NonFinite, SomeRendersOfOneSideAreADifferenceWhereEqualRatesAreUnlikely) {
-    // Fisher's exact p of 12 of 24 and 0 of 24 is 8e-5, of 1 and 0 it is 1; of 3 of 4 and 0 of 4 it is 0.14.
+TEST(NonFinite, PixelsInSomeRendersOfOneSideAreADifferenceIfEqualRatesAreUnlikely) {
+    // Fisher's exact p of 12 of 24 against 0 of 24 is 8e-5, of 1 against 0 it is 1; of 3 of 4 against 0 of 4 it is
+    // 0.14.
     for (const auto& [renders, of, state] :
         {std::tuple(12, 24, State::fails), {1, 24, State::holds}, {3, 4, State::inconclusive}, {1, 4, State::holds}}) {
         MemoryRenders m = arms(of);
-        spoil(m, 'a', 35, renders);
+        set_pixel(m, 'a', 35, renders);
         const CompareResult r = m.compare({same, wide});
         EXPECT_EQ(r.state, state) << renders << r.sentence;
         EXPECT_EQ(r.bias[0].non_finite.b.pixels.size(), state == State::fails ? 1u : 0u);
@@ -75,21 +77,21 @@ TEST(NonFinite, SomeRendersOfOneSideAreADifferenceWhereEqualRatesAreUnlikely) {
     }
 }
 
-TEST(NonFinite, ScatteredFailuresOfOneSideAreADifferenceAndOfBothNone) {
+TEST(NonFinite, ScatteredPixelsDifferOnlyIfTheyAreOnOneSide) {
     SyntheticScene one{{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, 8, 32, false}, both = one;
-    one.b.failing = both.a.failing = both.b.failing = 3e-3;  // about 25 pixels of 8 renders
+    one.b.failing = both.a.failing = both.b.failing = 3e-3;  // about 25 pixels in 8 renders
     int alarms = 0;
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         const CompareResult found = compare_synthetic(one, seed);
         EXPECT_TRUE(found.bias[0].non_finite.differs()) << found.bias[0].sentence;
         alarms += compare_synthetic(both, seed).bias[0].non_finite.differs();
     }
-    EXPECT_LE(alarms, 4);  // 2.5 % each: more with a probability below 0.02 %
+    EXPECT_LE(alarms, 4);  // 2.5 % each: more than 4 with a probability below 0.02 %
 }
 
-TEST(NonFinite, AnAssertionOnARegionThatHoldsSuchPixelsFails) {
+TEST(NonFinite, AnAssertionOnARegionWithSuchPixelsFails) {
     MemoryRenders m = arms(4);
-    spoil(m, 'b', 35, 4);  // (3, 2)
+    set_pixel(m, 'b', 35, 4);  // (3, 2)
     const auto state = [&](const char* region, const std::string& arm) {
         const CompareFlag box{{"regions", "part", "box"}, region, true, ""},
             check{{"assertions", "it", "check"}, "y_mean.part(" + arm + ") < 9", false, ""};
@@ -98,21 +100,21 @@ TEST(NonFinite, AnAssertionOnARegionThatHoldsSuchPixelsFails) {
     EXPECT_EQ(state("[0, 0, 7, 7]", "b"), State::fails);
     EXPECT_EQ(state("[0, 0, 7, 7]", "a"), State::fails);
     EXPECT_EQ(state("[8, 8, 15, 15]", "b"), State::holds);
-    EXPECT_EQ(state("[3, 2, 3, 2]", "b"), State::fails);  // no pixel of it is left
+    EXPECT_EQ(state("[3, 2, 3, 2]", "b"), State::fails);  // none of its pixels is finite
 }
 
-TEST(NonFinite, ALoneArmMayNotHaveThemWhereItIsAsserted) {
+TEST(NonFinite, AnAssertionOnASingleArmWithSuchPixelsFails) {
     MemoryRenders m;
     for (std::uint32_t k = 0; k < 3; ++k) m.put("a" + std::to_string(k), k);
     const CompareFlag check{{"assertions", "it", "check"}, "y_mean.frame(a) < 9", false, ""};
     EXPECT_EQ(m.compare({check}).state, State::holds);
-    spoil(m, 'a', 35, 3);
+    set_pixel(m, 'a', 35, 3);
     EXPECT_EQ(m.compare({check}).state, State::fails);
 }
 
 TEST(NonFinite, ASideWithoutAnyFinitePixelDiffers) {
     MemoryRenders m = arms(2);
-    for (std::size_t i = 0; i < 256; ++i) spoil(m, 'b', i, 2);
+    for (std::size_t i = 0; i < 256; ++i) set_pixel(m, 'b', i, 2);
     const CompareResult r = m.compare({same, wide});
     EXPECT_EQ(r.state, State::fails);
     EXPECT_EQ(r.bias[0].non_finite.a.pixels.size(), 256u);
@@ -120,7 +122,7 @@ TEST(NonFinite, ASideWithoutAnyFinitePixelDiffers) {
     EXPECT_FALSE(r.arms[0].region(whole_frame).metric("y_mean").value);
 }
 
-TEST(NonFinite, AStatisticThatIsNoNumberIsNoAgreement) {
+TEST(NonFinite, ANonFiniteStatisticIsInconclusive) {
     MemoryRenders m = arms(4);
     Render& reference = m.put("reference", 1);
     reference.variance.assign(reference.size(), INFINITY), reference.variance_channels = "variance.Y";
@@ -144,11 +146,11 @@ TEST(Channels, AHueAtEqualLuminanceIsFoundAndNamed) {
     EXPECT_THAT(r.sentence, HasSubstr("mean R in frame"));
     EXPECT_THAT(r.sentence, HasSubstr("mean B in frame"));
     EXPECT_EQ(r.bias[0].tiles.different, 16u);
-    EXPECT_EQ(r.bias[0].tiles_by[3], 16u);  // blue is the surest
+    EXPECT_EQ(r.bias[0].tiles_by[3], 16u);  // blue has the smallest p
     EXPECT_EQ(r.bias[0].shown(), 3u);
 }
 
-TEST(Channels, OneChannelAloneIsFoundWhereverItIs) {
+TEST(Channels, ADifferenceInOneChannelIsFound) {
     for (const std::size_t channel : {0, 1, 2}) {
         MemoryRenders m = arms(8, 32);
         for (auto& [name, r] : m.renders) {
@@ -200,7 +202,7 @@ TEST(SharedSeeds, AreRecognisedInAnyOrderAndComparedInPairs) {
     }
 }
 
-TEST(SharedSeeds, OfSomeRendersPairThose) {
+TEST(SharedSeeds, OfSomeRendersPairOnlyThese) {
     for (const int shared : {2, 4}) {
         const SyntheticScene w{{Kind::gamma, 0.2}, {Kind::gamma, 0.2, 0.002}, 6, 32, false, 0, shared};
         const BiasResult found = compare_synthetic(w, 5).bias[0];
@@ -212,14 +214,14 @@ TEST(SharedSeeds, OfSomeRendersPairThose) {
     }
 }
 
-TEST(SharedSeeds, IndependentOnesAreNotTakenForEqual) {
+TEST(SharedSeeds, AreNotFoundInIndependentRenders) {
     for (const SyntheticNoise& noise : {SyntheticNoise{Kind::gamma, 0.2}, {Kind::lognormal, 1}, {Kind::pareto, 1.5}})
         for (std::uint32_t seed = 1; seed <= 40; ++seed)  // 1e-3 each
             EXPECT_TRUE(compare_synthetic({noise, noise, 6, 24, false}, seed).bias[0].shared.empty()) << seed;
 }
 
 // The same renders with sums in another order: relative differences of 1e-6, all of one sign.
-TEST(SharedSeeds, ArithmeticInAnotherOrderIsNoDifference) {
+TEST(SharedSeeds, SumsInAnotherOrderAreNotADifference) {
     for (const auto& [factor, differs] : {std::pair(1 + 1e-6f, false), {1 + 1e-4f, true}}) {
         MemoryRenders m;
         for (std::uint32_t k = 0; k < 8; ++k) {
@@ -234,8 +236,8 @@ TEST(SharedSeeds, ArithmeticInAnotherOrderIsNoDifference) {
     }
 }
 
-// A pixel in which the renders part decides the mean of differences that are 0 elsewhere.
-TEST(SharedSeeds, AFewPixelsThatPartLeaveTheTestOfIndependentRenders) {
+// The differences are 0 except in one pixel, which decides their mean.
+TEST(SharedSeeds, IfAFewPixelsDecideRendersAreTestedAsIndependent) {
     MemoryRenders m;
     for (std::uint32_t k = 0; k < 8; ++k) {
         m.put("a" + std::to_string(k), k, 32);
@@ -264,7 +266,7 @@ TEST(Identical, FilesAreTheSame) {
     }
 }
 
-TEST(Identical, OneFileASideSaysHowItDiffersAndNotWhetherThatIsNoise) {
+TEST(Identical, OneFilePerSideIsDescribedAndInconclusive) {
     MemoryRenders m;
     m.put("a", 1), m.put("b", 1).b[37] += 0.25f;
     const CompareResult r = m.compare({same});

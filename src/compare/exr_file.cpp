@@ -1,4 +1,4 @@
-// Headers.
+// The headers of OpenEXR files, and their chunks.
 #include "compare/exr_file.h"
 
 #include <algorithm>
@@ -117,10 +117,10 @@ ExrFile::ExrFile(const OpenFile& file) : file_(file) {
     start.user_data = const_cast<OpenFile*>(&file);
     start.read_fn = read_bytes, start.size_fn = file_size;
     start.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    forget_messages();
+    clear_message();
     expect_success(file, exr_start_read(&context_, file.path().c_str(), &start));
     try {
-        expect_silence(file);
+        expect_no_message(file);
         int count = 0;
         expect_success(file, exr_get_count(context_, &count));
         for (int i = 0; i < count; ++i) parts_.push_back(part_of(file, context_, i));
@@ -132,15 +132,15 @@ ExrFile::ExrFile(const OpenFile& file) : file_(file) {
 
 ExrFile::~ExrFile() { exr_finish(&context_); }
 
-// ---- Chunk by chunk: OpenEXR's table of offsets, what each chunk must hold at least, and what it holds.
+// ---- Chunk by chunk: OpenEXR's table of offsets, the least size of each chunk, and its contents.
 
 namespace {
 
 thread_local std::string last_message;
 
-/// The most that a byte of a chunk can hold. RLE: two bytes are 128. zlib: 1032 (its authors' bound); PXR24 leaves out
-/// a byte of four before it. PIZ: a run of 255 half words is no shorter than 9 bits. B44: three bytes are 32. DWA: a
-/// block of 64 pixels is at least one half word, which zlib packs.
+/// Returns the largest number of bytes that one byte of a chunk can decode to. RLE: two bytes give 128. zlib: 1032 (its
+/// authors' bound); PXR24 drops one byte of four before it. PIZ: a run of 255 half values needs at least 9 bits. B44:
+/// three bytes give 32. DWA: a block of 64 pixels has at least one half value, compressed by zlib.
 double most_per_byte(exr_compression_t compression) {
     switch (compression) {
         case EXR_COMPRESSION_NONE: return 1;
@@ -155,12 +155,12 @@ double most_per_byte(exr_compression_t compression) {
     }
 }
 
-/// A tile of so many pixels may be larger than the picture: 1024 x 1024.
+/// A tile may be larger than the picture up to this number of pixels: 1024 x 1024.
 constexpr std::size_t large_tile = std::size_t{1} << 20;
 
 std::int64_t in_steps(std::int64_t size, std::int64_t step) { return (size + step - 1) / step; }
 
-/// A decoder that is destroyed with its buffers.
+/// Destroys the decoder and its buffers.
 struct Decoder {
     exr_const_context_t context;
     exr_decode_pipeline_t pipeline{};
@@ -171,15 +171,15 @@ struct Decoder {
 
 void keep_message(exr_const_context_t, exr_result_t, const char* message) { last_message = message ? message : ""; }
 
-void forget_messages() { last_message.clear(); }
+void clear_message() { last_message.clear(); }
 
 void expect_success(const OpenFile& file, exr_result_t result) {
     if (result == EXR_ERR_SUCCESS) return;
     if (last_message.empty()) last_message = exr_get_default_error_message(result);
-    expect_silence(file);
+    expect_no_message(file);
 }
 
-void expect_silence(const OpenFile& file) {
+void expect_no_message(const OpenFile& file) {
     if (last_message.empty()) return;
     const std::string why = std::move(last_message);
     last_message.clear();
@@ -260,7 +260,7 @@ void ExrChunks::each(const std::function<void(const PixelWindow&, std::span<cons
     parallel_for(std::int64_t{0}, count_, [&](std::int64_t k) {
         const exr_chunk_info_t chunk = info(k);
         const std::uint64_t size = unpacked_size(window(k));
-        if (chunk.packed_size == size) {  // as it is: what its compression would not have made smaller
+        if (chunk.packed_size == size) {  // stored uncompressed, because compression would not make it smaller
             std::vector<char> bytes(size);
             expect_success(file_, exr_read_chunk(context_, part_.index, &chunk, bytes.data()));
             return use(window(k), bytes);
@@ -272,7 +272,7 @@ void ExrChunks::each(const std::function<void(const PixelWindow&, std::span<cons
         exr_decode_pipeline_t& p = decoder.pipeline;
         expect_success(file_, exr_decoding_initialize(context_, part_.index, &chunk, &p));
         expect_success(file_, exr_decoding_choose_default_routines(context_, part_.index, &p));
-        p.unpack_and_convert_fn = nullptr;  // 3.1's writes through the null pointers of channels that are not wanted
+        p.unpack_and_convert_fn = nullptr;  // OpenEXR 3.1 writes through null pointers of channels that are not read
         expect_success(file_, exr_decoding_run(context_, part_.index, &p));
         use(window(k), {static_cast<const char*>(p.unpacked_buffer), static_cast<std::size_t>(size)});
     });

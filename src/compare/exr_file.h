@@ -1,7 +1,7 @@
 // An OpenEXR file as plain data: its parts with their windows, channels and attributes, and pixels as planes of floats.
-// Read through OpenEXR's C library, which holds every size in the file against the file's own, and every chunk against
-// the size that its header promises. What that library does not decode (DWA, subsampled channels) its C++ library does,
-// after the same checks.
+// OpenEXR's C library reads it and checks each size in the file against the file's own size, and each chunk against the
+// size that its header states. What that library does not decode (DWA, subsampled channels) is read by OpenEXR's C++
+// library, after the same checks.
 #pragma once
 
 #include <OpenEXR/openexr.h>
@@ -18,37 +18,37 @@
 
 namespace crescent::inline comparison {
 
-// ---- Colours of other primaries than Rec.709: RGB to CIE XYZ and back from the chromaticities of a file, and from one
-// set of primaries to another. White points are adapted by Bradford's transform (Lam 1985), as ICC profiles do.
+// ---- Colours with primaries other than Rec.709: RGB to CIE XYZ and back from the chromaticities of a file, and from
+// one set of primaries to another. White points are adapted by Bradford's transform (Lam 1985), as in ICC profiles.
 
 /// CIE 1931 xy of the three primaries and of white (R = G = B).
 struct Chromaticities {
     std::array<double, 2> red{0.64, 0.33}, green{0.30, 0.60}, blue{0.15, 0.06}, white{0.3127, 0.3290};  // Rec.709
 };
 
-/// Whether they describe colours: finite, a white with luminance, primaries not on one line.
+/// Returns whether they describe colours: finite, a white point with luminance, primaries not on one line.
 bool is_valid(const Chromaticities& c);
-/// Whether no coordinate differs by more than 0.001: the same primaries, written with other digits.
+/// Returns whether no coordinate differs by more than 0.001: the same primaries, written with other digits.
 bool same_primaries(const Chromaticities& a, const Chromaticities& b);
-/// "Rec.709", or the eight numbers.
+/// Returns "Rec.709", or the eight numbers.
 std::string to_string(const Chromaticities& c);
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 Rgb transformed(const Matrix3& m, const Rgb& v);
-/// Y of white is 1. Of Rec.709 the second row is luminance_weights, as ITU-R BT.709 rounds them.
+/// Scaled so that white has Y = 1. For Rec.709 the second row is luminance_weights, as rounded in ITU-R BT.709.
 Matrix3 rgb_to_xyz(const Chromaticities& c);
-/// Without adaptation: XYZ of any white as the RGB that has it.
+/// Without adaptation of the white point.
 Matrix3 xyz_to_rgb(const Chromaticities& c);
-/// RGB of one set of primaries as that of another; white stays white. Files that hold XYZ itself (red 1 0, green 0 1,
-/// blue 0 0) are not adapted.
+/// Converts RGB between two sets of primaries; white stays white. Files that contain XYZ in R, G and B (red 1 0, green
+/// 0 1, blue 0 0) are not adapted.
 Matrix3 conversion(const Chromaticities& from, const Chromaticities& to);
 /// Weights of R, G and B in Y.
 Rgb luminance_weights_of(const Chromaticities& c);
 
 struct ExrChannel {
     std::string name;
-    bool half = false, whole = false;  // else float
+    bool half = false, whole = false;  // neither: float
     int x_sampling = 1, y_sampling = 1;
     std::size_t bytes() const { return half ? 2 : 4; }
 };
@@ -56,7 +56,7 @@ struct ExrChannel {
 struct ExrAttribute {
     std::string name;
     std::optional<double> number;
-    std::string text;  // of a string
+    std::string text;  // the value of a string
 };
 
 struct ExrPart {
@@ -65,7 +65,7 @@ struct ExrPart {
     bool deep = false, tiled = false;
     exr_compression_t compression = EXR_COMPRESSION_NONE;
     PixelWindow data, display;
-    std::vector<ExrChannel> channels;  // in the order of the file
+    std::vector<ExrChannel> channels;  // in file order
     std::vector<ExrAttribute> attributes;
     std::optional<Chromaticities> primaries;
 
@@ -75,17 +75,17 @@ struct ExrPart {
 
 class ExrFile {
 public:
-    /// Reads the headers. Throws InputError where they cannot be those of this file.
+    /// Reads the headers. Throws InputError if they are damaged or contradict the file.
     explicit ExrFile(const OpenFile& file);
     ~ExrFile();
     ExrFile(const ExrFile&) = delete;
     ExrFile& operator=(const ExrFile&) = delete;
 
     const std::vector<ExrPart>& parts() const { return parts_; }
-    /// The named channels of a part in its data window, bottom row first. Throws InputError, before it takes memory for
-    /// them, where the file is too short to hold them, and where a chunk holds less than the header says.
+    /// Returns the named channels of a part in its data window, bottom row first. Throws InputError if the file is too
+    /// short to contain them, before it allocates memory, and if a chunk has fewer bytes than the header states.
     std::vector<std::vector<float>> read(const ExrPart& part, const std::vector<std::string>& channels) const;
-    /// R, G and B of channels PREFIX + Y, RY and BY (luminance and chroma), by OpenEXR's own reconstruction.
+    /// Returns R, G and B of channels PREFIX + Y, RY and BY (luminance and chroma), by OpenEXR's own reconstruction.
     std::vector<std::vector<float>> read_luminance_chroma(const ExrPart& part, const std::string& layer) const;
 
 private:
@@ -102,26 +102,27 @@ private:
 
 // ---- The chunks of a part: blocks of rows, or the tiles of its full resolution.
 
-/// OpenEXR's handler of errors: keeps what was said for expect_success() of the same thread.
+/// OpenEXR's error handler: stores the message for expect_success() of the same thread.
 void keep_message(exr_const_context_t, exr_result_t, const char* message);
-/// Throws InputError, with what OpenEXR said, where it is no success.
+/// Throws InputError with OpenEXR's message if the call failed.
 void expect_success(const OpenFile& file, exr_result_t result);
-/// Drops what was said before, of another file.
-void forget_messages();
-/// Throws it too where something was said all the same: of a broken attribute OpenEXR skips some bytes and reads on.
-void expect_silence(const OpenFile& file);
+/// Removes a stored message of another file.
+void clear_message();
+/// Throws InputError if a message is stored although the call succeeded: OpenEXR skips some bytes of a broken attribute
+/// and continues.
+void expect_no_message(const OpenFile& file);
 
 class ExrChunks {
 public:
     ExrChunks(const OpenFile& file, exr_const_context_t context, const ExrPart& part);
 
-    /// Throws InputError where the file cannot hold all pixels: a chunk that is missing, lies beyond the end or in
-    /// another, or is smaller than its compression can make it. Takes no memory to speak of.
+    /// Throws InputError if the file cannot contain all pixels: a chunk is missing, is beyond the end, overlaps
+    /// another, or is smaller than its compression allows. Allocates almost no memory.
     void check() const;
-    /// Calls use(window, bytes) for each chunk, decompressed, rows from the top and channels one after another in a
-    /// row; at the same time on many threads. Not for DWA.
+    /// Calls use(window, bytes) for each chunk, decompressed, rows from the top, and in a row the channels one after
+    /// another; from many threads at once. Not for DWA.
     void each(const std::function<void(const PixelWindow&, std::span<const char>)>& use) const;
-    /// How many of so many pixels, from the first on, have a value where every `sampling`th has one.
+    /// Returns how many of `pixels` pixels from `first` on have a value if every `sampling`th one has.
     static std::size_t samples(int sampling, std::int64_t first, std::int64_t pixels);
 
 private:
@@ -132,7 +133,7 @@ private:
     const OpenFile& file_;
     exr_const_context_t context_;
     const ExrPart& part_;
-    std::int64_t width_ = 0, height_ = 0;  // of a chunk that is not cut off by the data window
+    std::int64_t width_ = 0, height_ = 0;  // of a chunk that the data window does not cut off
     std::int64_t across_ = 1, count_ = 0;
 };
 

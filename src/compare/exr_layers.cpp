@@ -1,4 +1,4 @@
-// Layers are what is before the last '.', '/' or ':' of a channel's name (OpenEXR's own rule has '.' alone).
+// A layer is the part of a channel's name before the last '.', '/' or ':' (OpenEXR's own rule has only '.').
 #include "compare/exr_layers.h"
 
 #include <algorithm>
@@ -13,13 +13,14 @@
 
 namespace crescent::inline comparison {
 
-// ---- By the names that renderers give: pbrt-v4's RelativeVariance layer, Mitsuba's m2_ moments, layers that end in
-// variance, error or stddev, channels that count samples. Three deviations of one pixel are added, not squared and
-// added: R, G and B of one sample rise and fall together.
+// ---- Channels by the names that renderers use: pbrt-v4's RelativeVariance layer, Mitsuba's m2_ moments, layers that
+// end in variance, error or stddev, channels with sample counts. The deviations of R, G and B of a pixel are added, not
+// their squares, because R, G and B of one sample are correlated.
 
 namespace {
 
-/// A number in an attribute: an int, a float, or text such as "12.5" or "01:02.50" (minutes and seconds, hours before).
+/// Returns the number in an attribute: an int, a float, or text such as "12.5" or "01:02.50" (minutes and seconds, with
+/// hours before them).
 std::optional<double> number_of(const ExrAttribute& attribute) {
     if (attribute.number) return attribute.number;
     double total = 0;
@@ -37,7 +38,7 @@ std::optional<double> number_of(const ExrAttribute& attribute) {
     }
 }
 
-/// Channels of Y or of R, G and B.
+/// Returns the channel of Y, or those of R, G and B.
 std::vector<std::string> of_light(const ColourChannels& colours) {
     if (const auto y = colours.find("y"); y != colours.end()) return {y->second};
     if (colours.contains("r") && colours.contains("g") && colours.contains("b"))
@@ -88,8 +89,7 @@ void set_variance(Render& out, const ExrExtra& extra, const std::vector<std::vec
     out.per_sample = extra.kind == Kind::of_samples || extra.kind == Kind::moments;
     out.variance_channels = fmt::format("{}", fmt::join(extra.spread, ", "));
     for (std::size_t i = 0; i < out.size(); ++i) {
-        double deviation =
-            0;  // R, G and B of one sample rise and fall together: their deviations add, never too little
+        double deviation = 0;  // R, G and B of one sample are correlated: an upper bound is the sum
         for (std::size_t c = 0; c < planes.size() && extra.kind != Kind::moments; ++c) {
             const double x = std::max(0.0, static_cast<double>(planes[c][i]));
             deviation += (planes.size() == 3 ? out.weights[c] : 1) * (extra.kind == Kind::error ? x : std::sqrt(x));
@@ -135,7 +135,7 @@ namespace {
 
 using Kind = ExrLayer::Kind;
 
-/// "[Red]" -> r; "" where it is no colour.
+/// "[Red]" -> r; "" if it is not a colour.
 std::string colour_of(const std::string& word) {
     std::string name = lower(word);
     std::erase_if(name, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' '; });
@@ -145,7 +145,7 @@ std::string colour_of(const std::string& word) {
     return at == words.end() ? "" : at->second;
 }
 
-/// "Combined.R" -> Combined, r; what is no colour keeps its name in lower case.
+/// "Combined.R" -> Combined, r; a name that is not a colour is kept in lower case.
 std::pair<std::string, std::string> layer_and_colour(const std::string& channel) {
     std::size_t cut = channel.find_last_of("./:");
     if (const std::size_t line = channel.rfind('_');
@@ -155,7 +155,7 @@ std::pair<std::string, std::string> layer_and_colour(const std::string& channel)
     return {cut == std::string::npos ? "" : channel.substr(0, cut), colour.empty() ? lower(word) : colour};
 }
 
-/// Two channels of the layer's part that are the same colour of it, where the ones taken have not OpenEXR's own names.
+/// Returns two channels of the layer's part for the same colour, if the layer uses one without OpenEXR's own name.
 std::pair<std::string, std::string> doubled(const ExrPart& part, const ExrLayer& layer) {
     for (const std::string& taken : layer.channels) {
         const auto [prefix, colour] = layer_and_colour(taken);
@@ -173,7 +173,7 @@ std::string joined(const std::string& part, const std::string& layer) {
     return part.empty() || layer.empty() ? part + layer : part + "/" + layer;
 }
 
-/// What a back end or a mask wrote, by its name: no radiance.
+/// Returns whether the name is that of data of a back end or of a mask, not of radiance.
 bool is_data(const std::string& layer) {
     static constexpr const char* words[] = {"crypto", "normal", "depth", "position", "variance", "motion", "vector",
         "uv", "albedo", "error", "second_moment", "largest", "horizon", "hits", "stddev", "samplecount", "denois"};
@@ -182,14 +182,14 @@ bool is_data(const std::string& layer) {
         std::begin(words), std::end(words), [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-/// Names that renderers give to the beauty.
+/// Returns whether renderers use this name for the beauty.
 bool is_usual(const std::string& layer) {
     static const std::set<std::string> usual = {
         "", "rgba", "rgb", "beauty", "combined", "color", "colour", "default", "composite", "c", "ci"};
     return usual.contains(last_name(layer));
 }
 
-/// Three numbers called x, y and z are a position or a direction more often than a colour.
+/// Returns whether x, y and z of a layer are a colour; more often they are a position or a direction.
 bool is_xyz_colour(const std::string& layer) {
     const std::string name = last_name(layer);
     return is_usual(layer) || name == "xyz" || name == "ciexyz" || name == "cie_xyz";
@@ -240,7 +240,8 @@ std::string channels_found(const ExrFile& file) {
     return fmt::format("{}{}", fmt::join(names, ", "), all > most ? fmt::format(" and {} more", all - most) : "");
 }
 
-/// The beauty: the only layer, or the only one with a usual name; channels without a layer before all others.
+/// Returns the beauty: the channels without a layer, else the only layer, else the only one with a usual name; null if
+/// it is ambiguous.
 const ExrLayer* beauty(const std::vector<ExrLayer>& layers) {
     std::vector<const ExrLayer*> all, usual;
     for (const ExrLayer& layer : layers) {
@@ -268,7 +269,8 @@ std::string last_name(const std::string& layer) {
 
 std::map<std::string, ColourChannels> exr_channels(const ExrPart& part) {
     std::map<std::string, ColourChannels> out;
-    for (const ExrChannel& channel : part.channels) {  // of "R" and "red" in one layer the first stays, capitals first
+    for (const ExrChannel& channel :
+        part.channels) {  // of "R" and "red" in one layer the first is kept, capitals first
         const auto [layer, colour] = layer_and_colour(channel.name);
         out[layer].emplace(colour, channel.name);
     }
@@ -295,7 +297,7 @@ ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::s
         if (const ExrLayer* found = beauty(layers)) return take(*found);
         if (names_of(layers).empty())
             fail("expected channels R, G and B, or Y, or X, Y and Z, found none that hold radiance");
-        fail("several layers hold radiance: say which with --layer: " + names_of(layers));
+        fail("several layers contain radiance: choose one with --layer: " + names_of(layers));
     }
     std::vector<const ExrLayer*> found;
     for (const ExrLayer& layer : layers)

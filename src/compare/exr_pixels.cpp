@@ -1,4 +1,4 @@
-// Pixels: chunks into planes.
+// Pixels of OpenEXR files: chunks to planes.
 #include <Imath/half.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfIO.h>
@@ -21,7 +21,7 @@ namespace {
 
 using Planes = std::vector<std::vector<float>>;
 
-/// The file, for OpenEXR's C++ library.
+/// The file as a stream of OpenEXR's C++ library.
 class FileStream : public Imf::IStream {
 public:
     explicit FileStream(const OpenFile& file) : Imf::IStream(file.path().c_str()), file_(file) {}
@@ -38,7 +38,7 @@ private:
     std::uint64_t at_ = 0;
 };
 
-/// A number in the file's little-endian bytes.
+/// Reads a little-endian number.
 template <class T> T number_at(const char* at) {
     char bytes[sizeof(T)];
     std::memcpy(bytes, at, sizeof(T));
@@ -55,7 +55,7 @@ void convert_row(const ExrChannel& channel, const char* from, std::span<float> t
                              : number_at<float>(from + 4 * i);
 }
 
-/// The rows of one chunk, into the planes (null: channels that are not wanted).
+/// Copies the rows of one chunk to the planes (null: the channel is not read).
 void place_chunk(
     const ExrPart& part, const PixelWindow& w, std::span<const char> bytes, const std::vector<float*>& planes) {
     const char* at = bytes.data();
@@ -73,7 +73,7 @@ void place_chunk(
 
 Planes zeros(const ExrPart& part, std::size_t planes) { return Planes(planes, std::vector<float>(part.data.pixels())); }
 
-/// Where OpenEXR's C++ library is to write a plane that begins with its bottom row.
+/// Returns the slice with which OpenEXR's C++ library writes a plane that begins with its bottom row.
 Imf::Slice slice_of(const ExrPart& part, std::vector<float>& plane) {
     const auto row = static_cast<std::ptrdiff_t>(sizeof(float)) * static_cast<std::ptrdiff_t>(part.data.width());
     char* base = reinterpret_cast<char*>(plane.data()) + row * static_cast<std::ptrdiff_t>(part.data.y1) -
@@ -85,7 +85,7 @@ bool is_dwa(const ExrPart& part) {
     return part.compression == EXR_COMPRESSION_DWAA || part.compression == EXR_COMPRESSION_DWAB;
 }
 
-/// What OpenEXR's C++ library throws is said of the file.
+/// Converts exceptions of OpenEXR's C++ library to InputErrors of the file.
 template <class Read> void of_file(const OpenFile& file, const Read& read) {
     try {
         read();
@@ -135,7 +135,7 @@ Planes ExrFile::read(const ExrPart& part, const std::vector<std::string>& channe
     }
     check(part);
     Planes out = zeros(part, channels.size());
-    std::vector<std::size_t> first(channels.size());  // a channel may be wanted twice: read once, copied
+    std::vector<std::size_t> first(channels.size());  // a channel that is requested twice is read once and copied
     for (std::size_t c = 0; c < channels.size(); ++c)
         first[c] =
             static_cast<std::size_t>(std::find(channels.begin(), channels.end(), channels[c]) - channels.begin());
@@ -153,7 +153,7 @@ Planes ExrFile::read_luminance_chroma(const ExrPart& part, const std::string& la
                 layer, layer.empty() ? "" : ".", channel));
     if (part.index > 0) file_.fail("luminance and chroma (Y, RY, BY) are read from the first part of a file alone");
     check(part);
-    if (!is_dwa(part))  // the C++ library takes what a chunk lacks for 0
+    if (!is_dwa(part))  // OpenEXR's C++ library reads missing bytes of a chunk as 0
         ExrChunks(file_, context_, part).each([](const PixelWindow&, std::span<const char>) {});
     Planes out = zeros(part, 3);
     of_file(file_, [&] {
@@ -173,7 +173,7 @@ Planes ExrFile::read_luminance_chroma(const ExrPart& part, const std::string& la
 }
 
 // ---- OpenEXR as renderers write it: scanlines or tiles, half or float, one part or many, layers with dotted names,
-// luminance and chroma, XYZ. Deep parts and what is not radiance (Cryptomatte, normals, depth, ...) are passed by.
+// luminance and chroma, XYZ. Deep parts and data other than radiance (Cryptomatte, normals, depth, ...) are skipped.
 
 namespace {
 
@@ -182,7 +182,7 @@ void set_primaries(Render& out, const ExrPart& part) {
     out.primaries = *part.primaries, out.weights = luminance_weights_of(*part.primaries);
 }
 
-/// Every plane the layer's colours, then what the part says beside them.
+/// Returns the render without pixels, with the attributes of the part.
 Render render_of(const ExrPart& part, const OpenFile& file, const ExrLayer& layer) {
     Render out(file.path(), static_cast<int>(part.data.width()), static_cast<int>(part.data.height()), Render::empty);
     out.layer = layer.name;
@@ -234,7 +234,7 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-/// x, y and z of a chromaticity.
+/// Returns x, y and z of a chromaticity.
 Rgb xyz_of(const Point& c) { return {c[0], c[1], 1 - c[0] - c[1]}; }
 
 Matrix3 product(const Matrix3& a, const Matrix3& b) {
@@ -245,7 +245,7 @@ Matrix3 product(const Matrix3& a, const Matrix3& b) {
     return out;
 }
 
-/// By cofactors.
+/// Inverts by cofactors.
 Matrix3 inverse(const Matrix3& m) {
     Matrix3 out;
     const auto minor = [&](std::size_t i, std::size_t j) {
@@ -258,7 +258,7 @@ Matrix3 inverse(const Matrix3& m) {
     return out;
 }
 
-/// A column a primary: x, y and z times how much of it white has.
+/// Returns a matrix with a column per primary: its x, y and z times its amount.
 Matrix3 columns(const Chromaticities& c, const Rgb& amounts) {
     const Rgb of[3] = {xyz_of(c.red), xyz_of(c.green), xyz_of(c.blue)};
     Matrix3 out;
@@ -267,7 +267,7 @@ Matrix3 columns(const Chromaticities& c, const Rgb& amounts) {
     return out;
 }
 
-/// What one white has to be multiplied with to be the other, in Bradford's cone responses.
+/// Returns the matrix that maps one white to the other, by scaling Bradford's cone responses.
 Matrix3 adaptation(const Rgb& from, const Rgb& to) {
     constexpr Matrix3 bradford{{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
     const Rgb a = transformed(bradford, from), b = transformed(bradford, to);
@@ -278,7 +278,7 @@ Matrix3 adaptation(const Rgb& from, const Rgb& to) {
 
 bool near(const Point& a, const Point& b) { return std::fabs(a[0] - b[0]) <= 1e-3 && std::fabs(a[1] - b[1]) <= 1e-3; }
 
-/// XYZ itself, as OpenEXR files of XYZ in channels R, G and B have it: its "white" is no white of a scene.
+/// The primaries of OpenEXR files with XYZ in channels R, G and B; their "white" is not the white of a scene.
 constexpr Chromaticities xyz_primaries{{1, 0}, {0, 1}, {0, 0}, {1. / 3, 1. / 3}};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Kinds of warnings in the order in which they come.
+// Kinds of warnings are listed in the order in which they were added.
 #include "compare/file_warnings.h"
 
 #include <algorithm>
@@ -32,19 +32,19 @@ std::vector<std::string> FileWarnings::lines() const {
     return out;
 }
 
-// ---- The counts are of the first pass (each pixel over renders) and of the second (groups in each render and region).
-// A sample that fails spoils a pixel, or as many as its filter covers: groups count such events, and these are
-// independent where pixels are not.
+// ---- Counts come from the first pass (each pixel over renders) and the second pass (groups in each render and
+// region). A failing sample affects one pixel, or as many as its filter covers: groups count such events, which are
+// independent although the pixels are not.
 
 namespace {
 
-constexpr std::size_t named_places = 3;  // pixels whose places are written
+constexpr std::size_t named_places = 3;  // pixels that are listed
 
 bool finite(const Render& r, std::size_t i) {
     return std::isfinite(r.r[i]) && std::isfinite(r.g[i]) && std::isfinite(r.b[i]);
 }
 
-/// Connected components of pixels that come in rising order: each joins its left neighbour and the three of the row
+/// Counts connected components of pixels in ascending order: each joins its left neighbour and the three of the row
 /// before.
 class Groups {
 public:
@@ -86,14 +86,14 @@ std::uint32_t failures(const ArmStats& arm, std::uint32_t pixel) {
     return arm.not_finite.empty() ? 0 : arm.not_finite[pixel];
 }
 
-/// The two sides' counts of one pixel.
+/// The counts of one pixel on both sides.
 struct Counts {
     std::uint32_t a = 0, b = 0;
 };
 
-class Sorting {
+class NonFiniteTest {
 public:
-    Sorting(const RenderStats& all, const ArmStats& a, const ArmStats& b)
+    NonFiniteTest(const RenderStats& all, const ArmStats& a, const ArmStats& b)
         : all_(all), a_(a), b_(b), na_(a.files.size()), nb_(b.files.size()) {}
 
     NonFinite result(double alpha) {
@@ -175,8 +175,8 @@ private:
     const RenderStats& all_;
     const ArmStats &a_, &b_;
     const std::size_t na_, nb_;
-    std::vector<std::uint32_t> failing_;  // pixels that fail in some render of either side, rising
-    std::vector<bool> differs_;           // one each
+    std::vector<std::uint32_t> failing_;  // pixels that fail in some render of either side, ascending
+    std::vector<bool> differs_;           // one per failing pixel
     NonFinite out_;
 };
 
@@ -194,7 +194,7 @@ std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats
 }
 
 NonFinite compare_non_finite(const RenderStats& all, const ArmStats& a, const ArmStats& b, double alpha) {
-    return Sorting(all, a, b).result(alpha);
+    return NonFiniteTest(all, a, b).result(alpha);
 }
 
 std::string places_of(const FailingPixels& failing, int width) {

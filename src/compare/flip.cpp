@@ -1,6 +1,6 @@
 // FLIP (Andersson et al. 2020) and HDR-FLIP (Andersson et al. 2021), with their constants: contrast sensitivities as
-// Gaussians, HyAB after Hunt's adjustment, edges and points of lightness. Distances in degrees of view become pixels by
-// ppd, pixels a degree. ColourPlanes are float, sums double.
+// Gaussians, HyAB after Hunt's adjustment, edges and points of lightness. Distances in degrees of view are converted to
+// pixels by ppd, pixels per degree. ColourPlanes are float, sums double.
 #include "compare/metrics.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ Triple rgb_of(const Triple& c) {
     return times(rgb_of_xyz, {(y + c[1] / 500) * white()[0], y * white()[1], (y - c[2] / 200) * white()[2]});
 }
 
-/// CIELAB with a and b scaled by lightness: colours differ less where it is dark (Hunt).
+/// CIELAB with a and b scaled by lightness: colour differences are smaller in the dark (Hunt).
 Triple hunt_lab(const Triple& rgb) {
     Triple t = relative(rgb);
     constexpr double delta = 6.0 / 29;
@@ -65,11 +65,10 @@ Triple hunt_lab(const Triple& rgb) {
     return {lightness, 0.01 * lightness * 500 * (t[0] - t[1]), 0.01 * lightness * 200 * (t[1] - t[2])};
 }
 
-/// HyAB: city block in lightness, Euclid in colour.
+/// HyAB: city-block distance in lightness, Euclidean distance in colour.
 double hyab(const Triple& a, const Triple& b) { return std::fabs(a[0] - b[0]) + math::hypot(a[1] - b[1], a[2] - b[2]); }
 
-// --- separable filters, edges repeated
-// --------------------------------------------------------------------------------
+// --- separable filters, edges repeated -------------------------------------------------------------------------------
 
 using Kernel = std::vector<double>;  // odd length
 
@@ -139,7 +138,7 @@ Plane blurred(const Plane& in, Size size, std::span<const Sensitivity> parts, do
     return out;
 }
 
-/// First or second derivative of a Gaussian; what is positive sums to one, what is negative to minus one.
+/// First or second derivative of a Gaussian; its positive values sum to one, its negative values to minus one.
 Plane feature(const Plane& lightness, Size size, double ppd, bool edge, bool across) {
     const double sd = 0.5 * 0.082 * ppd;
     const int radius = static_cast<int>(std::ceil(3 * sd));
@@ -174,7 +173,7 @@ ColourPlanes opponent(const FlipImage& image) {
     return out;
 }
 
-/// What the eye resolves of the picture, as Hunt-adjusted CIELAB.
+/// Filters the picture with the eye's contrast sensitivities and returns Hunt-adjusted CIELAB.
 ColourPlanes perceived(const ColourPlanes& c, Size size, double ppd) {
     ColourPlanes out{blurred(c[0], size, {&achromatic, 1}, ppd), blurred(c[1], size, {&red_green, 1}, ppd),
         blurred(c[2], size, blue_yellow, ppd)};
@@ -192,7 +191,7 @@ Triple at(const ColourPlanes& p, std::size_t i) {
     return {static_cast<double>(p[0][i]), static_cast<double>(p[1][i]), static_cast<double>(p[2][i])};
 }
 
-/// Colour difference brought to [0, 1]: compressed, the largest differences most.
+/// Maps a colour difference to [0, 1]: compressed, the largest differences most.
 double remapped(double difference) {
     static const double most = math::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
     constexpr double pc = 0.4, pt = 0.95;
@@ -209,7 +208,7 @@ Features features(const ColourPlanes& c, Size size, double ppd) {
     return {magnitude(y, size, ppd, true), magnitude(y, size, ppd, false)};
 }
 
-/// x (a x + b) / (x (c x + d) + e): Narkowicz's fit of ACES, exposure 0.6 folded in.
+/// x (a x + b) / (x (c x + d) + e): Narkowicz's fit of ACES, including its exposure of 0.6.
 constexpr double aces[6] = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0, 0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
 
 float tone_mapped(float radiance, double exposure) {
@@ -256,7 +255,7 @@ FlipExposures flip_exposures(const FlipImage& reference) {
         if (std::isfinite(v)) y.push_back(std::max(0.0, v));
     }
     if (y.empty()) return {};
-    constexpr double t = 0.85;  // of the tone map's range; the luminance that is brought there
+    constexpr double t = 0.85;  // of the tone map's range: its output for the largest and for the median luminance
     const double a = aces[0] - t * aces[3], b = aces[1] - t * aces[4], c = aces[2] - t * aces[5];
     const double x = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
     const double median = std::max(order_statistic(y, (y.size() - 1) / 2), 1e-7),

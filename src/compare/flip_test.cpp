@@ -1,4 +1,4 @@
-// FLIP against the numbers of the program that its authors publish.
+// Compares FLIP with the numbers of the program that its authors publish.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace crescent::inline comparison {
 namespace {
 
-/// A test picture by formula, so that another program can make the same.
+/// A test picture by formula, so that another program can compute the same one.
 std::vector<float> plane(int c, bool changed, double lift) {
     std::vector<float> out;
     for (int y = 0; y < 60; ++y)
@@ -24,8 +24,8 @@ std::vector<float> plane(int c, bool changed, double lift) {
     return out;
 }
 
-/// Means that the package flip-evaluator 1.7 gives for the same pictures at 67.0206 pixels a degree.
-TEST(Flip, GivesThePublishedProgramsNumbers) {
+/// Means that the package flip-evaluator 1.7 returns for the same pictures at 67.0206 pixels per degree.
+TEST(Flip, AgreesWithThePublishedProgram) {
     const auto mean = [](const std::vector<float>& map) {
         double sum = 0;
         for (const float v : map) sum += static_cast<double>(v);

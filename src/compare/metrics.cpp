@@ -1,6 +1,6 @@
-// RenderStats -> metrics with their doubt. Intervals are t intervals over renders, 95 %, cut at 0 where the metric
-// cannot be below it; of the squared bias by the jackknife, of counts by count_interval(). docs/compare.md has the
-// coverage that was measured.
+// Metrics with confidence intervals from RenderStats. Intervals are t intervals over renders, 95 %, cut at 0 if the
+// metric cannot be negative; for the squared bias by the jackknife, for counts by count_interval(). docs/error-rates.md
+// has their measured coverage.
 #include "compare/metrics.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ template <class Read> Values over_renders(const ArmStats& arm, std::size_t regio
     return out;
 }
 
-/// What is said of a mean over renders; `transform` rises (sqrt for RMSE).
+/// Returns the metric of a mean over renders; `transform` is increasing (sqrt for RMSE).
 template <class Transform> MetricValue value_of(const MeanInterval& m, bool heavy, Transform transform) {
     MetricValue out{transform(m.mean), {}, ""};
     if (m.n < 2) out.why = "one render has no interval";
@@ -59,20 +59,20 @@ MetricValue variance(const ArmStats& arm, const PixelSet& set, std::size_t regio
     if (arm.files.size() >= 2) {
         Values each = over_renders(arm, region, [&](const RegionStats& r) { return r.spread * k / (k - 1); });
         MetricValue out = mean_of(each, heavy, at_least_0);
-        if (arm.files.size() == 2) out.interval.reset(), out.why = "two renders spread alike: no interval";
+        if (arm.files.size() == 2) out.interval.reset(), out.why = "two renders have equal spreads: no interval";
         return out;
     }
-    const double describe = mean_variance(arm.film, set);
-    if (std::isnan(describe)) return missing("one render without a variance channel has no variance");
-    return {describe, {}, "as the renderer wrote it; one render has no interval"};
+    const double stated = mean_variance(arm.film, set);
+    if (std::isnan(stated)) return missing("one render without a variance channel has no variance");
+    return {stated, {}, "as the renderer wrote it; one render has no interval"};
 }
 
-/// Squared bias without the variance: the mean of e_k e_l over pairs of renders, less the reference's own error. Two
-/// renders that both err greatly in one pixel may be rare, and their absence looks like certainty: the standard error
-/// is never taken to be less than that of independent pixels of equal variance, sqrt(2 / (K (K - 1) pixels)) variance.
+/// Squared bias without the variance: the mean of e_k e_l over pairs of renders, minus the reference's own error. Pairs
+/// of renders with a large error in the same pixel may be rare, and without them the estimated error is too small: the
+/// standard error is at least that of independent pixels of equal variance, sqrt(2 / (K (K - 1) pixels)) variance.
 MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t region, double reference, bool heavy) {
     const double k = static_cast<double>(arm.files.size());
-    if (arm.files.size() < 2) return missing("bias and variance part from two renders on");
+    if (arm.files.size() < 2) return missing("two renders or more are needed to separate bias and variance");
     double sum = 0, squares = 0;
     for (const auto& render : arm.regions) sum += render[region].with_sum, squares += render[region].mse;
     const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - reference; };
@@ -94,8 +94,8 @@ MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t r
     return out;
 }
 
-/// `transform` of a metric by a known factor: rising, or falling (1/x).
-template <class Transform> MetricValue made_of(const MetricValue& from, const Transform& transform) {
+/// Returns a metric that is a monotonic function of another: increasing, or decreasing (1/x).
+template <class Transform> MetricValue transformed_metric(const MetricValue& from, const Transform& transform) {
     if (!from.value) return missing(from.why);
     if (!(*from.value > 0)) return missing("the variance is 0");
     MetricValue out{transform(*from.value), {}, from.why};
@@ -107,16 +107,17 @@ template <class Transform> MetricValue made_of(const MetricValue& from, const Tr
 
 void costs(const MetricValue& var, const Cost& cost, RegionResult& out) {
     const auto by = [&](const std::optional<double>& each, const char* why) {
-        return each ? made_of(var, [&](double v) { return v * *each; }) : missing(why);
+        return each ? transformed_metric(var, [&](double v) { return v * *each; }) : missing(why);
     };
     const char* no_time = "no render time: give --seconds";
     out.metrics.emplace_back("efficiency",
-        cost.seconds ? made_of(var, [&](double v) { return 1 / (v * *cost.seconds); }) : missing(no_time));
+        cost.seconds ? transformed_metric(var, [&](double v) { return 1 / (v * *cost.seconds); }) : missing(no_time));
     out.metrics.emplace_back("unit_time", by(cost.seconds, no_time));
     out.metrics.emplace_back("sample_var", by(cost.spp, "no samples a pixel: give --spp"));
 }
 
-/// Renders from which the largest error would be a twentieth of the sum: the largest of n grows as n^k, their sum as n.
+/// Returns the number of renders for which the largest error would be a twentieth of the sum: the largest of n grows as
+/// n^k, their sum as n.
 std::optional<double> needed(const RegionResult& r, double renders) {
     const double k = r.tail ? std::max(0.5, r.tail->k) : 0.5;
     if (!(k < 1)) return {};
@@ -133,16 +134,16 @@ void tail_of(const ArmStats& arm, std::size_t region, RegionResult& out) {
     if (out.heavy()) out.renders_needed = needed(out, static_cast<double>(arm.files.size()));
 }
 
-/// What the renderer says of its own variance beside what its renders spread.
+/// Returns the variance that the renderer states over the variance of its renders.
 std::optional<double> stated_over_measured(const ArmStats& arm, const PixelSet& set) {
     if (arm.film.stated_variance.empty() || arm.film.count < 2) return {};
-    double describe = 0, measured = 0;
+    double stated = 0, measured = 0;
     for (const std::uint32_t i : set.pixels)
-        describe += static_cast<double>(arm.film.stated_variance[i]), measured += arm.film.variance(i);
-    return measured > 0 ? std::optional(describe / static_cast<double>(arm.film.count) / measured) : std::nullopt;
+        stated += static_cast<double>(arm.film.stated_variance[i]), measured += arm.film.variance(i);
+    return measured > 0 ? std::optional(stated / static_cast<double>(arm.film.count) / measured) : std::nullopt;
 }
 
-/// A value that is not finite is none: nothing compares with it.
+/// Removes values that are not finite, because comparisons with them have no meaning.
 void keep_finite(MetricValue& m) {
     if (m.value && !std::isfinite(*m.value)) m = missing(fmt::format("it is {}, not a finite number", *m.value));
     if (m.interval && !(std::isfinite(m.interval->first) && std::isfinite(m.interval->second)))
@@ -170,19 +171,20 @@ bool RegionResult::mean_heavy() const { return (tail && tail->k >= 1) || largest
 
 bool RegionResult::heavy() const { return (tail && tail->k >= 0.5) || largest_share > heavy_share; }
 
-const RegionResult& ArmResult::region(const std::string& wanted) const {
+const RegionResult& ArmResult::region(const std::string& name) const {
     const auto it =
-        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == wanted; });
+        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == name; });
     ensure(it != regions.end(), "a region that was measured");
     return *it;
 }
 
 double reference_variance(const RenderStats& all, std::size_t region) {
     const ArmStats& reference = *all.reference;
-    const double describe =
+    const double stated =
         mean_variance(reference.film, all.regions[region]) / static_cast<double>(reference.film.count);
-    if (!std::isnan(describe)) return describe;
-    double least = HUGE_VAL;  // a bias adds to what an arm's roughness says: the least of them is nearest
+    if (!std::isnan(stated)) return stated;
+    double least =
+        HUGE_VAL;  // a bias increases the roughness of an arm's difference, so the smallest estimate is the best
     for (const ArmStats& arm : all.arms)
         if (arm.film.count > 1 || !arm.film.stated_variance.empty())
             least = std::min(least, roughness(all, arm, all.regions[region]));
@@ -217,7 +219,7 @@ RegionResult measure_region(
     const auto picture = [&](const char* name, const std::optional<double>& flip) {
         out.metrics.emplace_back(name,
             flip ? MetricValue{*flip, {}, "of the first render"}
-                 : missing(referred ? "not asked for" : "no reference"));
+                 : missing(referred ? "not requested" : "no reference"));
     };
     picture("flip", flips.hdr), picture("flip_ldr", flips.ldr);
     costs(var, cost, out);
@@ -228,7 +230,7 @@ RegionResult measure_region(
     return out;
 }
 
-// ---- FLIP of each arm's first render beside the reference: of radiance (HDR), and of the two photographs (LDR).
+// ---- FLIP of each arm's first render against the reference: of radiance (HDR), and of the two photographs (LDR).
 
 namespace {
 
@@ -238,7 +240,7 @@ double mean_over(const std::vector<float>& map, const PixelSet& set) {
     return sum / static_cast<double>(set.pixels.size());
 }
 
-/// Display-ready linear channels of a photograph, as plates show it, for LDR-FLIP.
+/// Returns the linear channels of a photograph for LDR-FLIP, tone-mapped as on the plates.
 std::array<std::vector<float>, 3> photograph(
     std::span<const float> r, std::span<const float> g, std::span<const float> b, double exposure) {
     std::array<std::vector<float>, 3> out;
@@ -251,7 +253,7 @@ std::array<std::vector<float>, 3> photograph(
     return out;
 }
 
-/// FLIP filters: a value that is not finite would spread to its neighbours.
+/// Sets pixels to black: FLIP filters images, so a value that is not finite would spread to its neighbours.
 void blacken(Render& image, const std::vector<bool>& bad) {
     for (std::size_t i = 0; i < bad.size(); ++i)
         if (bad[i]) image.r[i] = image.g[i] = image.b[i] = 0;
@@ -269,17 +271,18 @@ std::vector<Flips> measure_flip(
     for (Render* image : {&test, &ref}) blacken(*image, all.bad);
     const std::vector<float> hdr = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
         {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
-    const auto seen = photograph(test.r, test.g, test.b, plan.exposure),
-               wanted = photograph(ref.r, ref.g, ref.b, plan.exposure);
-    const std::vector<float> ldr = ldr_flip({all.width, all.height, wanted[0], wanted[1], wanted[2]},
-        {all.width, all.height, seen[0], seen[1], seen[2]}, plan.pixels_per_degree);
+    const auto test_photo = photograph(test.r, test.g, test.b, plan.exposure),
+               reference_photo = photograph(ref.r, ref.g, ref.b, plan.exposure);
+    const std::vector<float> ldr =
+        ldr_flip({all.width, all.height, reference_photo[0], reference_photo[1], reference_photo[2]},
+            {all.width, all.height, test_photo[0], test_photo[1], test_photo[2]}, plan.pixels_per_degree);
     for (std::size_t r = 0; r < all.regions.size(); ++r)
         out[r] = {mean_over(hdr, all.regions[r]), mean_over(ldr, all.regions[r])};
     monitor.advance(1);
     return out;
 }
 
-// ---- Means and squared deviations of Y, R, G and B over renders that come one at a time (Welford 1962).
+// ---- Means and squared deviations of Y, R, G and B over renders that are added one at a time (Welford 1962).
 
 namespace {
 
@@ -305,7 +308,7 @@ void MeanFilm::add(const Render& render, double variance_scale) {
     }
     if (planes.size() == 1 && !is_grey(render)) planes.resize(colour_quantities, MeanPlane(planes[0]));
     if (render.variance.size() != stated_variance.size() || variance_scale == 0)
-        stated_variance.clear();  // not every file has one
+        stated_variance.clear();  // some file has no variance
     ++count;
     rounding = std::max(rounding, render.rounding);
     const double n = static_cast<double>(count);

@@ -1,5 +1,5 @@
-// Single renders are not kept, so those that the tests read are made up with the mean and the variance that the renders
-// had: tests of means depend on nothing else of them. Which renders share random numbers is not known any more.
+// Single renders are not stored. The tests receive values with the mean and the variance of the renders instead: tests
+// of means depend on nothing else. Which renders share random numbers is unknown.
 #include "compare/moments.h"
 
 #include <Imath/half.h>
@@ -30,7 +30,7 @@ constexpr const char* format_name = "crescent moments 1";
 constexpr const char* text_attribute = "baseline.moments";
 constexpr const char* scale_attribute = "baseline.scale";
 
-/// Numbers of one kind, as one attribute of the header.
+/// Returns the name of the header attribute with numbers of one kind.
 std::string attribute_name(const char* kind, std::size_t region, std::size_t quantity) {
     return fmt::format("crescent.{}.{}.{}", kind, region, quantity);
 }
@@ -41,7 +41,7 @@ void put(Imf::Header& header, const std::string& name, const std::vector<double>
     header.insert(name, Imf::FloatVectorAttribute(out));
 }
 
-/// The numbers of an attribute; InputError unless there are so many (0: any number).
+/// Returns the numbers of an attribute. Throws InputError unless there are `count` of them (0: any number).
 std::vector<double> take(
     const std::string& path, const Imf::Header& header, const std::string& name, std::size_t count) {
     const auto* found = header.findTypedAttribute<Imf::FloatVectorAttribute>(name);
@@ -52,7 +52,7 @@ std::vector<double> take(
     return {found->value().begin(), found->value().end()};
 }
 
-/// The file, opened by OpenEXR's C++ library; its errors become InputError.
+/// Calls use(file) with the file opened by OpenEXR's C++ library, whose errors become InputErrors.
 template <class Use> void with_file(const std::string& path, const Use& use) {
     try {
         Imf::InputFile file(path.c_str(), 1);
@@ -77,7 +77,7 @@ struct Plane {
     std::vector<float> values;
 };
 
-/// The planes of one arm, rows bottom-up.
+/// Returns the planes of one arm, rows bottom-up.
 std::vector<Plane> planes_of(const ArmStats& arm, double scale) {
     const MeanFilm& film = arm.film;
     const bool grey = film.planes.size() == 1;
@@ -101,7 +101,8 @@ std::vector<Plane> planes_of(const ArmStats& arm, double scale) {
     return out;
 }
 
-/// A power of two that brings the largest standard deviation of a channel to at most 2^14, within what half holds.
+/// Returns a power of two that scales the largest standard deviation of a channel to at most 2^14, within the range of
+/// half.
 double deviation_scale(const MeanFilm& film) {
     double most = 0;
     for (std::size_t q = 1; q < film.planes.size() && film.count > 1; ++q)
@@ -166,9 +167,9 @@ Imath::V2f point(const std::array<double, 2>& p) { return {static_cast<float>(p[
 
 }  // namespace
 
-bool holds_moments(const std::string& path) {
+bool has_moments(const std::string& path) {
     const OpenFile file(path);
-    constexpr std::size_t head = 1 << 16;  // the attribute is among the first of the header
+    constexpr std::size_t head = 1 << 16;  // the attribute is among the first in the header
     std::string first(head, '\0');
     first.resize(file.read_some(0, first));
     return first.starts_with("\x76\x2f\x31\x01") && first.find(text_attribute) != std::string::npos;
@@ -274,7 +275,7 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
 
 namespace {
 
-/// The place of a region of `all` among those of the file.
+/// Returns the index of a region of `all` among those of the file.
 std::size_t region_in(
     const std::string& path, const Json& text, const RenderStats& all, const PixelSet& set, const ComparePlan& plan) {
     const Box box = set.box.value_or(all.frame());
@@ -290,7 +291,7 @@ std::size_t region_in(
             path, set.name));
 }
 
-/// `count` values with this mean and this standard deviation.
+/// Returns the k-th of `count` values with this mean and this standard deviation.
 double spread_out(double mean, double deviation, std::size_t k, std::size_t count) {
     const double n = static_cast<double>(count), at = static_cast<double>(k) - (n - 1) / 2;
     return count > 1 ? mean + deviation * at / std::sqrt(n * (n + 1) / 12) : mean;

@@ -1,5 +1,5 @@
-// Where the noise moved: log2 of the ratio of two arms' variances a tile, told apart from 1 by Welch's test of what
-// each render spreads, false discoveries controlled.
+// Finds where the noise differs: log2 of the ratio of two arms' variances per tile, tested against 0 by Welch's test of
+// the spreads of renders, with the false discovery rate controlled.
 #include "compare/noise.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ MeanInterval spread_of(const ArmStats& arm, std::size_t tile) {
     return mean_interval(each, confidence);
 }
 
-/// Tiles of a region: those of which it holds half the pixels or more.
+/// Returns the tiles of a region: those with at least half of their pixels in it.
 std::vector<std::size_t> tiles_in(const RenderStats& all, const PixelSet& set) {
     std::vector<std::size_t> inside(all.tiles.count());
     for (const std::uint32_t i : set.pixels)
@@ -48,22 +48,21 @@ NoiseResult::Histogram histogram(const RenderStats& all, const PixelSet& set, co
         if (std::isnan(noise.log2_ratio[t])) continue;
         const double at = (noise.log2_ratio[t] + noise_range) / (2 * noise_range) * noise_bins;
         const auto bin = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, noise_bins - 1.0));
-        ++(noise.distinguished[t] ? out.describe : out.rest)[bin];
+        ++(noise.distinguished[t] ? out.different : out.rest)[bin];
     }
     return out;
 }
 
 std::string sentence(const NoiseResult& n, std::size_t tested) {
     if (!tested)
-        return fmt::format(
-            "Where the noise of {} and {} differs could not be told: three renders of each are needed.", n.a, n.b);
+        return fmt::format("The noise of {} and {} was not compared: three renders of each are needed.", n.a, n.b);
     std::size_t less = 0, more = 0;
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
         if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? less : more);
     if (less + more == 0)
-        return fmt::format("The variances of {} and {} are told apart in none of {} tiles.", n.a, n.b, tested);
+        return fmt::format("No difference of the variances of {} and {} was found in {} tiles.", n.a, n.b, tested);
     return fmt::format(
-        "Of {} tiles, {} has less variance than {} in {} and more in {}; in the others they are not told apart.",
+        "Of {} tiles, {} has less variance than {} in {} and more in {}; no difference was found in the others.",
         tested, n.a, n.b, less, more);
 }
 
@@ -86,12 +85,12 @@ NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::
     return out;
 }
 
-// ---- Which renders of two arms were made with the same random numbers: those with the same number in their names, or
-// with correlated residuals (noise.h); and the pictures of their differences.
+// ---- Finds renders of two arms with the same random numbers: those with the same number in their names, or with
+// correlated residuals (noise.h); and computes the images of their differences.
 
 namespace {
 
-/// Numbers of a file's name that are not the same in all files of its arm: what tells its render.
+/// Returns the numbers in a file's name that vary within its arm and so identify the render.
 std::vector<std::uint64_t> own_numbers(const ArmStats& arm, std::size_t file) {
     std::vector<std::uint64_t> out;
     const auto& own = arm.files[file].numbers;
@@ -103,7 +102,7 @@ std::vector<std::uint64_t> own_numbers(const ArmStats& arm, std::size_t file) {
     return out.empty() ? own : out;
 }
 
-/// a less b, channel by channel.
+/// Returns a - b, channel by channel.
 Render difference(const RenderStats& all, Render a, const Render& b) {
     for (const Render* r : {&std::as_const(a), &b})
         if (r->width != all.width || r->height != all.height)
@@ -146,7 +145,7 @@ bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, co
     if (shared.size() < 3) return false;
     const double k = static_cast<double>(shared.size()), na = static_cast<double>(a.files.size()),
                  nb = static_cast<double>(b.files.size());
-    double left = 0;  // of the variance of a difference
+    double left = 0;  // share of the variance of a difference that remains
     for (const SeedPair& p : shared) left += (1 - p.correlation) / k;
     const double paired = student_quantile(1 - level / 2, k - 1), apart = student_quantile(1 - level / 2, na + nb - 2);
     return 2 * left / k * paired * paired < (1 / na + 1 / nb) * apart * apart;
@@ -174,8 +173,8 @@ PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, st
     return out;
 }
 
-// ---- Who is better, where: arms in the order of a metric, and which neighbours in that order are told apart by their
-// intervals. Ladders: one arm at several samples a pixel.
+// ---- Rankings: arms in the order of a metric, and which neighbours in that order have disjoint intervals. Ladders:
+// one sampler at several samples per pixel.
 
 namespace {
 
@@ -183,7 +182,7 @@ struct Measure {
     const char* metric;
     const char* words;
 };
-/// The first that every arm of a region has is what it is ranked by.
+/// Arms are ranked by the first of these that all arms of a region have.
 constexpr Measure at_equal_time[] = {{"unit_time", "at equal time"}};
 constexpr Measure at_equal_samples[] = {{"sample_var", "at equal samples"}, {"var", "render by render"}};
 
@@ -196,14 +195,14 @@ bool apart(const MetricValue& better, const MetricValue& worse) {
     return better.interval && worse.interval && better.interval->second < worse.interval->first;
 }
 
-std::string describe(const std::vector<Ranked>& order) {
+std::string order_text(const std::vector<Ranked>& order) {
     std::vector<std::string> out;
     for (std::size_t k = 0; k + 1 < order.size(); ++k) {
         const MetricValue &better = order[k].value, &worse = order[k + 1].value;
         if (apart(better, worse))
             out.push_back(fmt::format("{} before {} ({} times the variance)", order[k].arm, order[k + 1].arm,
                 figures(*worse.value / *better.value, 3)));
-        else out.push_back(fmt::format("{} and {} not told apart", order[k].arm, order[k + 1].arm));
+        else out.push_back(fmt::format("no difference between {} and {}", order[k].arm, order[k + 1].arm));
     }
     return fmt::format("{}", fmt::join(out, "; "));
 }
@@ -221,7 +220,7 @@ std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, 
     Ranking out;
     out.region = result.arms[0].regions[region].region, out.measure = by.words;
     for (const Ranked& r : order) out.order.push_back(r.arm);
-    out.sentence = fmt::format("In {}, {}: {}.", out.region, by.words, describe(order));
+    out.sentence = fmt::format("In {}, {}: {}.", out.region, by.words, order_text(order));
     return out;
 }
 
@@ -246,7 +245,7 @@ std::vector<Ranking> rank(const CompareResult& result) {
 
 namespace {
 
-/// "path-64" at 64 samples a pixel is a sample count of "path"; "" where a name does not end with its spp.
+/// Returns "path" for an arm "path-64" with 64 samples per pixel; "" if a name does not end with its spp.
 std::string ladder_name(const ArmResult& arm) {
     const std::string spp = arm.spp ? fmt::format("{:.0f}", *arm.spp) : "";
     if (spp.empty() || !arm.name.ends_with(spp)) return {};
@@ -256,14 +255,14 @@ std::string ladder_name(const ArmResult& arm) {
     return apart ? rest.substr(0, end + 1) : "";
 }
 
-/// Least squares of the logarithms, each sample count's interval carried along: the slope of the line is a sum of
-/// weights times logarithms, whose half-widths add in squares.
+/// Fits a line to the logarithms by least squares. Its slope is a weighted sum of the logarithms, so the half-widths of
+/// their intervals add in squares.
 MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::size_t region) {
     std::vector<double> x, y, half;
     for (const std::size_t a : ladder.arms) {
         const RegionResult& r = result.arms[a].regions[region];
         const MetricValue &rmse = r.metric("rmse"), &var = r.metric("var"), &metric = rmse.value ? rmse : var;
-        if (!metric.value || !(*metric.value > 0)) return {{}, {}, "a rung has no value"};
+        if (!metric.value || !(*metric.value > 0)) return {{}, {}, "a sample count has no value"};
         const double root = rmse.value ? 1 : 0.5;
         x.push_back(math::log(*result.arms[a].spp)), y.push_back(root * math::log(*metric.value));
         const bool known = metric.interval && metric.interval->first > 0;
@@ -271,21 +270,21 @@ MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::
     }
     const double n = static_cast<double>(x.size());
     const double middle = std::accumulate(x.begin(), x.end(), 0.0) / n;
-    double squares = 0, slope = 0, doubt = 0;
+    double squares = 0, slope = 0, half_squares = 0;
     for (const double v : x) squares += (v - middle) * (v - middle);
-    if (!(squares > 0)) return {{}, {}, "all rungs have the same samples a pixel"};
+    if (!(squares > 0)) return {{}, {}, "all arms have the same samples per pixel"};
     for (std::size_t k = 0; k < x.size(); ++k) {
         const double weight = (x[k] - middle) / squares;
-        slope += weight * y[k], doubt += weight * weight * half[k] * half[k];
+        slope += weight * y[k], half_squares += weight * weight * half[k] * half[k];
     }
-    MetricValue out{slope, {}, std::isnan(doubt) ? "a rung has no interval" : ""};
-    if (out.why.empty()) out.interval = {slope - std::sqrt(doubt), slope + std::sqrt(doubt)};
+    MetricValue out{slope, {}, std::isnan(half_squares) ? "a sample count has no interval" : ""};
+    if (out.why.empty()) out.interval = {slope - std::sqrt(half_squares), slope + std::sqrt(half_squares)};
     return out;
 }
 
 }  // namespace
 
-MetricValue sample_count_of(const RegionResult& region) {
+MetricValue ladder_metric(const RegionResult& region) {
     const MetricValue& rmse = region.metric("rmse");
     if (rmse.value) return rmse;
     MetricValue out = region.metric("var");
@@ -295,7 +294,7 @@ MetricValue sample_count_of(const RegionResult& region) {
     return out;
 }
 
-const char* sample_count_text(const RegionResult& region) {
+const char* ladder_metric_name(const RegionResult& region) {
     return region.metric("rmse").value ? "RMSE" : "standard deviation";
 }
 

@@ -1,4 +1,5 @@
-// Pairs of renders of two arms that share their random numbers, and what the pictures of their differences say.
+// Pairs of renders of two arms with shared random numbers, the statistics of their differences, and the spectrum of
+// noise.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +14,12 @@
 
 namespace crescent::inline comparison {
 
-// ---- Renders of two sides that were made with the same random numbers: their residuals, each about the mean of its
-// own side, are correlated. Such renders are best compared in pairs.
+// ---- Renders of two sides with the same random numbers: their residuals, each from the mean of its own side, are
+// correlated. Such renders are best compared in pairs.
 
-/// Pixels that are looked at, in square blocks of the image.
+/// The pixels that are sampled, in square blocks of the image.
 struct SeedSamples {
-    std::vector<std::uint32_t> pixels;  // those of one block after those of another
+    std::vector<std::uint32_t> pixels;  // block after block
     std::vector<std::size_t> ends;      // of each block in `pixels`
 };
 SeedSamples seed_samples(const RenderStats& all);
@@ -26,53 +27,54 @@ SeedSamples seed_samples(const RenderStats& all);
 /// Residuals of one render at those pixels over their standard deviation; 0 where there is none.
 std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& at);
 
-/// A render of each side, by their places, and the correlation of their noise.
+/// A render of each side, by index, and the correlation of their noise.
 struct SeedPair {
     std::size_t a = 0, b = 0;
     double correlation = 0;
 };
 
-/// The probability that independent renders of two sides are taken to share a seed.
+/// The probability with which independent renders of two sides are taken for renders with a shared seed.
 inline constexpr double shared_seed_level = 1e-3;
 
-/// Renders of the two sides with correlated residuals, by the t-test over blocks of the mean product of residuals at
-/// shared_seed_level over all pairs of renders; of these the pairs of which each has no other partner and at least half
-/// of the largest correlation. Empty where some side has one render, or its single renders
-/// are not known (moments).
+/// Returns the renders of the two sides with correlated residuals, by the t-test over blocks of the mean product of
+/// residuals at shared_seed_level over all pairs of renders; of these, the pairs without another partner and with at
+/// least half of the largest correlation. Empty if a side has one render, or if its single renders are unknown
+/// (moments).
 std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b);
 
 // ---- The spectrum of an error image: Celarek, Jakob, Wimmer & Lehtinen 2019, "Quantifying the Error of Light
 // Transport Algorithms", Computer Graphics Forum 38(4): power of the discrete Fourier transform of Y's error, averaged
 // over renders, blocks and directions. White noise has the same power at every frequency.
 
-inline constexpr int spectrum_block = 32;                 // pixels a side of a block
-inline constexpr int spectrum_bins = spectrum_block / 2;  // frequencies 1..16 cycles a block; the mean is left out
+inline constexpr int spectrum_block = 32;                 // pixels per side of a block
+inline constexpr int spectrum_bins = spectrum_block / 2;  // frequencies 1..16 cycles per block, without the mean
 
-inline constexpr int spectrum_blocks_most = 1024;  // of a box, by default; of more, every second, third, ... is taken
+inline constexpr int spectrum_blocks_most =
+    1024;  // of a box, by default; if it has more, every second, third, ... is used
 
-/// Adds the radial power of `error(i, j)` over whole blocks of the box to `power` (spectrum_bins values). The box must
-/// hold a block; smaller ones add nothing. Error units squared.
+/// Adds the radial power of `error(i, j)` over whole blocks of the box to `power` (spectrum_bins values), in error
+/// units squared. A box without a whole block adds nothing.
 void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error,
     int most_blocks = spectrum_blocks_most);
 
-/// What the noise is like, from the share of power below and above half the Nyquist frequency beside that of white
-/// noise.
+/// Classifies noise by its power below and above half the Nyquist frequency, relative to white noise.
 enum class NoiseColour { unknown, white, blue, correlated };
 NoiseColour noise_colour(const std::vector<double>& power);
 const char* to_string(NoiseColour colour);
 
-/// Pairs of renders of two arms with the same number in their names: indices into their files. Throws InputError where
-/// a render has no partner.
+/// Returns pairs of renders of two arms with the same number in their names, as indices into their files. Throws
+/// InputError if a render has no partner.
 std::vector<RenderPair> pairs_of(const ArmStats& a, const ArmStats& b);
 
-/// Whether each render of either arm is in one of the pairs.
+/// Returns whether each render of both arms is in one of the pairs.
 bool all_paired(const std::vector<SeedPair>& shared, const ArmStats& a, const ArmStats& b);
 
-/// Whether a test of pairs, three or more, at this level sees a smaller difference than one of all renders as if they
-/// were independent: pairs have less variance, and half the degrees of freedom or fewer.
+/// Returns whether a test of the pairs, three or more, detects a smaller difference at this level than a test of all
+/// renders as independent: pairs have less variance, and at most half the degrees of freedom.
 bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, const ArmStats& b, double level);
 
-/// Reads both renders of each pair twice; b = arms.size() is the reference.
+/// Reads both renders of each pair twice and returns the statistics of their differences; b = arms.size() is the
+/// reference.
 PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b,
     std::vector<RenderPair> pairs, ProgressMonitor& monitor);
 

@@ -1,4 +1,4 @@
-// POSIX files: stat() before open(), pread() after it.
+// POSIX files: stat() before open(), then pread().
 #include "compare/open_file.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace crescent::inline comparison {
 
-// ---- Lines out of the first 64 KiB of a file.
+// ---- Lines of the first 64 KiB of a file.
 
 namespace {
 
@@ -41,7 +41,7 @@ void TextHeader::check_size(long long width, long long height) const {
         fail(fmt::format("expected 1 to {} pixels a side, found {} x {}", most_pixels_a_side, width, height));
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
+std::vector<std::string_view> split_words(std::string_view line) {
     std::vector<std::string_view> words;
     for (std::size_t at = 0; at < line.size();) {
         const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
@@ -81,7 +81,7 @@ OpenFile::OpenFile(const std::string& path) : path_(path) {
         if (failed) fail(std::string("expected a render that can be read: ") + std::strerror(errno));
         if (!S_ISREG(s.st_mode)) fail(std::string("expected a render, found ") + kind_of(s.st_mode));
     };
-    check(::stat(path.c_str(), &s));  // before open(), which waits for a pipe and may start a device
+    check(::stat(path.c_str(), &s));  // before open(), which would wait for a pipe and may start a device
     file_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     if (file_ < 0) check(-1);
     try {

@@ -1,5 +1,5 @@
-// A file of a render, open: regular, read by offset, never mapped, so that a file which another program cuts short is
-// an error and not a signal. Its state says whether a later reading is of the same bytes.
+// An open file of a render: a regular file, read by offset and not mapped, so that a file which another program
+// truncates is an error, not a signal. Its state shows whether the file changed between two readings.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 
 namespace crescent::inline comparison {
 
-// ---- Rectangles of pixels as files have them: both ends inside, y from the top down (OpenEXR's windows).
+// ---- Rectangles of pixels as in files: both ends inclusive, y from the top down (OpenEXR's windows).
 
-/// More on a side is taken for a damaged header.
+/// A header with more pixels per side is considered damaged.
 inline constexpr std::int64_t most_pixels_a_side = 65536;
 
 struct PixelWindow {
@@ -31,7 +31,7 @@ inline PixelWindow intersection(const PixelWindow& a, const PixelWindow& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// Which file it is and when it was written last.
+/// Identifies the file and its last modification.
 struct FileState {
     std::uint64_t device = 0, inode = 0, size = 0;
     std::int64_t modified = 0;  // nanoseconds since 1970
@@ -40,7 +40,7 @@ struct FileState {
 
 class OpenFile {
 public:
-    /// Throws InputError for what is no regular file (a folder, pipe, socket or device), without waiting for it.
+    /// Throws InputError if it is not a regular file (a folder, pipe, socket or device), without waiting for it.
     explicit OpenFile(const std::string& path);
     ~OpenFile();
     OpenFile(const OpenFile&) = delete;
@@ -50,13 +50,14 @@ public:
     const FileState& state() const { return state_; }
     std::uint64_t size() const { return state_.size; }
 
-    /// Fills `to` from the given byte on; throws InputError where the file ends before. Many threads may read at once.
+    /// Fills `to` from byte `from` on; throws InputError if the file ends before. May be called from many threads at
+    /// once.
     void read(std::uint64_t from, std::span<char> to) const;
-    /// As much of it as there is.
+    /// Reads as many of these bytes as the file has.
     std::size_t read_some(std::uint64_t from, std::span<char> to) const;
-    /// Throws InputError where it has fewer bytes from there on; `of`: "the header promises 4 x 4 pixels".
+    /// Throws InputError if it has fewer bytes from there on; `of`: "the header promises 4 x 4 pixels".
     void expect_bytes(std::uint64_t from, std::uint64_t bytes, const std::string& of) const;
-    /// Throws InputError where it is no longer as it was when it was opened.
+    /// Throws InputError if it changed since it was opened.
     void expect_unchanged() const;
 
     [[noreturn]] void fail(const std::string& message) const;
@@ -67,32 +68,32 @@ private:
     int file_ = -1;
 };
 
-// ---- The lines of a file's header, which is text, before its pixels, which are not.
+// ---- The text header of a file, line by line, before its binary pixels.
 
 class TextHeader {
 public:
     explicit TextHeader(const OpenFile& file);
 
-    /// The next line, without its end; throws InputError where none ends within 4096 bytes.
+    /// Returns the next line, without its end; throws InputError if no line ends within 4096 bytes.
     std::string_view line();
-    /// Of the line that line() gave, with its number.
+    /// Throws InputError with the number of the line that line() returned last.
     [[noreturn]] void fail(const std::string& message) const;
-    /// The byte after it.
+    /// Returns the first byte after that line.
     std::size_t end() const { return at_; }
-    /// Throws where these are no sides of an image.
+    /// Throws InputError if these are not valid sides of an image.
     void check_size(long long width, long long height) const;
 
 private:
     const OpenFile& file_;
-    std::string text_;  // as far as a header reaches
+    std::string text_;  // the longest possible header
     std::size_t at_ = 0;
     unsigned line_ = 0;
 };
 
-/// Words between blanks.
-std::vector<std::string_view> words_of(std::string_view line);
+/// Splits at blanks.
+std::vector<std::string_view> split_words(std::string_view line);
 
-/// Whether all of the text is one number.
+/// Parses a number; returns whether all of the text is one.
 template <class T> bool parse_number(std::string_view text, T& to) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), to);
     return error == std::errc{} && end == text.data() + text.size();

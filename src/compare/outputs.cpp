@@ -72,7 +72,7 @@ Json found_json(const std::vector<Found>& found) {
 
 void put_test(Json& at, const MeanTest& t) {
     at["a"] = number(t.a), at["b"] = number(t.b);
-    if (!t.doubt.empty()) at["doubt"] = t.doubt;
+    if (!t.caveat.empty()) at["doubt"] = t.caveat;
     if (!t.why.empty()) {
         at["why"] = t.why;
         return;
@@ -137,9 +137,9 @@ Json bias_json(const BiasResult& b, int width) {
         {"non_finite", non_finite_json(b.non_finite, width)}};
     if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
     for (const MeanTest& t : b.regions) out["regions"][t.region] = region_test_json(t);
-    if (b.unless)
-        out["unless_missed"] = {{"arm", b.unless->arm}, {"brighter_than", number(b.unless->size)},
-            {"times_mean", number(b.unless->of_mean)}, {"one_in", number(b.unless->one_in)}};
+    if (b.missed_events)
+        out["unless_missed"] = {{"arm", b.missed_events->arm}, {"brighter_than", number(b.missed_events->size)},
+            {"times_mean", number(b.missed_events->of_mean)}, {"one_in", number(b.missed_events->one_in)}};
     if (b.single)
         out["single"] = {{"pixels", b.single->pixels}, {"different", b.single->different},
             {"rms", number(b.single->rms)}, {"largest", number(b.single->largest)},
@@ -158,7 +158,7 @@ Json noise_json(const NoiseResult& n) {
     Json out = {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", less}, {"more_noise", more},
         {"say", n.sentence}, {"regions", Json::object()}};
     for (const NoiseResult::Histogram& h : n.regions)
-        out["regions"][h.region] = {{"told_apart", h.describe}, {"not_told_apart", h.rest}};
+        out["regions"][h.region] = {{"told_apart", h.different}, {"not_told_apart", h.rest}};
     return out;
 }
 
@@ -264,7 +264,7 @@ std::string compare_summary(
         if (sentence != result.sentence) out += sentence + "\n";
     if (!result.rankings.empty()) out += "\n";
     for (const Ranking& r : result.rankings) out += r.sentence + "\n";
-    return out + "\n" + out_dir + "/report.html tells the rest.\n";
+    return out + "\n" + out_dir + "/report.html has all results.\n";
 }
 
 }  // namespace crescent::inline comparison

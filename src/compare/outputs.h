@@ -16,17 +16,17 @@
 
 namespace crescent::inline comparison {
 
-// ---- The two sides of a test of the means of one quantity: an arm, and another arm or the reference; what is known of
-// their noise. Where renders are paired, it is that of their differences.
+// ---- The two sides of a test of the means of one quantity: an arm, and another arm or the reference; and their noise.
+// If renders are paired, it is the noise of their differences.
 
-/// Mean and standard error over renders; without the ends of an interval, whose quantile takes longer than the rest.
+/// Returns mean and standard error over renders, without an interval, whose quantile takes most of the time.
 MeanInterval mean_and_error(std::span<const double> values);
 
-/// Noise of a set of pixels: means over it of the variance of a pixel, of one render.
+/// The noise of a set of pixels: means over it of the variance of a pixel of one render.
 struct SetVariance {
     double pixels = 0;
-    double a = 0, b = 0;  // NaN: not known; in pairs a is that of the difference
-    double own = 0;       // of a and b by themselves, in pairs too: it spreads what files round
+    double a = 0, b = 0;  // NaN: unknown; in pairs a is that of the difference
+    double own = 0;       // of a and b without pairing: determines how rounding errors average out
     double mean_a = 0, mean_b = 0;
 };
 
@@ -38,57 +38,59 @@ struct BiasPair {
     bool in_pairs() const { return differences != nullptr; }
     double mean_a(std::size_t i) const { return a.film.of(quantity).mean[i]; }
     double mean_b(std::size_t i) const { return b.film.of(quantity).mean[i]; }
-    /// The means of each render of a side over a region, or over a tile; of paired ones in the order of the pairs.
+    /// Returns the means of each render of a side over a region or tile, in the order of the pairs if there are any.
     std::vector<double> region_means(const ArmStats& side, std::size_t region) const;
     std::vector<double> tile_means(const ArmStats& side, std::size_t tile) const;
-    /// The side whose mean is not to be tested, its errors' tail being so heavy that one of them decides it; "": none.
+    /// Returns the side whose mean is not tested because its errors' tail is so heavy that one of them decides it; "":
+    /// none.
     std::string heavy_in(std::size_t region) const;
-    /// One pixel of one render is half of a tile's spread.
+    /// Returns whether one pixel of one render has half of a tile's spread.
     bool lone_pixel_in(std::size_t tile) const;
 
-    /// `next(i)` is called for every pixel of the set by the caller's loop; see noise_of().
+    /// Returns the noise of a set of pixels.
     SetVariance noise_of(const Box& box) const;
     SetVariance noise_of(const PixelSet& set) const;
 
-    /// Welch's test of a mean over a set, `va` and `vb` being the mean of each render; in pairs where there are some.
-    /// A spread over few renders may be small by chance: with `floored` it is never taken to be less than what the
-    /// pixels' own spread makes of it.
+    /// Welch's test of a mean over a set, where `va` and `vb` are the means of each render; the paired test if there
+    /// are pairs. The spread over few renders may be small by chance: with `floored` it is at least the one that
+    /// follows from the spread of the pixels.
     Welch test(
         const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const;
 
-    /// The difference of a mean that events as large as the rarest seen would make up, on the side that is lower, where
-    /// they are so rare that its renders met none with a probability of `level`. Below it a t-test cannot see.
-    double unseen(double difference, double pixels, double level) const;
-    /// The events that would be needed for a difference of the means of so many pixels, and missed with a probability
-    /// of `level`; nothing where the darker side is one file.
-    std::optional<MissedEvents> needed(const Found& place, double pixels, double level) const;
-    /// The larger of that and of what the files' rounding makes of two means: all of it where there is no noise to
-    /// spread it, less and less under noise of this variance a pixel. In pairs, where noise cancels, also what the
-    /// renderer's own arithmetic makes of one sum in another order.
-    double blind(double mean_a, double mean_b, double pixels, double variance, double level) const;
+    /// Returns the difference of a mean that events as large as the rarest found would cause on the darker side if its
+    /// renders contain none with a probability of `level`. A t-test cannot detect smaller differences.
+    double missable_difference(double difference, double pixels, double level) const;
+    /// Returns the events that would explain a difference of the means of this many pixels and be in no render with a
+    /// probability of `level`; empty if the darker side is one file.
+    std::optional<MissedEvents> events_for(const Found& place, double pixels, double level) const;
+    /// Returns the larger of that difference and of the effect of the files' rounding on two means: all of it without
+    /// noise, less with more noise of this variance per pixel. In pairs, whose noise cancels, also the effect of the
+    /// renderer's own arithmetic with sums in another order.
+    double undetectable_difference(double mean_a, double mean_b, double pixels, double variance, double level) const;
 
     const RenderStats& all;
     const ArmStats &a, &b;
     const ArmResult& arm;
-    const ArmResult* other = nullptr;  // none: the reference
-    double brightest = 0;              // the most that a pixel of one render can be; 0: not known
+    const ArmResult* other = nullptr;  // null: the reference
+    double brightest = 0;              // the largest possible value of a pixel of one render; 0: unknown
     bool referred = false, dependent = false;
     bool count_pixel_p = true;   // see ComparePlan
-    double low_frequencies = 1;  // of the noise's power, over that of its high ones
-    std::size_t quantity = 0;    // see quantities.h
+    double low_frequencies = 1;  // power of the noise at low frequencies over that at high ones
+    std::size_t quantity = 0;    // see metrics.h
     const std::vector<RenderPair>* pairs = nullptr;
-    const ArmStats* differences = nullptr;            // of the pairs; none: the renders are independent
+    const ArmStats* differences = nullptr;            // of the pairs; null: the renders are independent
     std::vector<double> tile_a, tile_b, tile_paired;  // variance of a pixel of one render, mean over a tile
 
 private:
     std::vector<double> paired_of(const ArmStats& side, std::vector<double> each) const;
-    /// The largest deviation that events of the side that is darker made, and over how many renders.
+    /// Returns the largest deviation by events on the brighter side.
     double rare_event(double difference) const;
     double renders_of(const ArmStats& side) const;
 };
 
-/// The reference's own squared error a pixel where it is one file that does not say it: what the mean of an arm less
-/// the reference varies from one pixel to the next, less the arm's own share; a bias is taken to be smooth.
+/// Estimates the squared error per pixel of a reference that is one file and does not state it: the variation between
+/// neighbouring pixels of an arm's mean minus the reference, without the arm's own share. A bias is assumed to be
+/// smooth.
 double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set);
 
 }  // namespace crescent::inline comparison
@@ -97,48 +99,48 @@ double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& se
 
 namespace crescent::plates {
 
-// ---- What the plates of a comparison are put together from: header and caption, blocks of pixels, colour bars.
+// ---- Parts of the plates of a comparison: header and caption, blocks of pixels, colour bars.
 
 inline constexpr double bar_room = 116;
 
 /// The header of a sheet; finish() sets caption and footer.
 void header(Canvas& c, bool backend, const std::string& label);
 void finish(Canvas& c, const std::string& caption, const std::string& note);
-/// The same, and what was drawn.
+/// The same; returns the picture.
 Picture finished(Canvas& c, const std::string& caption, const std::string& note);
 
-/// Blue below, orange above, towards the ground in the middle; t in [-1, 1], NaN: the ground.
+/// Blue for t < 0, orange for t > 0, the ground's colour in the middle; t in [-1, 1], NaN: the ground.
 Srgb8 diverging(double t, Theme theme);
 
-/// value(x, y) of the box through diverging(); where it is reduced, means of what a pixel covers.
+/// Draws value(x, y) of the box through diverging(); if it is reduced, the mean over the pixels of each cell.
 Block diverging_block(const Box& box, const Fit& fit, Theme theme, const std::function<double(int, int)>& value);
-/// colour(x, y) of the box, the nearest pixel's.
+/// Draws colour(x, y) of the nearest pixel of the box.
 Block nearest_block(const Box& box, const Fit& fit, const std::function<Srgb8(int, int)>& colour);
 
-/// Painted at the top of the slot, in its middle, with a frame; where it came to stand.
+/// Paints the block at the top centre of the slot, with a frame, and returns its place.
 Rect framed(Canvas& c, const Block& block, const Rect& slot);
 
-using Ticks = std::vector<std::pair<double, std::string>>;  // share of the bar, words
-/// A vertical bar of colour(t), t from 0 below to 1 above.
+using Ticks = std::vector<std::pair<double, std::string>>;  // share of the bar, label
+/// Draws a vertical bar of colour(t), t from 0 at the bottom to 1 at the top.
 void bar(Canvas& c, const Rect& at, const std::function<Srgb8(double)>& colour, const Ticks& ticks);
-/// diverging() over such a bar.
+/// Returns diverging() as colours of a bar.
 std::function<Srgb8(double)> signed_colours(Theme theme);
 
 }  // namespace crescent::plates
 
 namespace crescent::inline comparison {
 
-/// renders, errors, ladders, bias-A-B, noise-A-B: those that there is something to show for. Throws OutputError without
-/// the font.
+/// Returns the plates renders, errors, ladders, bias-A-B and noise-A-B that have data. Throws OutputError without the
+/// font.
 std::map<std::string, Picture> compare_plates(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result);
 
 struct BiasPair;
-/// Signed difference of two means, tiles and pixels in which it is told, and the ratio of two variances.
+/// The signed difference of two means; the tiles and pixels in which it is significant; the ratio of two variances.
 Picture difference_plate(const BiasPair& sides, const std::string& a, const std::string& b, Theme theme);
 Picture bias_plate(const BiasPair& sides, const BiasResult& found, Theme theme);
 Picture noise_plate(const RenderStats& all, const NoiseResult& noise, Theme theme);
-/// Needs a ladder.
+/// Requires a ladder.
 Picture ladders_plate(const CompareResult& result, Theme theme);
 std::string ladders_svg(const CompareResult& result, Theme theme);
 
@@ -146,7 +148,7 @@ std::string ladders_svg(const CompareResult& result, Theme theme);
 
 namespace crescent::inline comparison {
 
-// ---- The sections of a comparison's page, as HTML; "" where there is nothing to say.
+// ---- The sections of a comparison's page, as HTML; "" if there is no data.
 
 /// The tables of the page: every metric by arm and region, with its interval.
 std::string numbers_section(const ComparePlan& plan, const RenderStats& all, const CompareResult& result);
@@ -157,15 +159,15 @@ std::string ladders_section(const CompareResult& result);
 std::string spectra_section(const RenderStats& all, const CompareResult& result);
 std::string files_section(const RenderStats& all, const CompareResult& result);
 
-/// docs/compare.schema.json says what stands in it; equal inputs give equal bytes.
+/// docs/compare.schema.json describes it; equal inputs give equal bytes.
 std::string compare_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& provenance);
-/// One metric a row, RFC 4180.
+/// One metric per row, RFC 4180.
 std::string compare_csv(const CompareResult& result);
 std::string compare_junit(const ComparePlan& plan, const CompareResult& result);
 std::string compare_summary(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const std::string& out_dir);
-/// One page that opens offline; `plates` are PNG bytes by name.
+/// One page that works offline; `pictures` are PNG bytes by name.
 std::string compare_html(const ComparePlan& plan, const RenderStats& all, const CompareResult& result,
     const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates);
 

@@ -1,4 +1,4 @@
-// report.html of a comparison: what was found, the numbers with their doubt, the pictures, the spectra, the files.
+// report.html of a comparison: the findings, the metrics with their intervals, the pictures, the spectra, the files.
 #include "compare/outputs.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::string lead(const CompareResult& result) {
     return out + (found.empty() ? "" : html::list(found));
 }
 
-/// All but the ladders, whose chart stands in a section of its own.
+/// All plates except the ladders, which are charts in their own section.
 std::string pictures(const std::map<std::string, std::vector<unsigned char>>& plates) {
     std::string out;
     for (const auto& [name, png] : plates)
@@ -75,7 +75,7 @@ std::string compare_html(const ComparePlan& plan, const RenderStats& all, const 
             {"assertions", "Assertions", assertions(result)}, {"files", "What was read", files_section(all, result)}});
 }
 
-// ---- The sections of a comparison's page about means and noise: whether arms agree, where the noise moved, its
+// ---- The sections of a comparison's page about means and noise: whether arms agree, where the noise differs, its
 // spectra.
 
 namespace {
@@ -89,20 +89,20 @@ std::vector<html::Cell> row_of(const std::string& name, const MeanTest& t, const
         words(verdict)};
 }
 
-/// Y of each region; below it the channels, where one of them differs.
+/// Y of each region; below it the channels if one of them differs.
 std::string region_table(const BiasResult& b) {
     html::Table table(fmt::format("{} and {}{}", escape(b.a), escape(b.b), b.paired ? ", in pairs" : ""),
-        {words("region"), {"mean <i>Y</i>", true}, {"of the other", true}, {"<i>p</i>", true}, {"smallest seen", true},
+        {words("region"), {"mean <i>Y</i>", true}, {"of the other", true}, {"<i>p</i>", true}, {"smallest found", true},
             words("verdict")});
     for (const MeanTest& t : b.regions) {
         const std::vector<std::string> in = t.differs_in();
         const bool channel = std::any_of(t.channels.begin(), t.channels.end(), [](auto& c) { return c.differs; });
         table.row(row_of(t.region, t,
-            !in.empty()            ? fmt::format("<b class=\"bad\">differs in {}</b>", html::join(in))
-                : !t.why.empty()   ? escape(t.why)
-                : !t.doubt.empty() ? escape(t.doubt)
-                : b.identical      ? "identical"
-                                   : "no difference found"));
+            !in.empty()             ? fmt::format("<b class=\"bad\">differs in {}</b>", html::join(in))
+                : !t.why.empty()    ? escape(t.why)
+                : !t.caveat.empty() ? escape(t.caveat)
+                : b.identical       ? "identical"
+                                    : "no difference found"));
         for (const MeanTest& c : t.channels)
             if (channel)
                 table.row(row_of(
@@ -111,7 +111,7 @@ std::string region_table(const BiasResult& b) {
     return table.str();
 }
 
-/// The places that differ by the quantity that differs the most in each: "Y 3, R 12".
+/// Returns the number of places that differ, by the quantity that differs the most in each: "Y 3, R 12".
 std::string most_in(const std::vector<std::uint64_t>& by) {
     std::vector<std::string> out;
     for (std::size_t q = 0; q < by.size(); ++q)
@@ -133,7 +133,7 @@ std::string places(const BiasResult& b) {
     return out.empty() ? "" : html::p(out);
 }
 
-/// What holds of every pair, once.
+/// The method of all pairs, stated once.
 std::string method(const CompareResult& result) {
     std::string out =
         "Welch’s test over renders, of the mean <i>Y</i>, and of R, G and B where renders are in colour, of each "
@@ -142,8 +142,9 @@ std::string method(const CompareResult& result) {
         "controlled after Holm (regions) and Benjamini and Hochberg (tiles, pixels). Values that are not finite on one "
         "side alone are a difference. A tile is left out where one "
         "pixel "
-        "of one render carries half of its spread. A difference that rare events which no render met could make up "
-        "counts as none. <i>Smallest seen</i>: the difference that would have been found nine times out of ten.";
+        "of one render carries half of its spread. A difference that rare events in none of the renders could explain "
+        "is not "
+        "reported. <i>Smallest found</i>: the difference that would have been found with a probability of 90 %.";
     if (!result.reference_error_from.empty())
         out += " The reference’s own error: " + escape(result.reference_error_from) + ".";
     return html::p(out);
@@ -153,14 +154,14 @@ double sum_of(const std::vector<std::uint64_t>& counts) {
     return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
 }
 
-/// Counts in percent of `total`.
+/// Returns counts in percent of `total`.
 std::vector<double> percents(const std::vector<std::uint64_t>& counts, double total) {
     std::vector<double> out;
     for (const std::uint64_t count : counts) out.push_back(100 * static_cast<double>(count) / total);
     return out;
 }
 
-/// Steps: `counts` over equal bins from low to high; a second series stands on the first.
+/// A step chart of counts over equal bins from low to high; the second series is stacked on the first.
 std::string histogram(
     const std::vector<double>& below, const std::vector<double>& above, Axis x, const char* what, const char* title) {
     std::vector<double> edges, zero, low, high, all{0};
@@ -201,14 +202,14 @@ std::string noise_section(const CompareResult& result) {
     for (const NoiseResult& n : result.noise) {
         out += html::p(escape(n.sentence));
         for (const NoiseResult::Histogram& h : n.regions) {
-            const double tiles = sum_of(h.describe) + sum_of(h.rest);
+            const double tiles = sum_of(h.different) + sum_of(h.rest);
             if (tiles == 0) continue;
             const Axis x{-noise_range, noise_range, false,
                 fmt::format("log2 of the variance of {} over that of {}", n.a, n.b), {-4, -2, 0, 2, 4}};
             out += fmt::format(
-                "<figure class=\"narrow\">{}<figcaption>Tiles of {}: coloured where the ratio is told apart from 1, "
-                "grey where not; the ends hold what lies beyond.</figcaption></figure>\n",
-                histogram(percents(h.describe, tiles), percents(h.rest, tiles), x, "% of tiles",
+                "<figure class=\"narrow\">{}<figcaption>Tiles of {}: coloured if the ratio differs from 1, grey "
+                "if no difference was found; the outermost bins include all beyond.</figcaption></figure>\n",
+                histogram(percents(h.different, tiles), percents(h.rest, tiles), x, "% of tiles",
                     "Histogram of the variance ratio"),
                 escape(h.region));
         }
@@ -244,7 +245,7 @@ std::string spectra_section(const RenderStats& all, const CompareResult& result)
     return out;
 }
 
-// ---- The sections of a comparison's page that hold numbers: metrics with their doubt, who is better, ladders, files.
+// ---- The sections of a comparison's page with numbers: metrics with their intervals, rankings, ladders, files.
 
 namespace {
 
@@ -269,7 +270,7 @@ const char* title_of(const std::string& metric) {
     return it == titles.end() ? "" : it->second;
 }
 
-/// Metrics that some arm has; of the others, why not.
+/// Returns the metrics that some arm has; adds the others with their reasons to `not_measured`.
 std::vector<std::string> measured(
     const CompareResult& result, const std::string& region, std::vector<std::string>& not_measured) {
     std::vector<std::string> out;
@@ -306,11 +307,10 @@ std::string remarks(const PixelSet& set, const CompareResult& result) {
             out += html::p(fmt::format("{} in {}: {}; the largest squared error is {} of their sum. {}",
                 escape(arm.name), escape(set.name), html::heavy_tail(), percent(r.largest_share),
                 r.renders_needed
-                    ? fmt::format(
-                          "From about {:.0f} renders on it would be a twentieth, and an interval could be said.",
+                    ? fmt::format("With about {:.0f} renders it would be a twentieth, and an interval could be given.",
                           *r.renders_needed)
-                    : "From how many renders on an interval could be said is not known: the mean of such errors "
-                      "does not settle over those that are here."));
+                    : "How many renders an interval needs is unknown: the mean of such errors does not "
+                      "converge over these renders."));
         if (r.stated_ratio)
             out += html::p(fmt::format("{} in {}: the renderer’s own variance is {} times that over renders.",
                 escape(arm.name), escape(set.name), html::value(figures(*r.stated_ratio, 3))));
@@ -324,9 +324,9 @@ std::string numbers_section(const ComparePlan& plan, const RenderStats& all, con
     std::string out = fmt::format(
         "<p>Each number is of one render, the mean over the arm’s renders; below it the 95 % interval of that mean "
         "(Student’s t "
-        "over renders; bias² by the jackknife). <i>Heavy tail</i> stands where a few pixels decide the mean of "
+        "over renders; bias² by the jackknife). <i>Heavy tail</i> means that a few pixels decide the mean of "
         "squares, so that "
-        "no interval would mean anything. Bias² is the MSE without the variance; noise may bring it below 0. Of relMSE "
+        "no interval is meaningful. Bias² is the MSE without the variance; noise may bring it below 0. Of relMSE "
         "and MAPE {} "
         "was trimmed. FLIP is the one measure of pictures, after a tone map.</p>\n",
         plan.trim > 0 ? percent(plan.trim) + " of the pixels, the largest," : "nothing");
@@ -351,12 +351,12 @@ std::string ladders_section(const CompareResult& result) {
     if (result.ladders.empty()) return out;
     for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r) {
         const std::string& region = result.arms[0].regions[r].region;
-        const char* what = sample_count_text(result.arms[0].regions[r]);
+        const char* what = ladder_metric_name(result.arms[0].regions[r]);
         std::vector<double> xs, ys;
         for (const SppLadder& l : result.ladders)
             for (const std::size_t a : l.arms) {
                 xs.push_back(*result.arms[a].spp);
-                const MetricValue m = sample_count_of(result.arms[a].regions[r]);
+                const MetricValue m = ladder_metric(result.arms[a].regions[r]);
                 if (m.value) ys.push_back(*m.value);
                 if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
             }
@@ -367,7 +367,7 @@ std::string ladders_section(const CompareResult& result) {
             const std::string colour = fmt::format("c{}", k % 6);
             std::vector<Point> line;
             for (const std::size_t a : l.arms) {
-                const MetricValue m = sample_count_of(result.arms[a].regions[r]);
+                const MetricValue m = ladder_metric(result.arms[a].regions[r]);
                 if (!m.value) continue;
                 line.push_back({*result.arms[a].spp, *m.value});
                 if (m.interval) chart.bar(*result.arms[a].spp, m.interval->first, m.interval->second, colour);

@@ -1,4 +1,4 @@
-// First pass: every render is read, checked against the others and added to its arm's mean.
+// First pass: reads every render, checks it against the others and adds it to its arm's mean.
 #include "compare/passes.h"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ Box Tiles::box(std::size_t tile, int width, int height) const {
 
 namespace {
 
-/// "seed%04d.exr" as a pattern: any digits stand where %d, %4d or %04d does. The text before and after is kept as it
-/// is.
+/// Splits a pattern such as "seed%04d.exr", in which %d, %4d or %04d matches any digits. The text before and after is
+/// literal.
 struct Digits {
     std::string before, after;
 };
@@ -61,7 +61,7 @@ std::vector<std::string> matching(const std::string& pattern) {
     if (!digits) return globbed(pattern);
     std::vector<std::string> paths = globbed(digits->before + "*" + digits->after);
     if ((digits->before + digits->after).find_first_of("*?[") != std::string::npos) return paths;
-    std::erase_if(paths, [&](const std::string& path) {  // what stands for the * is digits alone
+    std::erase_if(paths, [&](const std::string& path) {  // the * matches digits only
         const std::size_t from = digits->before.size(), to = path.size() - digits->after.size();
         return to <= from || path.find_first_not_of("0123456789", from) < to;
     });
@@ -86,7 +86,8 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, const 
 namespace {
 
 std::vector<std::uint64_t> numbers_in(const std::string& path) {
-    const std::string name = std::filesystem::path(path).replace_extension().string();  // folders may tell seeds
+    // With the folders, whose names may contain seeds.
+    const std::string name = std::filesystem::path(path).replace_extension().string();
     std::vector<std::uint64_t> out;
     for (std::size_t i = 0; i < name.size();) {
         if (name[i] < '0' || name[i] > '9') {
@@ -114,14 +115,14 @@ void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const s
     const std::string& name, const std::optional<double>& spp) {
     each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
         fit(render);
-        look(render, to);
+        check_pixels(render, to);
         RenderFile file{render.file, fmt::format("{:016x}", render.hash), render.layer, render.variance_channels,
             render.sample_channel, render.spp, render.seconds, numbers_in(render.file)};
-        known(file, name);
+        check_copy(file, name);
         const std::optional<double>& samples = spp ? spp : render.spp;
         if (render.per_sample && !samples)
             warnings_.add(render.file,
-                fmt::format("{} is the variance of one sample, and nothing says how many there are: give --spp",
+                fmt::format("{} is the variance of one sample, and their number is not stated: give --spp",
                     render.variance_channels));
         to.film.add(render, !render.per_sample ? 1 : samples ? 1 / *samples : 0);
         to.files.push_back(std::move(file));
@@ -143,7 +144,7 @@ void FirstPass::fit(const Render& render) {
     ensure(render.width == all_.width && render.height == all_.height, "renders of a view have one size");
 }
 
-void FirstPass::look(const Render& render, ArmStats& to) {
+void FirstPass::check_pixels(const Render& render, ArmStats& to) {
     std::uint64_t bad = 0, negative = 0;
     for (std::size_t i = 0; i < render.size(); ++i) {
         const bool finite = std::isfinite(render.r[i]) && std::isfinite(render.g[i]) && std::isfinite(render.b[i]);
@@ -154,14 +155,14 @@ void FirstPass::look(const Render& render, ArmStats& to) {
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
     }
     for (const std::string& note : render.notes) warnings_.add(render.file, note);
-    if (bad) warnings_.add(render.file, "not finite: left out of every meter", bad);
+    if (bad) warnings_.add(render.file, "not finite: left out of every metric", bad);
     if (negative) warnings_.add(render.file, "with a negative channel", negative);
     if (render.size() > 1 && bad < render.size() && all_equal(render))
         warnings_.add(render.file, "all pixels are equal");
 }
 
-void FirstPass::known(const RenderFile& file, const std::string& arm) {
-    const auto [before, fresh] = seen_.emplace(file.hash, std::pair{file.path, arm});
+void FirstPass::check_copy(const RenderFile& file, const std::string& arm) {
+    const auto [before, fresh] = paths_by_hash_.emplace(file.hash, std::pair{file.path, arm});
     if (fresh) return;
     const auto& [path, other] = before->second;
     if (other == arm)
@@ -171,19 +172,19 @@ void FirstPass::known(const RenderFile& file, const std::string& arm) {
         fmt::format("the same pixels as {}", other));
 }
 
-// ---- Second pass: with means known, what each render says of each region and tile. Sums run over chunks of pixels and
-// rows of tiles, which are merged in their order: equal on any number of threads.
+// ---- Second pass: with the means known, the statistics of each render in each region and tile. Sums run over chunks
+// of pixels and rows of tiles, which are merged in their order: equal results on any number of threads.
 
 namespace {
 
-constexpr double epsilon = 0.01;         // of relMSE and MAPE, as Rousselle et al. 2011 have it
+constexpr double epsilon = 0.01;         // of relMSE and MAPE, as in Rousselle et al. 2011
 constexpr std::size_t chunk = 1u << 15;  // pixels
 
-/// The largest values of many, falling.
+/// Keeps the largest of many values.
 class Largest {
 public:
     explicit Largest(std::size_t keep) : keep_(keep) {}
-    /// What is not above this would not be kept.
+    /// A value that is not larger is not kept.
     float least() const { return heap_.size() < keep_ ? -1 : keep_ ? heap_.front() : HUGE_VALF; }
     void add(float x) {
         if (!(x > least())) return;
@@ -202,7 +203,7 @@ private:
     std::vector<float> heap_;
 };
 
-/// Mean of all but the largest `trim` of the values.
+/// Returns the mean of all but the largest `trim` of the values.
 double trimmed_mean(std::vector<float>& values, double trim) {
     const auto keep = values.size() - static_cast<std::size_t>(trim * static_cast<double>(values.size()));
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(keep), values.end());
@@ -217,13 +218,13 @@ struct Part {
     std::vector<float> large;
 };
 
-/// The same of one quantity; squared deviations from the mean are kept.
+/// The same for one quantity; squared deviations from the mean are kept.
 struct QuantityPart {
     double sum = 0;
     std::vector<float> large;
 };
 
-/// A pixel's deviations from its mean over renders, the largest of either sign.
+/// The largest deviation of a pixel from its mean over renders, of either sign.
 struct Outliers {
     double rise = 0, fall = 0;
 };
@@ -307,7 +308,8 @@ private:
         out.relmse = trimmed_mean(relative, plan_.trim), out.mape = trimmed_mean(absolute, plan_.trim);
     }
 
-    /// The error's spectrum: about the mean of the renders, which leaves (K - 1)/K of it, or about the reference.
+    /// The spectrum of the error: about the mean of the renders, rescaled because this mean removes 1/K of it, or about
+    /// the reference.
     void spectrum(const PixelSet& set, const ArmStats& arm, std::vector<double>& power) const {
         const MeanFilm* about = arm.film.count > 1 ? &arm.film : reference_;
         if (!set.box || !about) return;
@@ -323,8 +325,8 @@ private:
             plan_.spectrum_blocks);
     }
 
-    /// Means and largest squared deviations of all quantities in a region; the quantities go through the pixels
-    /// together, which hides the latency of their sums.
+    /// Returns the means of all quantities in a region and collects their largest squared deviations; all quantities
+    /// are summed in one loop over the pixels, which hides the latency of the additions.
     template <std::size_t count>
     std::array<double, count> region(const std::array<std::span<const float>, count>& values, const PixelSet& set,
         const MeanFilm& film, const std::array<Largest*, count>& largest) const {
@@ -354,8 +356,8 @@ private:
         return out;
     }
 
-    /// A pixel's deviation that would be an outlier among its K (Grubbs 1950) is a rare event: noise that one sample in
-    /// many brings. The largest of them bounds what renders that met none may have missed.
+    /// A deviation of a pixel that is an outlier among its K values (Grubbs 1950) counts as a rare event: noise from
+    /// one sample in many. The largest of them bounds the events that other renders may have missed.
     TileReading tile(
         std::span<const float> values, const Box& box, const MeanPlane& plane, double lone, Outliers& rare) const {
         TileReading out;

@@ -1,4 +1,4 @@
-// Two passes over the renders: the first finds the size, the finite pixels and the means, the second the differences.
+// Two passes over the renders: the first finds the size, the finite pixels and the means, the second the deviations.
 #pragma once
 
 #include "compare/file_warnings.h"
@@ -6,40 +6,39 @@
 
 namespace crescent::inline comparison {
 
-// ---- What the first pass keeps while it reads: the size that all must have, and which pixels it has seen in which
-// file.
+// ---- The first pass: the size that all renders must have, and which pixels are in which file.
 
 class FirstPass {
 public:
     FirstPass(RenderStats& all, ProgressMonitor& monitor) : all_(all), monitor_(monitor) {}
-    /// Reads every file of an arm into `to`; `spp`: samples a pixel, where the plan says them. Throws InputError at the
-    /// first that does not fit.
+    /// Reads every file of an arm into `to`; `spp`: samples per pixel, if the plan states them. Throws InputError at
+    /// the first file that does not fit.
     void arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
         const std::optional<double>& spp);
-    /// Takes the means and spreads of an arm from its file of moments; it must be the first arm.
+    /// Reads the means and variances of an arm from its file of moments; it must be the first arm.
     void moments(ArmStats& to, const std::string& path);
-    /// Of all files so far, into the readings.
+    /// Stores the warnings about all files so far in the RenderStats.
     void report_warnings() { all_.warnings = warnings_.lines(); }
 
 private:
     void fit(const Render& render);
-    void look(const Render& render, ArmStats& to);
-    void known(const RenderFile& file, const std::string& arm);
+    void check_pixels(const Render& render, ArmStats& to);
+    void check_copy(const RenderFile& file, const std::string& arm);
 
     RenderStats& all_;
     ProgressMonitor& monitor_;
     FileWarnings warnings_;
-    std::map<std::string, std::pair<std::string, std::string>> seen_;  // hash -> path, arm
+    std::map<std::string, std::pair<std::string, std::string>> paths_by_hash_;  // hash -> path, arm
 };
 
-// ---- Renders one after another, and what the second walk through them reads.
+// ---- Renders one after another, and the second pass over them.
 
-/// Reads each file in turn and hands it on, the next one being read meanwhile: two renders in memory at a time.
+/// Reads the files in turn and calls use(render) for each while the next one is read: two renders in memory at a time.
 void each_render(const RenderSource& source, const std::vector<std::string>& paths, const std::string& layer,
     ProgressMonitor& monitor, const std::function<void(const Render&)>& use);
 
-/// What each render of an arm (or the reference) says of each region and tile; its means must be known. Errors are
-/// measured where a `reference` is given.
+/// Adds the statistics of each render of an arm (or of the reference) in each region and tile; its means must be known.
+/// Errors are measured if a `reference` is given.
 void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSource& source, ArmStats& arm,
     const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor);
 

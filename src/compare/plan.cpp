@@ -1,5 +1,5 @@
-// A compare file, flags, or both -> ComparePlan. Flags are put into the file's tree before it is read, so that they
-// meet the same checks as the file.
+// A ComparePlan from a compare file, flags, or both. Flags are inserted into the file's tree before it is parsed, so
+// that the same checks apply to both.
 #include "compare/plan.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ void move_to(Node& node, const SourceLocation& at) {
     for (Member& member : node.members) member.at = at, move_to(member.value, at);
 }
 
-/// The value of a flag: TOML where it says so and is some, else text as it is; the reader says what was expected.
+/// Returns the value of a flag: parsed as TOML if the flag has it and it is valid, else as text, for which the parser
+/// reports what was expected.
 Node value_of(const CompareFlag& flag, const SourceLocation& at) {
     if (!flag.toml) return text_node(flag.value, at);
     try {
@@ -48,7 +49,7 @@ Node& child(Node& parent, const std::string& key, const SourceLocation& at) {
     return parent.members.back().value;
 }
 
-/// Lists grow with every flag that names them ("--arm a=x.exr --arm a=y.exr"); all else is replaced.
+/// Flags extend lists ("--arm a=x.exr --arm a=y.exr") and replace all other values.
 void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     const SourceLocation at{flag.typed, 0, 0};
     Node* node = &root;
@@ -67,7 +68,7 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     to.members.push_back({"", at, std::move(value)});
 }
 
-/// Paths of a file are read from its own folder; those of flags from where the command runs.
+/// Paths in a file are relative to its folder; those of flags to the current folder.
 void from_folder(Node* node, const std::filesystem::path& folder) {
     if (!node) return;
     if (node->kind == Node::Kind::text && !node->text.empty()) node->text = (folder / node->text).string();
@@ -162,8 +163,7 @@ std::vector<std::string> compare_arms(const std::string& file) {
     return out;
 }
 
-// ---- The table of a compare file: the same machinery as an experiment's, so keys, places, hints and manual come with
-// it.
+// ---- The table of a compare file: the same kind as an experiment's, with keys, places in the file, hints and manual.
 
 namespace {
 
@@ -179,9 +179,9 @@ Section arms() {
              to<&RenderArm::files>},
             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
                 to<&RenderArm::layer>},
-            {"spp", Type::number, positive, "samples/pixel", optional, "what the files say",
+            {"spp", Type::number, positive, "samples/pixel", optional, "what the files state",
                 "Samples a pixel of one render.", to<&RenderArm::spp>},
-            {"seconds", Type::number, positive, "s", optional, "what the files say", "What one render took.",
+            {"seconds", Type::number, positive, "s", optional, "what the files state", "What one render took.",
                 to<&RenderArm::seconds>}},
         {}};
 }
@@ -235,10 +235,10 @@ const Section& compare_schema() {
             {"theme", Type::word, none, "", defaulted, "\"dark\"", "Ground and inks of plates.",
                 to<&ComparePlan::theme>, {"dark", "light"}},
             {"alpha", Type::number, {1e-9, 0.5}, "", defaulted, "0.01",
-                "Chance that a call tells of a difference where there is none.", to<&ComparePlan::alpha>},
+                "Probability that a call reports a difference if there is none.", to<&ComparePlan::alpha>},
             {"brightest", Type::number, positive, "", optional, "not known",
-                "The most that Y of a pixel of one render can be, where something bounds it, such as a clamp: a "
-                "difference that rarer events up to it could make is not called one.",
+                "The largest possible Y of a pixel of one render, if it is bounded, for example by a clamp. A "
+                "difference that rarer events up to it could explain is not reported.",
                 to<&ComparePlan::brightest>},
             {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
                 "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&ComparePlan::firefly_k>},
@@ -252,7 +252,7 @@ const Section& compare_schema() {
             {"expect", Type::word, none, "", defaulted, "\"nothing\"",
                 "same: a difference between arms fails the call.", to<&ComparePlan::expect>, {"nothing", "same"}},
             {"smallest", Type::number, {1e-6, 10}, "", defaulted, "0.01",
-                "With expect = \"same\": the relative difference of mean Y that must have been seen.",
+                "With expect = \"same\": the relative difference of mean Y that must be detectable.",
                 to<&ComparePlan::smallest>}},
         {arms(), regions(), masks(), assertions()}};
     return root;

@@ -1,4 +1,5 @@
-// What `crescent compare` is asked: arms (each a set of renders of one view), a reference, regions, claims. Plain data.
+// The input of `crescent compare`: arms (each a set of renders of one view), a reference, regions, assertions. Plain
+// data.
 #pragma once
 
 #include <optional>
@@ -22,8 +23,8 @@ struct RenderArm {
     std::vector<std::string> files;
     bool moments = false;           // one file with the moments of the renders, see moments.h
     std::string layer;              // part or layer to read; "": the beauty
-    std::optional<double> spp;      // samples a pixel of one render
-    std::optional<double> seconds;  // that one render took
+    std::optional<double> spp;      // samples per pixel of one render
+    std::optional<double> seconds;  // the render time of one render
 };
 
 /// Pixels where a mask's luminance is above 0 (a render, or a black and white picture in NPY or PFM).
@@ -35,7 +36,7 @@ struct MaskPlan {
 
 enum class Expectation { nothing, same };
 
-/// Where renders are held against each other: all in the same windows, or each in its own display window.
+/// How renders are aligned: all must have the same windows, or each is placed in its display window.
 enum class Alignment { windows, display };
 
 struct ComparePlan {
@@ -52,44 +53,44 @@ struct ComparePlan {
     bool crop = false;                   // compare the pixels that all data windows share
     double exposure = 1;                 // of photographs
     Theme theme = Theme::dark;           // of plates
-    double alpha = 0.01;                 // chance that a call says "a difference" where there is none
+    double alpha = 0.01;                 // probability that a call reports a difference if there is none
     double firefly_k = 4;                // a firefly: |Y - Y_ref| > k Y_ref
     double trim = 0;                     // share of pixels left out of relMSE and MAPE, the largest first
     double pixels_per_degree = 67.0206;  // of the viewer, for FLIP: 0.7 m from a 0.7 m wide display of 3840 pixels
     bool flip = true;                    // whether FLIP is measured
-    std::optional<double> brightest;     // the most that Y of a pixel of one render can be
+    std::optional<double> brightest;     // the largest possible Y of a pixel of one render
     Expectation expect = Expectation::nothing;
     int spectrum_blocks = 1024;  // of the noise's spectrum, see noise.h
-    bool count_pixel_p = true;   // whether the p of every pixel is counted for the report
-    double smallest = 0.01;      // with expect = "same": the relative difference of Y that must have been seen
+    bool count_pixel_p = true;   // whether the histogram of p over pixels is computed, for the report
+    double smallest = 0.01;      // with expect = "same": the relative difference of Y that must be detectable
 };
 
-/// A flag of the command line: the key it stands for, its value, and the words it was typed as.
+/// A flag of the command line: the key that it sets, its value, and its text on the command line.
 struct CompareFlag {
     std::vector<std::string> path;  // {"arms", "a", "files"}
-    std::string value;              // text, or TOML where `toml` is set
+    std::string value;              // text, or TOML if `toml` is set
     bool toml = false;
     std::string typed;  // "--arm a=*.exr"
 };
-/// Puts flags over the values of a file's tree.
+/// Applies flags to a file's tree, where they replace its values.
 void put_flags(Node& root, const std::vector<CompareFlag>& flags);
-/// Reads a compare file (none: ""), with flags over it; every mistake with its place in one InputError.
+/// Reads a compare file ("": none) and applies the flags; all mistakes with their places are in one InputError.
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file = {});
 
-/// The arms that a compare file names; none where it cannot be read, which plan_of() tells.
+/// Returns the names of the arms in a compare file; empty if it cannot be parsed, which plan_of() reports.
 std::vector<std::string> compare_arms(const std::string& file);
 
-/// The manual of the TOML file, and its JSON Schema.
+/// Returns the manual of the TOML file, and its JSON Schema.
 std::string compare_schema_text();
 std::string compare_schema_json();
 
 // ---- The keys of a compare file and the quantities of its checks: one table each.
 
-/// The table of a comparison file, as schema() is that of an experiment.
+/// Returns the table of a compare file; schema() is that of an experiment.
 const Section& compare_schema();
 const std::vector<QuantityWord>& compare_words();
 
-/// The region that is every pixel; a footnote, never a headline.
+/// The region with every pixel; never the main result.
 inline constexpr const char* whole_frame = "frame";
 
 }  // namespace crescent::inline comparison

@@ -1,5 +1,5 @@
-// The plates of a comparison, 1280x720: photographs of one render an arm, their errors on one scale, where arms differ
-// and where the noise moved. Instruments read radiance; photographs have gone through the display chain.
+// The plates of a comparison, 1280x720: photographs of one render per arm, their errors on one scale, where arms differ
+// and where the noise differs. Instrument plates show radiance; photographs have passed the display chain.
 #include "compare/outputs.h"
 
 #include <algorithm>
@@ -19,8 +19,9 @@
 
 namespace crescent::plates {
 
-// ---- Colours in sRGB; a difference of t goes from the middle colour to an end's at |t| = 1, straight in sRGB. A block
-// that is shown smaller shows means over its pixels. Places in units of the sheet, a pixel each.
+// ---- Colours are in sRGB; a difference t is interpolated linearly in sRGB from the middle colour to that of an end at
+// t
+//  = 1. A reduced block shows means over its pixels. Places are in units of the sheet, one per pixel.
 
 void header(Canvas& c, bool backend, const std::string& label) {
     const Colour accent = backend ? backend_accent : photograph_accent;
@@ -151,7 +152,7 @@ struct Residual {
     std::vector<float> plane;  // |Y - about|
 };
 
-/// The size below which 98 of 100 residuals lie, at most a million of each arm being looked at.
+/// Returns the 98th percentile of the residuals, from at most a million of each arm.
 double scale_of(const std::vector<Residual>& residuals) {
     std::vector<double> pooled;
     for (const Residual& r : residuals)
@@ -186,14 +187,14 @@ Picture errors(const RenderStats& all, const std::vector<Residual>& residuals, c
         "the scale ends at the 98th percentile of all pixels; " + crop_words(all));
 }
 
-/// Reads the first render of each arm, one at a time, into both sheets.
+/// Draws the sheets of renders and errors; reads the first render of each arm, one at a time.
 void shown_renders(const ComparePlan& plan, const RenderStats& all, std::map<std::string, Picture>& out) {
     const std::size_t arms = std::min(most_columns - (all.reference ? 1 : 0), all.arms.size());
     const Fits f = fits(all, content_band, arms + (all.reference ? 1 : 0));
     std::vector<Column> columns;
     std::vector<Residual> residuals;
-    const auto add = [&](const std::string& name, const Render& seen) {
-        const View view{seen.width, seen.height, seen.r.data(), seen.g.data(), seen.b.data(), nullptr};
+    const auto add = [&](const std::string& name, const Render& render) {
+        const View view{render.width, render.height, render.r.data(), render.g.data(), render.b.data(), nullptr};
         columns.push_back({name, photograph_block(view, all.frame(), f.whole, plan.exposure),
             photograph_block(view, crop_of(all), f.close, plan.exposure)});
     };
@@ -218,7 +219,8 @@ void shown_renders(const ComparePlan& plan, const RenderStats& all, std::map<std
         out["errors"] = errors(all, residuals, all.reference ? "Y<sub>ref</sub>" : "mean over renders", plan.theme);
 }
 
-/// Of many arms, every one beside the first alone: a hundred maps are too many for one page.
+/// Returns whether a pair is drawn: of many arms, only the pairs with the first one, because a page would have too many
+/// maps.
 bool shown_pair(const CompareResult& result, const std::string& a, const std::string& b) {
     constexpr std::size_t few = 4;
     const std::string& first = result.arms[0].name;
@@ -245,8 +247,8 @@ std::map<std::string, Picture> compare_plates(
     return out;
 }
 
-// ---- The plate of ladders: arms that are one arm at several samples a pixel, RMSE (without a reference: standard
-// deviation) over samples a pixel, both logarithmic, a column each for at most three regions.
+// ---- The plate of ladders: arms that are one sampler at several samples per pixel, RMSE (without a reference:
+// standard deviation) over samples per pixel, both logarithmic, a column each for at most three regions.
 
 using namespace plates;
 
@@ -260,7 +262,7 @@ LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_
     LadderCurve out;
     out.name = escaped(l.name), out.ink = series[ladder % series_count];
     for (const std::size_t a : l.arms) {
-        const MetricValue sample_count = sample_count_of(result.arms[a].regions[region]);
+        const MetricValue sample_count = ladder_metric(result.arms[a].regions[region]);
         out.n.push_back(*result.arms[a].spp), out.value.push_back(sample_count.value.value_or(nan));
         out.interval.push_back(sample_count.interval.value_or(std::pair(nan, nan)));
         out.heavy |= result.arms[a].regions[region].heavy();
@@ -271,7 +273,7 @@ LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_
     return out;
 }
 
-/// Regions first, the whole frame where there is room left for it.
+/// Regions first, then the whole frame if there is room.
 std::vector<std::size_t> columns_of(const CompareResult& result) {
     std::vector<std::size_t> out;
     for (std::size_t r = 0; r < result.arms[0].regions.size() && out.size() < most_charts; ++r) out.push_back(r);
@@ -279,7 +281,7 @@ std::vector<std::size_t> columns_of(const CompareResult& result) {
 }
 
 void draw_plate(Canvas& c, const CompareResult& result) {
-    const char* what = sample_count_text(result.arms[0].regions[0]);
+    const char* what = ladder_metric_name(result.arms[0].regions[0]);
     header(c, true, fmt::format("{} of one render over its samples a pixel", what));
     const std::vector<std::size_t> columns = columns_of(result);
     const std::size_t shown = std::min(most_curves, result.ladders.size());
@@ -312,7 +314,8 @@ std::string ladders_svg(const CompareResult& result, Theme theme) {
     return c.svg();
 }
 
-// ---- Maps over the whole frame: how the means of two sides differ, where that is told, and where the noise moved.
+// ---- Maps over the whole frame: how the means of two sides differ, where this is significant, and where the noise
+// differs.
 
 using namespace plates;
 
@@ -329,19 +332,19 @@ Rect titled(Canvas& c, const Rect& slot, const std::string& title) {
 
 Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {1, "≥ " + figures(top, 2)}}; }
 
-/// What is told is never as grey as what is not.
+/// Moves significant differences away from grey, the colour of the others.
 double visible(double t) { return std::copysign(0.2 + 0.8 * std::min(1.0, std::fabs(t)), t); }
 
-/// A value a tile, `told` ones in their colour, the others grey; in the left of two slots, or in one.
+/// Draws one value per tile: `different` tiles in their colour, the others grey.
 Block tile_block(const RenderStats& all, const Fit& f, const std::vector<double>& value,
-    const std::vector<bool>& describe, double top, Theme theme) {
+    const std::vector<bool>& different, double top, Theme theme) {
     return nearest_block(all.frame(), f, [&](int x, int y) {
         const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
-        return diverging(std::isnan(value[t]) ? value[t] : describe[t] ? visible(value[t] / top) : 0.0, theme);
+        return diverging(std::isnan(value[t]) ? value[t] : different[t] ? visible(value[t] / top) : 0.0, theme);
     });
 }
 
-/// The size below which 98 of 100 differences lie, at most a million of them being looked at.
+/// Returns the 98th percentile of the differences, from at most a million pixels.
 double scale_of(const BiasPair& s) {
     std::vector<double> sizes;
     const auto& pixels = s.all.regions.back().pixels;
@@ -353,7 +356,8 @@ double scale_of(const BiasPair& s) {
     return top > 0 ? top : 1;
 }
 
-/// Of pixels that are not finite on one side, which is a difference; others that are not are of the ground's colour.
+/// Returns whether a pixel is not finite on one side, which is a difference; other pixels that are not finite have the
+/// ground's colour.
 bool fails(const BiasResult& found, std::size_t pixel) {
     const auto in = [&](const std::vector<std::uint32_t>& pixels) {
         return std::binary_search(pixels.begin(), pixels.end(), static_cast<std::uint32_t>(pixel));
@@ -384,7 +388,7 @@ Picture difference_plate(const BiasPair& s, const std::string& a, const std::str
     bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme), ends(top));
     return finished(c,
         fmt::format(
-            "Orange: {} is brighter. Blue: {} is brighter. Noise is in it: the bias map says what is told apart.",
+            "Orange: {} is brighter. Blue: {} is brighter. Includes noise: the bias map shows significant differences.",
             escaped(a), escaped(b)),
         fmt::format(
             "means over {} and {} renders; the scale ends at the 98th percentile", s.a.files.size(), s.b.files.size()));
@@ -450,8 +454,8 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
     bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme),
         {{0, "≤ " + ratio(-top)}, {0.5, "1"}, {1, "≥ " + ratio(top)}});
     return finished(c,
-        fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: not told apart from 1. Ground: one of them has "
-                    "no noise.",
+        fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: no difference found. Ground: one of them has no "
+                    "noise.",
             escaped(n.a), escaped(n.b)),
         fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
 }

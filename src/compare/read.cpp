@@ -1,4 +1,4 @@
-// Every render twice: means first, then what each says of each region, mask and tile.
+// Reads every render twice: means first, then the statistics of each render in each region, mask and tile.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -58,7 +58,7 @@ void regions(const ComparePlan& plan, RenderStats& all, CommonView& view) {
     add_set(all, boxed(whole_frame, all.frame(), all.width), {plan.file, 0, 0});
 }
 
-/// Y alone where every render is grey.
+/// Y alone if every render is grey.
 std::size_t quantities_of(const RenderStats& all) {
     const auto in_colour = [](const ArmStats& arm) { return arm.film.planes.size() > 1; };
     const bool any = std::any_of(all.arms.begin(), all.arms.end(), in_colour);
@@ -144,7 +144,7 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const Re
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
     all.quantities = quantities_of(all);
     regions(plan, all, *view);
-    monitor.begin("second pass: what each render says", static_cast<double>(files.total));
+    monitor.begin("second pass: statistics of each render", static_cast<double>(files.total));
     const MeanFilm* truth = all.reference ? &all.reference->film : nullptr;
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
         if (plan.arms[a].moments) read_moments_regions(files.arms[a].front(), plan, all, all.arms[a]);
@@ -153,7 +153,7 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const Re
     return all;
 }
 
-// ---- PFM (Debevec) and NPY: floats one after another behind a header, read a row at a time.
+// ---- PFM (Debevec) and NPY: consecutive floats after a header, read a row at a time.
 
 namespace {
 
@@ -175,16 +175,16 @@ struct PfmHeader {
 PfmHeader pfm_header(const OpenFile& file) {
     TextHeader in(file);
     PfmHeader out;
-    const std::vector<std::string_view> kind = words_of(in.line());
+    const std::vector<std::string_view> kind = split_words(in.line());
     if (kind.size() != 1 || (kind[0] != "PF" && kind[0] != "Pf")) in.fail("expected 'PF' (colour) or 'Pf' (grey)");
     out.channels = kind[0] == "PF" ? 3 : 1;
-    std::vector<std::string_view> size = words_of(in.line());
+    std::vector<std::string_view> size = split_words(in.line());
     if (size.size() == 1)  // width and height on two lines
-        for (const std::string_view word : words_of(in.line())) size.push_back(word);
+        for (const std::string_view word : split_words(in.line())) size.push_back(word);
     if (size.size() != 2 || !parse_number(size[0], out.width) || !parse_number(size[1], out.height))
         in.fail("expected a width and a height in pixels, such as '960 540'");
     in.check_size(out.width, out.height);
-    const std::vector<std::string_view> last = words_of(in.line());
+    const std::vector<std::string_view> last = split_words(in.line());
     double scale = 0;
     if (last.size() != 1 || !parse_number(last[0], scale) || scale == 0 || !std::isfinite(scale))
         in.fail("expected a scale that is not 0, such as '-1.0'");
@@ -241,7 +241,7 @@ Render read_npy(const OpenFile& file) {
         const std::size_t n = std::min(block, total - begin);
         file.read(h.end + begin * h.bytes, std::span(bytes).first(n * h.bytes));
         for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t at = begin + k;  // by rows: (row, column, channel); by columns: the other way round
+            const std::size_t at = begin + k;  // by rows: (row, column, channel); by columns: the reverse
             const std::size_t row = h.by_column ? at % rows : at / channels / columns;
             const std::size_t column = h.by_column ? at / rows % columns : at / channels % columns;
             const std::size_t channel = h.by_column ? at / rows / columns : at % channels;
@@ -255,7 +255,7 @@ Render read_npy(const OpenFile& file) {
 }
 
 // ---- Radiance HDR (Ward 1991, "Real Pixels"): RGBE or XYZE, scanlines flat or run-length encoded in the old or the
-// new way. Memory grows with the scanlines that are there.
+// new format. Memory grows with the scanlines that are read.
 
 namespace {
 
@@ -264,16 +264,16 @@ using Rgbe = std::array<unsigned char, 4>;
 struct HdrHeader {
     int width = 0, height = 0;
     bool from_the_top = true, xyz = false;
-    Rgb unit{1, 1, 1};  // what a stored value is multiplied with
+    Rgb unit{1, 1, 1};  // factor of a stored value
     std::optional<Chromaticities> primaries;
     std::size_t end = 0;
 };
 
-/// Exactly so many numbers behind "KEY=".
+/// Returns exactly n numbers from the text after "KEY=".
 template <std::size_t n>
 std::array<double, n> numbers_of(const TextHeader& in, std::string_view text, const char* what) {
     std::array<double, n> out{};
-    const std::vector<std::string_view> words = words_of(text);
+    const std::vector<std::string_view> words = split_words(text);
     bool good = words.size() == n;
     for (std::size_t i = 0; good && i < n; ++i) good = parse_number(words[i], out[i]) && std::isfinite(out[i]);
     if (!good) in.fail(fmt::format("expected {}", what));
@@ -285,7 +285,7 @@ void read_variable(TextHeader& in, std::string_view line, HdrHeader& out) {
     const std::string_view key = line.substr(0, equals);
     const std::string_view value = equals == std::string_view::npos ? "" : line.substr(equals + 1);
     if (key == "FORMAT") {
-        const std::vector<std::string_view> words = words_of(value);
+        const std::vector<std::string_view> words = split_words(value);
         const std::string_view format = words.size() == 1 ? words[0] : "";
         out.xyz = format == "32-bit_rle_xyze";
         if (!out.xyz && format != "32-bit_rle_rgbe")
@@ -310,8 +310,8 @@ void read_variable(TextHeader& in, std::string_view line, HdrHeader& out) {
 HdrHeader hdr_header(const OpenFile& file) {
     TextHeader in(file);
     HdrHeader out;
-    for (std::string_view line = in.line(); !words_of(line).empty(); line = in.line()) read_variable(in, line, out);
-    const std::vector<std::string_view> size = words_of(in.line());
+    for (std::string_view line = in.line(); !split_words(line).empty(); line = in.line()) read_variable(in, line, out);
+    const std::vector<std::string_view> size = split_words(in.line());
     const bool known = size.size() == 4 && (size[0] == "-Y" || size[0] == "+Y") && size[2] == "+X" &&
         parse_number(size[1], out.height) && parse_number(size[3], out.width);
     if (!known) in.fail("expected a resolution such as '-Y 540 +X 960'");
@@ -323,7 +323,7 @@ HdrHeader hdr_header(const OpenFile& file) {
     return out;
 }
 
-/// Pixels from the file, through a buffer.
+/// Reads pixels from the file, through a buffer.
 class Scanlines {
 public:
     Scanlines(const OpenFile& file, std::size_t from) : file_(file), next_(from) {}
@@ -341,7 +341,8 @@ public:
     }
 
 private:
-    /// Pixels in full; 1, 1, 1, n says the one before n times, n of the next such pixel times 256.
+    /// Reads uncompressed pixels; 1, 1, 1, n repeats the previous pixel n times; n of the next such pixel is multiplied
+    /// by 256.
     void read_flat(std::vector<Rgbe>& row, Rgbe next) {
         unsigned shift = 0;
         for (std::size_t i = 0; i < row.size();) {
@@ -389,8 +390,8 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Rows from the top as rows from the bottom.
-void turn_over(std::vector<float>& plane, std::size_t width) {
+/// Reverses the order of rows.
+void flip_rows(std::vector<float>& plane, std::size_t width) {
     for (std::size_t low = 0, high = plane.size() / width - 1; low < high; ++low, --high)
         std::swap_ranges(plane.begin() + static_cast<std::ptrdiff_t>(low * width),
             plane.begin() + static_cast<std::ptrdiff_t>((low + 1) * width),
@@ -417,7 +418,7 @@ Render read_radiance_hdr(const OpenFile& file) {
         }
     }
     if (h.from_the_top)
-        for (std::vector<float>* plane : planes) turn_over(*plane, row.size());
+        for (std::vector<float>* plane : planes) flip_rows(*plane, row.size());
     if (h.xyz) from_xyz(out);
     else if (h.primaries) out.primaries = *h.primaries, out.weights = luminance_weights_of(*h.primaries);
     return out;

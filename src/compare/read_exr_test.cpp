@@ -1,4 +1,5 @@
-// OpenEXR files of every kind: pixels as OpenEXR itself reads them, names of channels, primaries, and what is refused.
+// Tests OpenEXR files of every kind: pixels as OpenEXR itself reads them, names of channels, primaries, and rejected
+// files.
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
@@ -30,7 +31,7 @@ const std::vector<Imf::Compression> compressions = {Imf::NO_COMPRESSION, Imf::RL
     Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
     Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION};
 
-/// The dataWindow attribute of a file with other corners.
+/// Returns the dataWindow attribute of a file with other corners.
 std::string with_data_window(std::string bytes, int x1, int y1) {
     const std::string key = std::string("dataWindow\0box2i\0", 17);
     const std::size_t at = bytes.find(key) + key.size() + 4 + 8;
@@ -48,7 +49,7 @@ protected:
     std::string refused(const WrittenExr& exr, const std::string& layer = "") {
         return refusal([&] { return read_render(file(exr), layer); });
     }
-    /// A channel as OpenEXR's C++ library reads it, bottom row first.
+    /// Returns a channel as read by OpenEXR's C++ library, bottom row first.
     static std::vector<float> reference(const std::string& name, const char* channel) {
         Imf::InputFile in(name.c_str());
         const Imath::Box2i d = in.header().dataWindow();
@@ -98,7 +99,7 @@ TEST_F(ExrFiles, TilesAreReadAtFullResolution) {
     }
 }
 
-TEST_F(ExrFiles, ColoursAreKnownByTheirNames) {
+TEST_F(ExrFiles, ColoursAreFoundByTheirNames) {
     const std::vector<std::vector<std::string>> spellings = {{"rgba.red", "rgba.green", "rgba.blue"},
         {"C.r", "C.g", "C.b"}, {"Beauty.[red]", "Beauty.[green]", "Beauty.[blue]"}, {"Color.R", "Color.G", "Color.B"},
         {"red", "green", "blue"}, {"RED", "Green", "bLUE"},
@@ -117,19 +118,19 @@ TEST_F(ExrFiles, ColoursAreKnownByTheirNames) {
     }
 }
 
-TEST_F(ExrFiles, SeveralLayersAreNamedAndOneIsAskedFor) {
+TEST_F(ExrFiles, SeveralLayersAreListedAndOneIsRequired) {
     WrittenExr exr;
     exr.channels = {"direct.R", "direct.G", "direct.B", "indirect.R", "indirect.G", "indirect.B"};
     EXPECT_THAT(refused(exr), AllOf(HasSubstr("--layer"), HasSubstr("'direct', 'indirect'"), HasSubstr("indirect.G")));
     EXPECT_EQ(read_render(file(exr), "indirect").r[0], WrittenExr::value(3, 0, 12));
-    exr.channels = {"beauty.R", "beauty.G", "beauty.B", "rgba.R", "rgba.G", "rgba.B"};  // both could be meant
+    exr.channels = {"beauty.R", "beauty.G", "beauty.B", "rgba.R", "rgba.G", "rgba.B"};  // ambiguous
     EXPECT_THAT(refused(exr), HasSubstr("--layer"));
     exr.channels = {"beauty.R", "beauty.G", "beauty.B", "diffuse.R", "diffuse.G", "diffuse.B"};
     EXPECT_EQ(read_render(file(exr)).layer, "beauty");
     exr.channels = {"P.X", "P.Y", "P.Z"};  // positions
     EXPECT_THAT(refused(exr), HasSubstr("channels found: P.X, P.Y, P.Z"));
     EXPECT_EQ(refused(exr, "P"), "");
-    exr.channels = {"r", "red", "green", "blue"};  // which of two reds?
+    exr.channels = {"r", "red", "green", "blue"};  // two reds
     EXPECT_THAT(refused(exr), HasSubstr("'r' and 'red' are the same colour"));
     exr.channels = {"R", "G", "B", "red"};
     EXPECT_EQ(read_render(file(exr)).r[0], WrittenExr::value(0, 0, 12));
@@ -146,7 +147,7 @@ TEST_F(ExrFiles, XyzBecomesRgbOfTheSameLuminance) {
     const Rgb xyz = transformed(rgb_to_xyz({}), {r.r[0], r.g[0], r.b[0]});
     EXPECT_NEAR(xyz[0], 0.4, 1e-6);
     EXPECT_NEAR(xyz[2], 0.3, 1e-6);
-    exr.constant = {{"Y", 0.5f}, {"Z", 30.0f}};  // grey and a depth
+    exr.constant = {{"Y", 0.5f}, {"Z", 30.0f}};  // grey and depth
     EXPECT_EQ(read_render(file(exr)).g[0], 0.5f);
 }
 
@@ -184,7 +185,7 @@ TEST_F(ExrFiles, LuminanceAndChromaAreReadByOpenExr) {
         EXPECT_NE(
             refusal([&] { return read_render(write("wide.exr", with_data_window(bytes, 2 * w - 1, h - 1))); }), "");
     }
-    WrittenExr lower;  // which OpenEXR does not take for luminance and chroma
+    WrittenExr lower;  // which OpenEXR does not accept as luminance and chroma
     lower.channels = {"y", "ry", "by"};
     EXPECT_THAT(refused(lower), HasSubstr("channels Y, RY and BY"));
 }
@@ -233,7 +234,7 @@ TEST_F(ExrFiles, CountsAndTimesAreFiniteAndNotNegative) {
     EXPECT_EQ(read_render(file(exr)).spp, 64);
 }
 
-TEST_F(ExrFiles, HeadersThatPromiseMoreThanTheFileHoldsAreRefused) {
+TEST_F(ExrFiles, HeadersWithMorePixelsThanTheFileAreRefused) {
     for (const Imf::Compression compression : compressions)
         for (const Imf::PixelType type : {Imf::FLOAT, Imf::HALF}) {
             SCOPED_TRACE(fmt::format("compression {} type {}", static_cast<int>(compression), static_cast<int>(type)));
@@ -249,7 +250,7 @@ TEST_F(ExrFiles, HeadersThatPromiseMoreThanTheFileHoldsAreRefused) {
         }
 }
 
-TEST_F(ExrFiles, NoBeginningOfAFileIsAFile) {
+TEST_F(ExrFiles, TruncatedFilesAreRefused) {
     for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION}) {
         WrittenExr exr;
         exr.compression = compression;
@@ -263,7 +264,7 @@ TEST_F(ExrFiles, NoBeginningOfAFileIsAFile) {
 
 }  // namespace
 
-// ---- Primaries: published matrices, white stays white, XYZ keeps its luminance.
+// ---- Primaries: published matrices, white is preserved, XYZ keeps its luminance.
 
 namespace {
 
@@ -293,7 +294,7 @@ TEST(Primaries, ConversionsAreThosePublished) {
     expect_near(a[2], {-0.02400, -0.12897, 1.15297}, 3e-4);
 }
 
-TEST(Primaries, WhiteStaysWhiteAndThereAndBackIsTheSame) {
+TEST(Primaries, WhiteIsPreservedAndConversionsAreInvertible) {
     expect_near(transformed(conversion(ap1, {}), {1, 1, 1}), {1, 1, 1}, 1e-12);
     const Rgb colour{0.2, 0.7, 0.4};
     expect_near(transformed(conversion({}, ap1), transformed(conversion(ap1, {}), colour)), colour, 1e-12);
@@ -309,7 +310,7 @@ TEST(Primaries, XyzKeepsItsLuminance) {
     expect_near(transformed(conversion(itself, {}), {0.3, 0.5, 0.9}), rgb, 1e-12);
 }
 
-TEST(Primaries, WhatDescribesNoColoursIsNotValid) {
+TEST(Primaries, DegeneratePrimariesAreNotValid) {
     EXPECT_TRUE(is_valid({}) && is_valid(ap1));
     EXPECT_FALSE(is_valid({{0.64, 0.33}, {0.64, 0.33}, {0.15, 0.06}, {0.3127, 0.3290}}));
     EXPECT_FALSE(is_valid({{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0}}));

@@ -1,4 +1,4 @@
-// What compare reads: the forms that renderers write, and what it refuses.
+// Tests which files compare reads, in the formats of renderers, and which it rejects.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -59,8 +59,7 @@ TEST_F(Renders, ReadRadianceHdr) {
         read_render(write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + three + all + one + two)));
 }
 
-/// Writes planes "R", "G", "B" (prefix before them) of a 2 x 2 picture into a part, tiled or not, with a data window of
-/// its own.
+/// Writes planes "R", "G", "B" (with a prefix) of a 2 x 2 picture into a part, tiled or not, with its own data window.
 struct Part {
     std::string name, prefix;
     bool tiled = false;
@@ -102,7 +101,7 @@ void write_exr(const std::string& path, const std::vector<Part>& parts) {
     }
 }
 
-/// One pixel, a value a channel.
+/// One pixel, one value per channel.
 void write_planes(const std::string& path, const std::vector<std::pair<std::string, float>>& planes) {
     Imf::Header header(1, 1);
     header.insert("cycles.ViewLayer.render_time", Imf::StringAttribute("01:03.50"));
@@ -133,7 +132,7 @@ TEST_F(Renders, ReadOpenExrAsRenderersWriteIt) {
 
 TEST_F(Renders, HaveThePixelsOfTheirDataWindow) {
     Part p{"rgb", ""};
-    p.data = {{0, 1}, {1, 1}};  // the lower row alone
+    p.data = {{0, 1}, {1, 1}};  // only the lower row
     write_exr(path("a.exr"), {p});
     const Render r = read_render(path("a.exr"));
     EXPECT_EQ(r.data, (PixelWindow{0, 1, 1, 1}));
@@ -144,7 +143,7 @@ TEST_F(Renders, HaveThePixelsOfTheirDataWindow) {
 
 TEST_F(Renders, TakeVariancesAndSamplesByTheirNames) {
     write_exr(path("own.exr"), {{"rgb", ""}, {"variance", ""}});
-    EXPECT_TRUE(read_render(path("own.exr")).variance.empty());  // of another part: not this radiance's
+    EXPECT_TRUE(read_render(path("own.exr")).variance.empty());  // of another part: not the variance of this radiance
     write_planes(path("pbrt.exr"),
         {{"R", 2}, {"G", 2}, {"B", 2}, {"Variance.R", 4}, {"Variance.G", 4}, {"Variance.B", 4},
             {"RelativeVariance.R", 1}});
@@ -165,9 +164,9 @@ TEST_F(Renders, TakeVariancesAndSamplesByTheirNames) {
     EXPECT_EQ(error.sample_channel, "Debug Sample Count.X");
 }
 
-TEST_F(Renders, AskWhichLayerIsMeant) {
+TEST_F(Renders, RequireALayerIfSeveralFit) {
     write_exr(path("one.exr"), {{"quadrature", ""}});
-    expect_four(read_render(path("one.exr"), "quadrature"));  // by its own name, though it is alone
+    expect_four(read_render(path("one.exr"), "quadrature"));  // selected by its name, although it is the only layer
     write_exr(path("a.exr"), {{"direct", ""}, {"indirect", ""}});
     EXPECT_THROW((void)read_render(path("a.exr")), InputError);
     expect_four(read_render(path("a.exr"), "indirect"));
@@ -255,7 +254,7 @@ TEST_F(Renders, RadianceHdrMeansTheSameInEveryEncoding) {
     EXPECT_NEAR(aces.y(0), 2 * 0.2722287 + 0.6740818 + 0.5 * 0.0536895, 1e-5);
 }
 
-/// Damaged files of every format are read or refused: no other exception, no crash.
+/// Damaged files of every format are read or rejected, without other exceptions and without a crash.
 TEST_F(Renders, DamagedFilesAreReadOrRefused) {
     std::vector<std::string> whole = {"PF\n2 2\n-1.0\n" + raw(four),
         "#?RADIANCE\nEXPOSURE=1\n\n-Y 1 +X 9\n" + std::string("\2\2\0\x9\x89\x80\x89\x40\x89\x20\x89\x82", 12),
@@ -287,7 +286,7 @@ TEST_F(Renders, DamagedFilesAreReadOrRefused) {
 
 }  // namespace
 
-// ---- What fits together and what does not: renders that stand in memory.
+// ---- Whether renders fit each other: renders in memory.
 
 namespace {
 
@@ -303,7 +302,7 @@ protected:
     }
 };
 
-TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndTold) {
+TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndReported) {
     put("a0", 1), put("a1", 2).g[17] = std::nanf(""), put("b0", 3), put("b1", 4).r[18] = INFINITY;
     const RenderStats all = read();
     EXPECT_EQ(all.bad_pixels, 2u);
@@ -312,7 +311,7 @@ TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndTold) {
     for (const auto& render : all.arms[0].regions) EXPECT_TRUE(std::isfinite(render.back().y));
 }
 
-TEST_F(Memory, CopiesInOneArmAreRefusedAndInTwoArmsTold) {
+TEST_F(Memory, CopiesInOneArmAreRefusedAndInTwoArmsReported) {
     put("a0", 1), put("a1", 2), put("b0", 1), put("b1", 3);
     EXPECT_THAT(read().warnings, ::testing::ElementsAre(HasSubstr("b0 of b: the same pixels as a0 of a")));
     put("a2", 2);
@@ -324,7 +323,7 @@ TEST_F(Memory, SizesThatDifferAreRefused) {
     EXPECT_THAT(refusal(), HasSubstr("b0: expected 16 x 16 pixels as in a0, found 17 x 17"));
 }
 
-TEST_F(Memory, ConstantAndNegativePixelsAreTold) {
+TEST_F(Memory, ConstantAndNegativePixelsAreReported) {
     put("a0", 1), put("a1", 2).r[3] = -1, put("b0", 3), put("b1", 4);
     for (auto* plane : {&renders["b0"].r, &renders["b0"].g, &renders["b0"].b}) plane->assign(256, 0.5f);
     EXPECT_THAT(read().warnings,

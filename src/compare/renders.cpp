@@ -1,4 +1,4 @@
-// Which format a file has, by its first bytes.
+// Finds the format of a file by its first bytes.
 #include "compare/renders.h"
 
 #include <array>
@@ -15,7 +15,7 @@ struct Magic {
     std::string_view bytes;
     const char* name;
 };
-/// Pictures made to be looked at: 8 bits, tone-mapped, gamma-encoded.
+/// Formats of pictures for display: 8 bits, tone-mapped, gamma-encoded.
 constexpr Magic picture_formats[] = {{"\x89PNG", "PNG"}, {"\xff\xd8\xff", "JPEG"}, {"GIF8", "GIF"}, {"BM", "BMP"},
     {"RIFF", "WebP"}, {"II*", "TIFF"}, {"MM", "TIFF"}, {"P6", "PPM"}};
 
@@ -65,8 +65,8 @@ Render read_render(const std::string& path, const std::string& layer) {
     for (const Magic& picture : picture_formats)
         if (head.starts_with(picture.bytes))
             file.fail(
-                fmt::format("expected linear radiance (OpenEXR, PFM, Radiance HDR or NPY), found a {}: a picture "
-                            "has been through a tone map, and no radiance can be read off it",
+                fmt::format("expected linear radiance (OpenEXR, PFM, Radiance HDR or NPY), found a {}: it is "
+                            "tone-mapped, so radiance cannot be recovered from it",
                     picture.name));
     file.fail(head.empty() ? "expected OpenEXR, PFM, Radiance HDR or NPY, found an empty file"
                            : "expected OpenEXR, PFM, Radiance HDR or NPY, found something else");

@@ -1,4 +1,5 @@
-// What a comparison found, as plain data: metrics with their doubt, whether arms differ, where the noise moved.
+// The results of a comparison as plain data: metrics with their confidence intervals, whether arms differ, where the
+// noise differs.
 #pragma once
 
 #include <cmath>
@@ -18,9 +19,9 @@ namespace crescent::inline comparison {
 
 inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;  // of every interval
-inline constexpr double heavy_share = 0.5;  // one squared error that is half of their sum decides a mean by itself
+inline constexpr double heavy_share = 0.5;  // one squared error with half of their sum decides the mean
 
-/// A metric of one arm in one region. `why` says why there is no value or no interval.
+/// A metric of one arm in one region. `why`: the reason if there is no value or no interval.
 struct MetricValue {
     std::optional<double> value;
     std::optional<std::pair<double, double>> interval;  // 95 %
@@ -35,12 +36,12 @@ struct RegionResult {
     double largest_share = 0;                                  // of the largest squared error in their sum
     std::vector<double> power;                                 // error spectrum, see noise.h
     NoiseColour colour = NoiseColour::unknown;
-    std::optional<double> stated_ratio;    // the variance that the renderer wrote over that over renders
-    std::optional<double> renders_needed;  // where the tail is heavy: renders from which an interval could be said
+    std::optional<double> stated_ratio;    // the variance that the renderer stated over that over renders
+    std::optional<double> renders_needed;  // if the tail is heavy: renders needed for an interval
     const MetricValue& metric(const std::string& name) const;
-    /// The tail is too heavy for an interval of a mean of squares to mean anything.
+    /// Returns whether the tail is too heavy for an interval of a mean of squares.
     bool heavy() const;
-    /// The same for a mean of the errors themselves: their squares' index is twice theirs.
+    /// The same for a mean of the errors themselves: the tail index of their squares is twice theirs.
     bool mean_heavy() const;
 };
 
@@ -52,110 +53,114 @@ struct ArmResult {
     const RegionResult& region(const std::string& name) const;
 };
 
-/// One test of equal means of a region: of Y, and of each channel where renders are in colour.
+/// One test of equal means in a region: of Y, and of each channel if renders are in colour.
 struct MeanTest {
-    std::string region;   // of a channel's test: its name
+    std::string region;   // in a test of a channel: its name
     double a = 0, b = 0;  // means
     Welch welch;
     bool differs = false;            // in this quantity
-    bool paired = false;             // over differences of pairs of renders
-    double smallest = 0;             // the relative difference that would have been seen nine times out of ten
-    std::string why;                 // why it was not tested; "" where it was
-    std::string doubt;               // p is small, and what else than a bias may be the reason; "" where nothing is
+    bool paired = false;             // over the differences of pairs of renders
+    double smallest = 0;             // the relative difference that would have been found with a probability of 90 %
+    std::string why;                 // why it was not tested; "" if it was
+    std::string caveat;              // a cause other than a bias for a small p; "" if there is none
     std::vector<MeanTest> channels;  // R, G, B
-    double joint_p = std::nan("");   // of no difference in any of them, see quantities.h
-    /// Names of the quantities that differ, Y first.
+    double joint_p = std::nan("");   // of "no difference in any of them", see metrics.h
+    /// Returns the names of the quantities that differ, Y first.
     std::vector<std::string> differs_in() const;
 };
 
-/// Tests of many places at once, their false discoveries controlled.
+/// Tests of many places, with the false discovery rate controlled.
 struct PlaceTests {
-    std::vector<double> p;                        // a place, of all its quantities; NaN: not tested
-    std::vector<std::size_t> quantity;            // a place: which that p is from
-    std::vector<std::vector<double>> difference;  // [quantity][place]: mean of a less that of b
+    std::vector<double> p;                        // per place, of all its quantities; NaN: not tested
+    std::vector<std::size_t> quantity;            // per place: the quantity of that p
+    std::vector<std::vector<double>> difference;  // [quantity][place]: mean of a minus that of b
     std::vector<bool> differs;
     std::size_t tested = 0, left_out = 0, different = 0;
 };
 
-/// A place that differs: pixels, both ends inside, and the means of both there of the quantity that differs the most.
+/// A place that differs: a box with both ends inclusive, and both means in it of the quantity that differs the most.
 struct Found {
     Box box;
     double a = 0, b = 0, p = 0;
     std::size_t quantity = 0;
 };
 
-/// How two single files differ; whether that is noise, they do not say.
+/// The difference of two single files; it cannot be compared with noise.
 struct SingleDifference {
-    std::uint64_t pixels = 0, different = 0;  // finite ones
+    std::uint64_t pixels = 0, different = 0;  // finite pixels
     double rms = 0;                           // of the difference of Y
-    double largest = 0;                       // difference of a channel
-    Box at;                                   // the pixel where that is
+    double largest = 0;                       // largest difference of a channel
+    Box at;                                   // the pixel with that difference
 };
 
-/// What else than a bias could have made a difference: events of the darker side that none of its renders met, with the
+/// An explanation of a difference other than a bias: events on the darker side that are in none of its renders with the
 /// probability of a false alarm.
 struct MissedEvents {
     std::string arm;
-    double size = 0;     // at least so bright a pixel
-    double of_mean = 0;  // the same over the mean Y of the place
-    double one_in = 0;   // at most one pixel of so many meets one
+    double size = 0;     // least brightness of such a pixel
+    double of_mean = 0;  // the same relative to the mean Y of the place
+    double one_in = 0;   // at most one in this many pixels has such an event
 };
 
-/// Two arms, or an arm and the reference: are their expectations the same?
+/// Whether two arms, or an arm and the reference, have the same expectation.
 struct BiasResult {
     std::string a, b;
-    std::size_t arm_a = 0, arm_b = 0;  // their places; the number of arms stands for the reference
-    double place_alpha = 0;            // what tiles have, and pixels
+    std::size_t arm_a = 0, arm_b = 0;  // their indices; the number of arms represents the reference
+    double place_alpha = 0;            // the level of tiles, and of pixels
     bool identical = false;            // every render of one side has the same pixels as one of the other
     bool paired = false;
-    std::vector<SeedPair> shared;  // renders that share their random numbers, as their residuals show
-    bool all_shared = false;       // each render of either side is one of those
+    std::vector<SeedPair> shared;  // renders with shared random numbers, found by their residuals
+    bool all_shared = false;       // each render of both sides is one of those
     NonFinite non_finite;
-    std::optional<SingleDifference> single;  // of one file a side
-    bool dependent = false;                  // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
-    std::string reference_error;             // how the reference's own error is known; "" between arms
+    std::optional<SingleDifference> single;  // if each side is one file
+    bool dependent = false;                  // the noise of neighbouring pixels is correlated: Benjamini-Yekutieli
+    std::string reference_error;             // the source of the reference's own error; "" between arms
     std::vector<MeanTest> regions;
     PlaceTests tiles;
-    std::vector<Found> tiles_found, pixels_found;  // the most certain first, a few of them
+    std::vector<Found> tiles_found, pixels_found;  // the first few, by ascending p
     std::uint64_t pixels_tested = 0, pixels_different = 0;
-    std::vector<std::uint32_t> different_pixels;     // rising
-    std::vector<std::uint64_t> tiles_by, pixels_by;  // of those that differ, by the quantity that differs the most
-    std::vector<std::uint64_t> pixel_p;              // histogram of the p of Y over pixels, in twentieths
-    double p = std::nan("");  // of no difference at all, over every test of these two; NaN: nothing was tested
+    std::vector<std::uint32_t> different_pixels;  // ascending
+    std::vector<std::uint64_t> tiles_by,
+        pixels_by;                       // number of those that differ, by the quantity that differs the most
+    std::vector<std::uint64_t> pixel_p;  // histogram of the p of Y over pixels, in twentieths
+    double p = std::nan("");             // of "no difference", over every test of these two; NaN: nothing was tested
     bool differs() const;
-    /// The quantity to show where the sides differ: Y where it differs at all, else the channel that differs the most.
+    /// Returns the quantity to show: Y if the sides differ in it, else the channel that differs the most.
     std::size_t shown() const;
-    std::optional<MissedEvents> unless;  // of the place that is hardest to explain by them; where something differs
+    std::optional<MissedEvents>
+        missed_events;  // for the place with the largest required events; only if something differs
     std::string sentence;
 };
 
-/// Where the noise moved from b to a: log2(variance a / variance b) a tile.
+/// Where the noise differs: log2(variance a / variance b) per tile.
 struct NoiseResult {
     std::string a, b;
     std::vector<double> log2_ratio;   // NaN: no variance
-    std::vector<bool> distinguished;  // from 1
+    std::vector<bool> distinguished;  // whether the ratio differs significantly from 1
     struct Histogram {
         std::string region;
-        std::vector<std::uint64_t> describe, rest;  // tiles by log2_ratio, noise_bins of them, ends open
+        std::vector<std::uint64_t> different,
+            rest;  // tiles per bin of log2_ratio (noise_bins); the outermost bins are open
     };
     std::vector<Histogram> regions;
     std::string sentence;
 };
-inline constexpr int noise_bins = 16;       // of half a unit each
-inline constexpr double noise_range = 4.0;  // log2 from -4 to 4
+inline constexpr int noise_bins = 16;       // of width 0.5
+inline constexpr double noise_range = 4.0;  // log2 ratios from -4 to 4
 
-/// Who is better in one region, by one measure; arms whose intervals overlap are not ranked.
+/// The order of the arms in one region by one metric; arms with overlapping intervals are not ranked.
 struct Ranking {
     std::string region, measure;
     std::vector<std::string> order;  // best first
     std::string sentence;
 };
 
-/// One arm at several samples a pixel.
+/// Arms that are one sampler at several samples per pixel.
 struct SppLadder {
     std::string name;
-    std::vector<std::size_t> arms;                            // by rising spp
-    std::vector<std::pair<std::string, MetricValue>> slopes;  // of log RMSE (else log sd) over log spp, a region each
+    std::vector<std::size_t> arms;  // by ascending spp
+    std::vector<std::pair<std::string, MetricValue>>
+        slopes;  // of log RMSE (else log standard deviation) over log spp, per region
 };
 
 struct CompareResult {
@@ -166,12 +171,12 @@ struct CompareResult {
     std::vector<SppLadder> ladders;
     std::vector<AssertionResult> assertions;
     std::vector<std::string> warnings;
-    std::string reference_error_from;               // how it is known
-    std::map<std::string, double> reference_error;  // region -> rms standard error of the reference's Y; NaN: not known
-    /// Some pair of arms, or an arm and the reference, differs.
+    std::string reference_error_from;               // the source of that error
+    std::map<std::string, double> reference_error;  // region -> RMS standard error of the reference's Y; NaN: unknown
+    /// Returns whether some pair of arms, or an arm and the reference, differs.
     bool differs() const;
     enum class State { holds, fails, inconclusive } state = State::holds;
-    std::string sentence;  // one for the state
+    std::string sentence;  // describes the state
 };
 
 }  // namespace crescent::inline comparison

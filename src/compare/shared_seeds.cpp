@@ -1,9 +1,9 @@
-// About 16 blocks with up to 512 pixels each: what is kept of a render of any size is 32 KiB. Products of
-// residuals are summed over a block, and the sums of blocks are taken to be independent: noise that is correlated over
-// a few pixels leaves the test right, since blocks are large beside them. A residual of K renders is at most sqrt(K -
-// 1) standard deviations, so that bright events cannot decide it. Where K and L renders share m seeds, the means that
-// are taken off make the covariance of residuals of renders that share one 1 - 1/K - 1/L + m/(K L) of that of their
-// noise, and of others m/(K L) of it: less than half from K = L = 3 on.
+// About 16 blocks with up to 512 pixels each, 32 KiB for a render of any size. Products of residuals are summed over a
+// block, and the sums of blocks are assumed to be independent: the test remains valid for noise that is correlated over
+// a few pixels, because blocks are large in comparison. A residual of K renders is at most sqrt(K - 1) standard
+// deviations, so bright events cannot decide the test. If K and L renders share m seeds, subtracting the means changes
+// the covariance of the residuals of renders with a shared seed to 1 - 1/K - 1/L + m/(K L) of that of their noise, and
+// that of other pairs to m/(K L) of it: less than half from K = L = 3 on.
 #include "compare/noise.h"
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace {
 
 constexpr double blocks_wanted = 16;
 constexpr std::size_t pixels_a_block = 512;
-constexpr std::size_t blocks_least = 8;  // fewer say nothing at this level
+constexpr std::size_t blocks_least = 8;  // fewer blocks cannot reach this level
 
-/// Up to pixels_a_block pixels of a block, as far apart as can be.
+/// Adds up to pixels_a_block pixels of a block, evenly spaced.
 void take_block(const RenderStats& all, const Box& box, SeedSamples& to) {
     const std::size_t count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
     const std::size_t taken = std::min(count, pixels_a_block);
@@ -37,7 +37,7 @@ struct Correlation {
     bool found = false;
 };
 
-/// Of two renders' residuals, and whether it is above 0 at this level.
+/// Returns the correlation of two renders' residuals, and whether it is above 0 at this level.
 Correlation correlation(const std::vector<float>& a, const std::vector<float>& b, const SeedSamples& at, double level) {
     std::vector<double> blocks;
     double product = 0, squares_a = 0, squares_b = 0;
@@ -56,7 +56,8 @@ Correlation correlation(const std::vector<float>& a, const std::vector<float>& b
     return {product / std::sqrt(squares_a * squares_b), mean.mean > limit * mean.se};
 }
 
-/// Deviations of one render of each pair from the mean of those renders, in the units of the renders, a row each.
+/// Returns the deviations of one render of each pair from the mean of those renders, in the units of the renders, one
+/// row per pair.
 std::vector<std::vector<double>> deviations(
     const ArmStats& arm, const SeedSamples& at, const std::vector<SeedPair>& pairs, std::size_t SeedPair::* render) {
     std::vector<std::vector<double>> out(pairs.size(), std::vector<double>(at.pixels.size()));
@@ -72,8 +73,8 @@ std::vector<std::vector<double>> deviations(
     return out;
 }
 
-/// Correlations of the noise of pairs: of deviations from the mean of the paired renders alone, each pixel by its
-/// variance on both sides.
+/// Estimates the correlations of the noise of pairs from deviations from the mean of the paired renders only, each
+/// pixel weighted by its variance on both sides.
 void estimate_correlations(const ArmStats& a, const ArmStats& b, const SeedSamples& at, std::vector<SeedPair>& pairs) {
     const auto of_a = deviations(a, at, pairs, &SeedPair::a), of_b = deviations(b, at, pairs, &SeedPair::b);
     for (std::size_t k = 0; k < pairs.size(); ++k) {

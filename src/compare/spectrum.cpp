@@ -1,6 +1,7 @@
-// The power spectrum of the error in blocks that do not overlap, spread over the box: a row-column transform, |F|^2
-// over the pixels of a block, averaged over rings of equal frequency in cycles a block. The mean, frequency 0, is left
-// out.
+// The power spectrum of the error in disjoint blocks, spread over the box: a row-column transform,
+// F
+// ^2 over the pixels of a block, averaged over rings of equal frequency in cycles per block. The mean, frequency 0, is
+// left out.
 #include "compare/noise.h"
 
 #include <array>
@@ -19,8 +20,8 @@ constexpr auto size = static_cast<std::size_t>(spectrum_block);
 using Complex = std::complex<double>;
 using Row = std::array<Complex, size>;
 
-/// exp(-2 pi i k / block), as a table.
-const Row& turns() {
+/// Returns exp(-2 pi i k / block) as a table.
+const Row& roots_of_unity() {
     static const Row table = [] {
         Row t;
         for (std::size_t k = 0; k < size; ++k) {
@@ -32,9 +33,9 @@ const Row& turns() {
     return table;
 }
 
-/// z exp(-2 pi i k / block), without the library's care for infinities.
-Complex turned(const Complex& z, std::size_t k) {
-    const Complex& w = turns()[k];
+/// Returns z exp(-2 pi i k / block), without the library's handling of infinities.
+Complex rotated(const Complex& z, std::size_t k) {
+    const Complex& w = roots_of_unity()[k];
     return {z.real() * w.real() - z.imag() * w.imag(), z.real() * w.imag() + z.imag() * w.real()};
 }
 
@@ -49,7 +50,7 @@ Row transformed(const Row& x) {
     for (std::size_t half = 1; half < size; half *= 2) {
         for (std::size_t start = 0; start < size; start += 2 * half) {
             for (std::size_t k = 0; k < half; ++k) {
-                const Complex even = out[start + k], odd = turned(out[start + k + half], k * (size / (2 * half)));
+                const Complex even = out[start + k], odd = rotated(out[start + k + half], k * (size / (2 * half)));
                 out[start + k] = even + odd, out[start + k + half] = even - odd;
             }
         }
@@ -57,11 +58,11 @@ Row transformed(const Row& x) {
     return out;
 }
 
-/// Frequency of bin k, in cycles a block, without its sign.
+/// Returns the absolute frequency of bin k, in cycles per block.
 double frequency(std::size_t k) { return static_cast<double>(std::min(k, size - k)); }
 
 struct Radial {
-    std::array<double, size * size> bin{};  // of each coefficient; -1: outside
+    std::array<double, size * size> bin{};  // ring of each coefficient; -1: outside
     std::array<double, spectrum_bins> count{};
 };
 
@@ -118,7 +119,8 @@ NoiseColour noise_colour(const std::vector<double>& power) {
     const auto half = power.begin() + spectrum_bins / 2;
     const double low = std::accumulate(power.begin(), half, 0.0), high = std::accumulate(half, power.end(), 0.0);
     if (!(low + high > 0)) return NoiseColour::unknown;
-    constexpr double apart = 1.25;  // a quarter more on one side; white noise of one block is within 5 %
+    constexpr double apart =
+        1.25;  // 25 % more power on one side; for white noise the two differ by at most 5 % in one block
     return low > apart * high ? NoiseColour::correlated : high > apart * low ? NoiseColour::blue : NoiseColour::white;
 }
 

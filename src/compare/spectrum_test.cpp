@@ -1,4 +1,4 @@
-// Spectra of noise that was made, and of a wave.
+// Spectra of synthetic noise, and of a wave.
 #include "compare/noise.h"
 
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 namespace crescent::inline comparison {
 namespace {
 
-TEST(Spectrum, TellsFilteredNoiseFromWhite) {
+TEST(Spectrum, DistinguishesFilteredFromWhiteNoise) {
     std::vector<double> white, filtered;
     const auto noise = [](int x, int y) {
-        return made_pixel({SyntheticNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x), 65) - 1;
+        return synthetic_pixel({SyntheticNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x), 65) - 1;
     };
     const Box box{0, 0, 63, 63};
     add_spectrum(white, box, noise);
@@ -24,7 +24,7 @@ TEST(Spectrum, TellsFilteredNoiseFromWhite) {
     EXPECT_EQ(noise_colour(filtered), NoiseColour::correlated);
 }
 
-TEST(Spectrum, HoldsThePowerOfAWave) {
+TEST(Spectrum, ContainsThePowerOfAWave) {
     std::vector<double> power;
     add_spectrum(power, {0, 0, 31, 31}, [](int x, int) { return std::cos(2 * 3.141592653589793 * 5 * x / 32); });
     for (std::size_t k = 0; k < power.size(); ++k)

@@ -1,4 +1,4 @@
-// What the first render has, all others must have, or be brought to.
+// All renders must have the windows, size and primaries of the first, or are converted to them.
 #include "compare/view.h"
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace crescent::inline comparison {
 namespace {
 
 constexpr std::size_t common_frame = std::size_t{1} << 24;  // pixels: 4096 x 4096
-constexpr std::size_t most_of_data = 64;
+constexpr std::size_t largest_frame_over_data = 64;
 
 std::string shown(const PixelWindow& w) { return fmt::format("({}, {}) to ({}, {})", w.x0, w.y0, w.x1, w.y1); }
 
-/// "(2, 0)", or both corners where they differ by other steps.
+/// Returns "(2, 0)", or the differences of both corners if they are not equal.
 std::string difference(const PixelWindow& a, const PixelWindow& b) {
     const std::int64_t x0 = a.x0 - b.x0, y0 = a.y0 - b.y0, x1 = a.x1 - b.x1, y1 = a.y1 - b.y1;
     if (x0 == x1 && y0 == y1) return fmt::format("({}, {})", x0, y0);
@@ -33,12 +33,12 @@ std::uint64_t hash_of(const Render& render) {
     return hash;
 }
 
-/// A plane of `from` in another window: 0 outside.
+/// Returns a plane of window `from` in window `to`: 0 outside.
 std::vector<float> placed(const std::vector<float>& plane, const PixelWindow& from, const PixelWindow& to) {
     std::vector<float> out(to.pixels(), 0.0f);
     const PixelWindow both = intersection(from, to);
     if (both.empty()) return out;
-    for (std::int64_t y = both.y0; y <= both.y1; ++y) {  // rows run from the bottom
+    for (std::int64_t y = both.y0; y <= both.y1; ++y) {  // rows are bottom-up
         const std::int64_t source = (from.y1 - y) * from.width() + (both.x0 - from.x0);
         const std::int64_t target = (to.y1 - y) * to.width() + (both.x0 - to.x0);
         std::copy_n(plane.begin() + source, both.width(), out.begin() + target);
@@ -53,14 +53,14 @@ void place(Render& render, const PixelWindow& to) {
     render.width = static_cast<int>(to.width()), render.height = static_cast<int>(to.height());
 }
 
-/// A header of some bytes may promise a frame of any size round a few pixels.
+/// A small file may state a huge display window around a few pixels, which would need its memory.
 void check_frame(const Render& render) {
     const std::size_t frame = render.display.pixels(), data = render.data.pixels();
-    if (frame > common_frame && frame / most_of_data > data)
+    if (frame > common_frame && frame / largest_frame_over_data > data)
         throw InputError({render.file, 0, 0},
             fmt::format("expected a display window of at most {} times the data window's {} pixels, found {} x {}; "
                         "--crop compares the data window alone",
-                most_of_data, data, render.display.width(), render.display.height()));
+                largest_frame_over_data, data, render.display.width(), render.display.height()));
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ Render CommonView::read_mask(const std::string& path) {
         throw InputError({path, 0, 0},
             fmt::format("expected {} x {} pixels as the renders have, found {} x {}", window.width(), window.height(),
                 own.width(), own.height()));
-    const PixelWindow& corner = whole ? frame : window;  // its own origin does not count
+    const PixelWindow& corner = whole ? frame : window;  // the origin of the mask is ignored
     const std::int64_t x = corner.x0 - own.x0, y = corner.y0 - own.y0;
     const PixelWindow data = mask.data;
     mask.data = {data.x0 + x, data.y0 + y, data.x1 + x, data.y1 + y};
@@ -125,17 +125,17 @@ void CommonView::check_fits(const Render& render) const {
 
 void CommonView::convert_primaries(Render& render) const {
     if (same_primaries(render.primaries, first_.primaries)) return;
-    render.notes.push_back(fmt::format("its primaries ({}) are not those of {} ({}): it is compared in the latter",
+    render.notes.push_back(fmt::format("its primaries ({}) are not those of {} ({}): it is converted to the latter",
         to_string(render.primaries), first_.file, to_string(first_.primaries)));
     convert(render, conversion(render.primaries, first_.primaries));
     render.primaries = first_.primaries, render.weights = first_.weights;
 }
 
-void CommonView::check_known(const Render& render, const std::string& layer) {
-    const Known now{render.state, render.width, render.height, render.hash};
-    const auto [at, first_time] = known_.emplace(std::pair{render.file, layer}, now);
+void CommonView::check_unchanged(const Render& render, const std::string& layer) {
+    const Reading now{render.state, render.width, render.height, render.hash};
+    const auto [at, first_time] = first_readings_.emplace(std::pair{render.file, layer}, now);
     if (first_time) return;
-    const Known& before = at->second;
+    const Reading& before = at->second;
     const FileState &a = before.state, &b = now.state;
     const std::string what = a.device != b.device || a.inode != b.inode ? "it is another file"
         : a.size != b.size                                         ? fmt::format("{} bytes, now {}", a.size, b.size)
@@ -160,7 +160,7 @@ Render CommonView::read(const std::string& path, const std::string& layer) {
     place(render, window_for(render));
     convert_primaries(render);
     render.hash = hash_of(render);
-    check_known(render, layer);
+    check_unchanged(render, layer);
     return render;
 }
 

@@ -1,4 +1,4 @@
-// Renders that do not fit each other, and files that change: through every way in which compare reads.
+// Renders that do not fit each other, and files that change, as arms, pairs and reference.
 #include <cstring>
 #include <gmock/gmock.h>
 #include <sys/socket.h>
@@ -20,7 +20,7 @@ using ::testing::StartsWith;
 
 class Views : public ScratchFolder {
 protected:
-    /// Three renders, of constant channels: "a0.exr" to "a2.exr" of arm a.
+    /// Writes three renders with constant channels: "a0.exr" to "a2.exr" of arm a.
     void write_arm(const std::string& arm, WrittenExr exr, float brightness = 1) {
         for (int k = 0; k < 3; ++k) {
             const float y = brightness + 0.01f * static_cast<float>(k + arm[0]);
@@ -34,11 +34,11 @@ protected:
         ProgressMonitor monitor;
         return read_all(plan_of(flags), monitor, source);
     }
-    /// A render as it is compared.
+    /// Returns a render as it is compared.
     Render compared(const RenderStats& all, const char* file) const { return all.source.read(path(file), ""); }
     static CompareFlag align() { return {{"align"}, "display", false, "--align display"}; }
     static CompareFlag crop() { return {{"crop"}, "true", true, "--crop"}; }
-    /// The other renders as an arm, a pair, a reference.
+    /// Flags that use the other renders as an arm, as a paired arm, as the reference.
     std::vector<std::vector<CompareFlag>> ways() const {
         const CompareFlag arm{{"arms", "b", "files"}, path("b?.exr"), false, "--arm"};
         return {
@@ -90,7 +90,7 @@ TEST_F(Views, CroppedPixelsAreThoseOfTheSamePlace) {
     EXPECT_EQ(compared(all, "a0.exr").r[0], WrittenExr::value(0, 4, 12));
 }
 
-TEST_F(Views, AFrameThatTheFileCannotSpeakForIsRefused) {
+TEST_F(Views, AHugeFrameAroundAFewPixelsIsRefused) {
     WrittenExr exr;
     exr.display = {{0, 0}, {59999, 59999}};
     write_arm("a", exr);
@@ -98,7 +98,7 @@ TEST_F(Views, AFrameThatTheFileCannotSpeakForIsRefused) {
     EXPECT_EQ(read({crop()}).width, 21);
 }
 
-TEST_F(Views, PrimariesBecomeThoseOfTheFirst) {
+TEST_F(Views, PrimariesAreConvertedToThoseOfTheFirst) {
     WrittenExr exr;
     write_arm("b", exr);
     Imf::addChromaticities(exr.more, {{0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.32168f, 0.33767f}});
@@ -115,7 +115,7 @@ TEST_F(Views, PrimariesBecomeThoseOfTheFirst) {
     }
 }
 
-TEST_F(Views, AFileThatChangesBetweenItsReadingsIsRefused) {
+TEST_F(Views, AFileThatChangesBetweenReadingsIsRefused) {
     WrittenExr exr;
     const auto changes = std::vector<std::pair<const char*, std::function<void(const std::string&)>>>{
         {"other pixels",
@@ -157,7 +157,7 @@ TEST_F(Views, AFileThatChangesBetweenItsReadingsIsRefused) {
             }
 }
 
-TEST_F(Views, WhatIsNoRegularFileIsRefusedAtOnce) {
+TEST_F(Views, AFileThatIsNotRegularIsRefusedAtOnce) {
     ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
     EXPECT_THAT(refusal([&] { return read_render(path("pipe")); }), HasSubstr("pipe"));
     EXPECT_THAT(refusal([&] { return read_render("/dev/zero"); }), HasSubstr("device"));
@@ -172,7 +172,7 @@ TEST_F(Views, WhatIsNoRegularFileIsRefusedAtOnce) {
     ::close(s);
 }
 
-TEST_F(Views, EqualWarningsAreOne) {
+TEST_F(Views, EqualWarningsAreMerged) {
     WrittenExr exr;
     for (int k = 0; k < 12; ++k) {
         exr.channels = {"R", "G"};
@@ -183,7 +183,7 @@ TEST_F(Views, EqualWarningsAreOne) {
         ElementsAre(AllOf(HasSubstr("aa.exr (the first of 12 files): 273 pixels with a negative channel"))));
 }
 
-TEST_F(Views, MasksAreOfTheImageWhereverTheirOwnWindowIs) {
+TEST_F(Views, MasksApplyToTheImageRegardlessOfTheirOrigin) {
     WrittenExr exr;
     exr.data = {{2, 1}, {17, 12}};
     write_arm("a", exr);

@@ -1,6 +1,6 @@
-// Variances of means over k renders are a pixel's over k. Where one file says nothing of its noise, half the mean
-// square difference of neighbours stands in for it, less the other side's noise, times how much more there is at low
-// frequencies than at high ones.
+// The variance of a mean over k renders is that of a pixel over k. If one file states no variance, it is estimated as
+// half the mean squared difference of neighbours, minus the other side's noise, times the ratio of noise at low to that
+// at high frequencies.
 #include "compare/outputs.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ public:
         if (neighbours) rough_ += (d - before_) * (d - before_) / 2, pairs_ += 1;
         last_ = i, before_ = d, pairs_started_ = true;
     }
-    /// `low`: how much more noise there is over a whole set than between neighbours.
+    /// `low`: the noise over a whole set relative to that between neighbours.
     SetVariance done(double low) const {
         SetVariance out = out_;
         for (double* sum : {&out.a, &out.b, &out.own, &out.mean_a, &out.mean_b}) *sum /= out.pixels;
@@ -66,7 +66,7 @@ MeanInterval floored_at(MeanInterval m, double variance_of_one) {
     return m;
 }
 
-/// One file: its error is what its pixels' errors make of it, and counts as known, not as estimated.
+/// One file: its error follows from those of its pixels and counts as known, not as estimated.
 MeanInterval one_file(double mean, const SetVariance& noise) {
     return {mean, 0, 0, std::sqrt(noise.b / noise.pixels), 1000000};
 }
@@ -78,7 +78,7 @@ double low_over_high(const std::vector<double>& power) {
     return high > 0 ? std::max(1.0, power.front() / high) : 1;
 }
 
-/// 0 where one file says nothing of them.
+/// Returns the variance of a pixel's mean over each tile; 0 for a single file.
 std::vector<double> tile_variances(const ArmStats& arm, std::size_t quantity) {
     const auto& tiles = arm.quantities[quantity].tiles;
     std::vector<double> out(tiles[0].size());
@@ -88,7 +88,7 @@ std::vector<double> tile_variances(const ArmStats& arm, std::size_t quantity) {
     return out;
 }
 
-/// The same rule as RegionResult::mean_heavy, of the deviations from the mean of one quantity.
+/// The rule of RegionResult::mean_heavy, for deviations from the mean of one quantity.
 bool heavy_deviations(const RenderStats& all, const ArmStats& arm, std::size_t quantity, std::size_t region) {
     const std::vector<float>& largest = arm.quantities[quantity].largest[region];
     const auto tail = fit_pooled_tail(std::span<const float>(largest));
@@ -215,17 +215,17 @@ Welch BiasPair::test(
 double BiasPair::rare_event(double difference) const {
     const QuantityReadings& read = (difference < 0 ? a : b).quantities[quantity];
     if (!differences) return std::max(brightest, read.rise);
-    const QuantityReadings& paired = differences->quantities[quantity];  // what b meets and a does not is a fall
+    const QuantityReadings& paired = differences->quantities[quantity];  // an event in b alone is a fall of a - b
     return std::max(brightest, difference < 0 ? paired.rise : paired.fall);
 }
 
-double BiasPair::unseen(double difference, double pixels, double level) const {
+double BiasPair::missable_difference(double difference, double pixels, double level) const {
     const ArmStats& lower = difference < 0 ? a : b;
     if (lower.files.size() < 2) return 0;
     return -math::log(level) * rare_event(difference) / (pixels * renders_of(lower));
 }
 
-std::optional<MissedEvents> BiasPair::needed(const Found& place, double pixels, double level) const {
+std::optional<MissedEvents> BiasPair::events_for(const Found& place, double pixels, double level) const {
     const bool ours = place.a < place.b;
     const ArmStats& lower = ours ? a : b;
     if (lower.files.size() < 2) return {};
@@ -237,13 +237,14 @@ std::optional<MissedEvents> BiasPair::needed(const Found& place, double pixels, 
     return out;
 }
 
-double BiasPair::blind(double mean_a, double mean_b, double pixels, double variance, double level) const {
+double BiasPair::undetectable_difference(
+    double mean_a, double mean_b, double pixels, double variance, double level) const {
     constexpr double roundings = 4;
-    constexpr double reordered = 0x1p-18;  // of a float sum of up to 64 like terms, each rounded to 2^-24
+    constexpr double reordered = 0x1p-18;  // of a float sum of up to 64 similar terms, each rounded to 2^-24
     const double rounded = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
     const double left = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
     const double arithmetic = differences ? reordered * (std::fabs(mean_a) + std::fabs(mean_b)) : 0;
-    return std::max({unseen(mean_a - mean_b, pixels, level),
+    return std::max({missable_difference(mean_a - mean_b, pixels, level),
         roundings * rounded * std::max(left, 1 / std::sqrt(pixels)), arithmetic});
 }
 
@@ -253,12 +254,12 @@ double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& se
     return visit.done(1).b;
 }
 
-// ---- What was found about means, in one sentence.
+// ---- The results about means, in one sentence.
 
 namespace {
 
 std::string relative(double a, double b) {
-    if (!(b > 0)) return fmt::format("{} beside {}", figures(a, 2), figures(b, 2));
+    if (!(b > 0)) return fmt::format("{} against {}", figures(a, 2), figures(b, 2));
     if (a / b >= 2) return fmt::format("{} times", figures(a / b, 2));
     return (a < b ? "−" : "+") + percent(std::fabs(a / b - 1), 2);
 }
@@ -268,7 +269,7 @@ std::string place(const Found& f) {
     return fmt::format("x {}–{} y {}–{}", f.box.x0, f.box.x1, f.box.y0, f.box.y1);
 }
 
-/// "R " before what is said of a channel; nothing of Y.
+/// Returns "R " for a channel, "" for Y.
 std::string of_channel(std::size_t quantity) {
     return quantity == 0 ? "" : fmt::format("{} ", quantity_names[quantity]);
 }
@@ -280,7 +281,7 @@ std::string places(const std::vector<Found>& found, std::uint64_t all) {
     return fmt::format("{}{}", fmt::join(out, ", "), all > found.size() ? " and more" : "");
 }
 
-/// " in R", or " (12 most in R, 4 in B)": in which quantity places differ the most, where it is not Y alone.
+/// Returns " in R", or " (12 most in R, 4 in B)": the quantities in which places differ the most; "" if only Y.
 std::string by_quantity(const std::vector<std::uint64_t>& by) {
     std::vector<std::string> out;
     for (std::size_t q = 0; q < by.size(); ++q)
@@ -332,7 +333,7 @@ std::string failing(const FailingPixels& pixels, const std::string& name, std::s
         renders_of(pixels.other_least, pixels.other_most, other_renders), other, places_of(pixels, width));
 }
 
-/// Pixels that are not finite and are no difference.
+/// Describes pixels that are not finite without a difference between the sides.
 std::string excluded(const BiasResult& b) {
     std::string out;
     if (b.non_finite.both)
@@ -343,13 +344,13 @@ std::string excluded(const BiasResult& b) {
             counted(b.non_finite.one, "pixel"), b.non_finite.one == 1 ? "is" : "are");
     if (b.non_finite.undecided)
         out += fmt::format(
-            " {} of those not finite in half of the renders of one side or more and in none of the other: whether the "
-            "rates are equal, more renders would show.",
+            " {} of those not finite in half of the renders of one side or more and in none of the other: more "
+            "renders are needed to test whether the rates are equal.",
             b.non_finite.undecided == 1 ? "1 is" : fmt::format("{} are", b.non_finite.undecided));
     return out;
 }
 
-/// Renders that share their random numbers, and what was made of it.
+/// Describes renders that share their random numbers, and how they were compared.
 std::string seeds(const BiasResult& b) {
     if (b.shared.empty()) return "";
     const auto smaller = [](const SeedPair& x, const SeedPair& y) { return x.correlation < y.correlation; };
@@ -363,16 +364,17 @@ std::string seeds(const BiasResult& b) {
     return found + "a test of pairs would be no sharper, so all were compared as if independent.";
 }
 
-/// A t-test does not see events that no render met; how rare and bright they would have to be is for the reader to
-/// judge.
-std::string unless(const BiasResult& b) {
-    if (!b.unless) return {};
-    const std::string times =
-        b.unless->of_mean > 0 ? fmt::format(", {} times its mean there,", figures(b.unless->of_mean, 2)) : "";
+/// A t-test cannot detect events that are in no render. States how rare and bright they would have to be, so that the
+/// reader can decide.
+std::string missed_events_sentence(const BiasResult& b) {
+    if (!b.missed_events) return {};
+    const std::string times = b.missed_events->of_mean > 0
+        ? fmt::format(", {} times its mean there,", figures(b.missed_events->of_mean, 2))
+        : "";
     return fmt::format(
-        " Without a bias {} would have to meet events brighter than {}{} in fewer than one of {:.0f} "
-        "pixels, none of which its renders met.",
-        b.unless->arm, figures(b.unless->size, 2), times, std::max(1.0, b.unless->one_in));
+        " If there is no bias, {} has events brighter than {}{} in fewer than one of {:.0f} pixels, and its renders "
+        "contain none.",
+        b.missed_events->arm, figures(b.missed_events->size, 2), times, std::max(1.0, b.missed_events->one_in));
 }
 
 }  // namespace
@@ -409,7 +411,7 @@ std::string single(const BiasResult& b) {
     const SingleDifference& s = *b.single;
     return fmt::format(
         "{} and {} are one render each: {} of {} pixels differ, the RMS of the difference of Y is {}, the largest "
-        "difference of a channel is {} at ({}, {}); whether that is noise cannot be said with fewer than two renders "
+        "difference of a channel is {} at ({}, {}); whether that is noise cannot be tested with fewer than two renders "
         "of each",
         b.a, b.b, s.different, s.pixels, figures(s.rms, 3), figures(s.largest, 3), s.at.x0, s.at.y0);
 }
@@ -421,24 +423,24 @@ std::string sentence_of(const RenderStats& all, const BiasResult& b, double alph
         return fmt::format("{} and {} are identical: the same pixels in every render.{}", b.a, b.b, excluded(b));
     const std::string notes = excluded(b) + seeds(b);
     if (b.differs())
-        return fmt::format(
-            "{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(all, b), "; "), unless(b), notes);
+        return fmt::format("{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(all, b), "; "),
+            missed_events_sentence(b), notes);
     if (b.single) return single(b) + "." + notes;
-    std::vector<std::string> seen, not_seen;
+    std::vector<std::string> found, not_tested;
     for (const MeanTest& t : b.regions) {
-        if (!t.doubt.empty()) not_seen.push_back(fmt::format("{}: {}", t.region, t.doubt));
-        else if (t.why.empty()) seen.push_back(smallest_seen(t));
-        else not_seen.push_back(fmt::format("{}: {}", t.region, t.why));
+        if (!t.caveat.empty()) not_tested.push_back(fmt::format("{}: {}", t.region, t.caveat));
+        else if (t.why.empty()) found.push_back(smallest_seen(t));
+        else not_tested.push_back(fmt::format("{}: {}", t.region, t.why));
         for (const MeanTest& c : t.channels)
             if (t.why.empty() && !c.why.empty())
-                not_seen.push_back(fmt::format("{} in {}: {}", c.region, t.region, c.why));
+                not_tested.push_back(fmt::format("{} in {}: {}", c.region, t.region, c.why));
     }
-    std::string out = seen.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
-                                   : fmt::format(
-                                         "No difference between {} and {} was found; one of {} would have been, "
-                                         "nine times out of ten (alpha {})",
-                                         b.a, b.b, fmt::join(seen, ", "), figures(alpha, 2));
-    if (!not_seen.empty()) out += fmt::format("; not tested: {}", fmt::join(not_seen, "; "));
+    std::string out = found.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
+                                    : fmt::format(
+                                          "No difference between {} and {} was found; one of {} would have been, "
+                                          "nine times out of ten (alpha {})",
+                                          b.a, b.b, fmt::join(found, ", "), figures(alpha, 2));
+    if (!not_tested.empty()) out += fmt::format("; not tested: {}", fmt::join(not_tested, "; "));
     return out + "." + notes;
 }
 
@@ -446,8 +448,8 @@ std::vector<std::string> found_about_means(const CompareResult& result) {
     constexpr std::size_t few = 6;
     const auto quiet = [](const BiasResult& b) {
         return !b.differs() && !b.identical && !b.non_finite.any() && b.shared.empty() &&
-            std::all_of(
-                b.regions.begin(), b.regions.end(), [](const MeanTest& t) { return t.why.empty() && t.doubt.empty(); });
+            std::all_of(b.regions.begin(), b.regions.end(),
+                [](const MeanTest& t) { return t.why.empty() && t.caveat.empty(); });
     };
     std::vector<std::string> out;
     std::size_t rest = 0;

@@ -17,7 +17,7 @@ public:
         Render r(name, side, side);
         for (std::size_t i = 0; i < r.size(); ++i)
             r.r[i] = r.g[i] = r.b[i] = static_cast<float>(
-                made_pixel({SyntheticNoise::Kind::normal, 0.1}, seed, static_cast<std::uint32_t>(i), side));
+                synthetic_pixel({SyntheticNoise::Kind::normal, 0.1}, seed, static_cast<std::uint32_t>(i), side));
         return renders[name] = r;
     }
     RenderStats read(std::vector<CompareFlag> flags = {}) const {

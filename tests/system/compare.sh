@@ -151,7 +151,7 @@ bad() {
 bad "--arm NAME=FILES"
 bad "found none" --arm 'a=absent*.exr'
 bad "named twice" --arm a=s7/films/uniform.exr --arm a=s7/films/uniform.exr --layer a=n=16
-bad "say which with --layer" --arm a=s7/films/uniform.exr
+bad "choose one with --layer" --arm a=s7/films/uniform.exr
 bad "found a PNG" --arm a=one/plates/renders.png
 bad "did you mean 'rmse'?" "${arms[@]}" --assert 'rsme.ball(u) < 1'
 bad "'frame', the whole image" "${arms[@]}" --assert 'rmse(u) < 1'

@@ -54,18 +54,18 @@ ArmAtPixel arm_at(const Data& data, const OpenPixel& pixel, const std::string& a
     out.film = static_cast<double>(film.y[std::size_t(pixel.j()) * std::size_t(film.width) + std::size_t(pixel.i())]);
     for (std::size_t k = 0; k < out.samples.size(); ++k) {
         const PixelSample& sample = out.samples[k];
-        if (sample.x > out.giant().x) out.largest = k;
-        out.met += sample.disk >= 0, out.under += sample.cos <= 0;
+        if (sample.x > out.largest_sample().x) out.largest = k;
+        out.hits += sample.disk >= 0, out.below_horizon += sample.cos <= 0;
     }
     out.long_series = long_series;
-    std::uint64_t met = 0;
-    for (const PixelSample& sample : pixel.samples(out.sampler, long_series, key.seed)) met += sample.disk >= 0;
-    out.share_met = static_cast<double>(met) / static_cast<double>(long_series);
+    std::uint64_t hits = 0;
+    for (const PixelSample& sample : pixel.samples(out.sampler, long_series, key.seed)) hits += sample.disk >= 0;
+    out.hit_share = static_cast<double>(hits) / static_cast<double>(long_series);
     return out;
 }
 
 /// Returns the same direction with another sampler's density.
-PixelSample weighed(const OpenPixel& pixel, PixelSample sample, const std::string& sampler) {
+PixelSample with_density_of(const OpenPixel& pixel, PixelSample sample, const std::string& sampler) {
     const double p = pixel.pdf(sampler, {double(sample.wi.x), double(sample.wi.y), double(sample.wi.z)});
     sample.pdf = static_cast<float>(p);
     sample.x = p > 0 ? static_cast<float>(double(sample.f) * double(sample.light) * double(sample.cos) / p)
@@ -82,9 +82,11 @@ PixelStory pixel_story(const Data& data) {
     out.reference = static_cast<double>(reference.y[std::size_t(j) * std::size_t(reference.width) + std::size_t(i)]);
     out.cosine = arm_at(data, *out.pixel, data.cast.cosine);
     out.phong = arm_at(data, *out.pixel, data.cast.phong);
-    out.disk = out.cosine.giant().disk >= 0 ? out.cosine.giant().disk : out.pixel->lights().empty() ? -1 : 0;
+    out.disk = out.cosine.largest_sample().disk >= 0 ? out.cosine.largest_sample().disk
+        : out.pixel->lights().empty()                ? -1
+                                                     : 0;
     for (const PixelLight& disk : out.pixel->lights()) out.solid_angle += disk.faces ? solid_angle(disk) : 0;
-    out.by_phong = weighed(*out.pixel, out.cosine.giant(), out.phong.sampler);
+    out.by_phong = with_density_of(*out.pixel, out.cosine.largest_sample(), out.phong.sampler);
     double under_fill = 0;
     const std::size_t parts = over_hemisphere([&](Vec3d w) {
         const double f = out.pixel->f(w);

@@ -13,15 +13,15 @@ namespace crescent::explainer {
 /// One arm at the selected pixel.
 struct ArmAtPixel {
     std::string arm, sampler;
-    std::vector<PixelSample> samples;  // the N that the film used
-    std::vector<double> mean;          // over the first 1, 2, ... N
-    double film = 0;                   // the film's own Y, equal to mean.back()
-    std::size_t largest = 0;           // index of the largest X
-    std::uint64_t met = 0, under = 0;  // samples that met a light, and samples below the horizon
-    double share_met = 0;              // of a long series of draws of the same pixel
-    std::uint64_t long_series = 0;     // their number
+    std::vector<PixelSample> samples;           // the N that the film used
+    std::vector<double> mean;                   // over the first 1, 2, ... N
+    double film = 0;                            // the film's own Y, equal to mean.back()
+    std::size_t largest = 0;                    // index of the largest X
+    std::uint64_t hits = 0, below_horizon = 0;  // samples that hit a light, and samples below the horizon
+    double hit_share = 0;                       // of a long series of draws of the same pixel
+    std::uint64_t long_series = 0;              // their number
 
-    const PixelSample& giant() const { return samples[largest]; }
+    const PixelSample& largest_sample() const { return samples[largest]; }
 };
 
 /// The pixel of the highlight region in which the cosine arm is farthest from the reference.

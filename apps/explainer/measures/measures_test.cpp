@@ -15,7 +15,7 @@ std::size_t at(const Film& film, const OpenPixel& pixel) {
     return std::size_t(pixel.j()) * std::size_t(film.width) + std::size_t(pixel.i());
 }
 
-TEST(Measures, TheOpenedPixelsSamplesAverageToTheFilm) {
+TEST(Measures, TheSamplesOfThePixelAverageToTheFilm) {
     const Data& data = test::small_data();
     const PixelStory& story = data.measures->story;
     for (const ArmAtPixel* arm : {&story.cosine, &story.phong}) {
@@ -23,13 +23,13 @@ TEST(Measures, TheOpenedPixelsSamplesAverageToTheFilm) {
         ASSERT_EQ(arm->mean.size(), film.n);
         EXPECT_EQ(arm->film, double(film.y[at(film, *story.pixel)]));
         EXPECT_NEAR(arm->mean.back(), arm->film, 2e-6 * arm->film);
-        EXPECT_EQ(arm->giant().x, film.largest[at(film, *story.pixel)]);
-        EXPECT_EQ(arm->met, film.light_hits[at(film, *story.pixel)]);
-        EXPECT_EQ(arm->under, film.horizon[at(film, *story.pixel)]);
+        EXPECT_EQ(arm->largest_sample().x, film.largest[at(film, *story.pixel)]);
+        EXPECT_EQ(arm->hits, film.light_hits[at(film, *story.pixel)]);
+        EXPECT_EQ(arm->below_horizon, film.horizon[at(film, *story.pixel)]);
     }
 }
 
-TEST(Measures, TheOpenedPixelIsTheWorstOfItsRegion) {
+TEST(Measures, ThePixelIsTheWorstOfItsRegion) {
     const Data& data = test::small_data();
     const OpenPixel& pixel = *data.measures->story.pixel;
     const Film& film = *data.film(data.key(data.cast.cosine));
@@ -43,22 +43,22 @@ TEST(Measures, TheOpenedPixelIsTheWorstOfItsRegion) {
 
 TEST(Measures, OtherArmChangesOnlyTheDensityOfASample) {
     const PixelStory& story = test::small_data().measures->story;
-    const PixelSample &a = story.cosine.giant(), &b = story.by_phong;
+    const PixelSample &a = story.cosine.largest_sample(), &b = story.by_phong;
     EXPECT_EQ(a.f, b.f);
     EXPECT_EQ(a.light, b.light);
     EXPECT_EQ(a.cos, b.cos);
     EXPECT_NEAR(double(a.x) * double(a.pdf), double(b.x) * double(b.pdf), 1e-5 * double(a.x) * double(a.pdf));
-    for (const PixelSample& s : story.phong.samples)  // where the arm draws, its weight is that of the draw
+    for (const PixelSample& s : story.phong.samples)  // for draws of the arm, the pdf is that of the draw
         EXPECT_NEAR(story.pixel->pdf("phong", {double(s.wi.x), double(s.wi.y), double(s.wi.z)}), double(s.pdf),
             1e-3 * double(s.pdf));
 }
 
 TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {
     const PixelStory& story = test::small_data().measures->story;
-    const double n = double(story.cosine.long_series), hits = n * story.cosine.share_met;
+    const double n = double(story.cosine.long_series), hits = n * story.cosine.hit_share;
     // The disk is at a cosine close to that of its centre: the share of cosine draws is its projected size.
     const double expected = story.solid_angle * story.pixel->lights()[0].towards.z / pi;
-    EXPECT_NEAR(story.cosine.share_met / expected, 1, 0.01 + 4 / std::sqrt(hits));
+    EXPECT_NEAR(story.cosine.hit_share / expected, 1, 0.01 + 4 / std::sqrt(hits));
     double fill = 0, all = 0;
     for (const PixelSample& s : story.pixel->samples("mis-balance", 20000, 3)) {
         all += double(s.x);
@@ -67,7 +67,7 @@ TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {
     EXPECT_NEAR(1 - fill / all, story.disk_share, 0.003);
 }
 
-TEST(WeightTail, FollowsTheParetoLawItStates) {
+TEST(WeightTail, FollowsItsParetoDistribution) {
     for (const double s : {0.5, 4.0, 32.0}) {
         const WeightTail tail = weight_tail(s, 1 << 18, 5);
         EXPECT_EQ(std::accumulate(tail.bins.begin(), tail.bins.end(), std::uint64_t{0}), tail.n);

@@ -114,7 +114,7 @@ private:
         for (int k = 0; k < 5; ++k)
             f.text({table.x - 20, table.y + row * (k + 1), 160, row}, names[k], label_text, shown);
         f.line({table.x - 20, table.y + 5 * row}, {table.right(), table.y + 5 * row}, muted, 2, shown);
-        column(f, arm_.arm, arm_.giant(), table.x + 130, shown, lit);
+        column(f, arm_.arm, arm_.largest_sample(), table.x + 130, shown, lit);
         column(f, story_.phong.arm, story_.by_phong, table.x + 370, second, lit);
     }
 
@@ -131,7 +131,7 @@ private:
 };
 
 std::vector<Cue> Firefly::cues() const {
-    const PixelSample& s = arm_.giant();
+    const PixelSample& s = arm_.largest_sample();
     const PixelSample& p = story_.by_phong;
     const std::string of = "largest sample of " + arm_.arm;
     std::vector<Cue> out;

@@ -12,14 +12,14 @@ namespace crescent::explainer {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double appear = 0.5, appeared = 2.6, cosine_go = 4.1, cosine_met = 8, back = 10.4, phong_go = 11.6,
-                 phong_met = 14.8, in_the_long_run = 16, end = 21.6;
+constexpr double appear = 0.5, appeared = 2.6, cosine_go = 4.1, cosine_hit = 8, back = 10.4, phong_go = 11.6,
+                 phong_hit = 14.8, in_the_long_run = 16, end = 21.6;
 constexpr Rect square{190, 250, 500, 500};
 constexpr double one_way = 1.4, all_way = 2.8;  // of one point, of all points
 
-struct Traveller {
+struct MovingPoint {
     Point from, cosine, phong;
-    bool cosine_met = false, phong_met = false, phong_under = false;
+    bool cosine_hit = false, phong_hit = false, phong_below_horizon = false;
     Colour ink;
 };
 
@@ -36,10 +36,10 @@ public:
         for (std::size_t k = 0; k < story_.cosine.samples.size(); ++k) {
             const PixelSample& a = story_.cosine.samples[k];
             const PixelSample& b = story_.phong.samples[k];
-            Traveller t;
+            MovingPoint t;
             t.from = {square.x + square.w * double(a.u.x), square.bottom() - square.h * double(a.u.y)};
             t.cosine = disc_.at(wide(a.wi)), t.phong = disc_.at(wide(b.wi));
-            t.cosine_met = a.disk >= 0, t.phong_met = b.disk >= 0, t.phong_under = b.cos <= 0;
+            t.cosine_hit = a.disk >= 0, t.phong_hit = b.disk >= 0, t.phong_below_horizon = b.cos <= 0;
             t.ink = plates::colour(turbo(0.1 + 0.8 * double(a.u.x)));
             points_.push_back(t);
         }
@@ -48,7 +48,7 @@ public:
     void draw(Frame& f) const {
         randoms(f);
         hemisphere(f);
-        travellers(f);
+        moving_points(f);
         counts(f);
     }
 
@@ -58,9 +58,10 @@ public:
         out.push_back(
             {appear, Words(data_.n_of(data_.key(cosine)), " pairs of random numbers: every arm gets the same.")});
         out.push_back({cosine_go, Words(data_.arm(cosine), " makes directions of them, seen from above.")});
-        out.push_back({cosine_met, Words(met(story_.cosine), " met the light.")});
+        out.push_back({cosine_hit, Words(hits_text(story_.cosine), " hit the light.")});
         out.push_back({back,
-            Words("The same pairs by ", data_.arm(phong), " gather about R. ", met(story_.phong), " met the light.")});
+            Words("The same pairs by ", data_.arm(phong), " gather about R. ", hits_text(story_.phong),
+                " hit the light.")});
         out.push_back({in_the_long_run,
             Words("Only the map differs: by ", data_.arm(cosine), " ", one_in(story_.cosine), " meets the light, by ",
                 data_.arm(phong), " ", one_in(story_.phong), ".")});
@@ -68,17 +69,17 @@ public:
     }
 
 private:
-    Words met(const ArmAtPixel& arm) const {
-        if (arm.met == 0) return Words("None");
-        return Words(count(arm.met, "samples of " + arm.arm + " that met a light in the opened pixel"), " of ",
+    Words hits_text(const ArmAtPixel& arm) const {
+        if (arm.hits == 0) return Words("None");
+        return Words(count(arm.hits, "samples of " + arm.arm + " that hit a light in the opened pixel"), " of ",
             count(arm.samples.size(), "samples of " + arm.arm));
     }
     Words one_in(const ArmAtPixel& arm) const {
-        if (!(arm.share_met > 0)) return Words("none");
-        const double every = 1 / arm.share_met,
+        if (!(arm.hit_share > 0)) return Words("none");
+        const double every = 1 / arm.hit_share,
                      unit = math::pow(10.0, std::max(0.0, std::floor(math::log10(every)) - 1));
         const auto rounded = static_cast<std::uint64_t>(unit * std::round(every / unit));  // to two digits
-        return Words("one in ", count(rounded, "share of a long series of " + arm.arm + " that met a light"));
+        return Words("one in ", count(rounded, "share of a long series of " + arm.arm + " that hit a light"));
     }
 
     void randoms(Frame& f) const {
@@ -119,24 +120,24 @@ private:
         f.text({label.x, label.y - 22, 220, 44}, Words(name(disk.name)), label_text, shown);
     }
 
-    void travellers(Frame& f) const {
+    void moving_points(Frame& f) const {
         const int n = static_cast<int>(points_.size());
         const int there = f.steps(appear, appeared, n);
         const double stagger = (all_way - one_way) / n;
         for (int k = 0; k < there; ++k) {
-            const Traveller& p = points_[std::size_t(k)];
+            const MovingPoint& p = points_[std::size_t(k)];
             f.circle(p.from, 6, p.ink, 1.5, 0.5);
             const double out = f.ease(cosine_go + stagger * k, cosine_go + stagger * k + one_way),
                          home = f.ease(back, back + 1);
             const double again = f.ease(phong_go + stagger * k, phong_go + stagger * k + one_way);
             const Point at =
                 again > 0 ? between(p.from, p.phong, again) : between(between(p.from, p.cosine, out), p.from, home);
-            if (again >= 1 && p.phong_under) f.circle(at, 6, muted, 2);
+            if (again >= 1 && p.phong_below_horizon) f.circle(at, 6, muted, 2);
             else f.dot(at, 7, p.ink);
         }
-        for (const Traveller& p : points_) {
-            if (p.cosine_met) f.circle(p.cosine, 11, bright, 3, f.during(cosine_met + 0.3, back - 0.3));
-            if (p.phong_met) f.circle(p.phong, 11, bright, 3, f.ease(phong_met + 0.3, phong_met + 0.7));
+        for (const MovingPoint& p : points_) {
+            if (p.cosine_hit) f.circle(p.cosine, 11, bright, 3, f.during(cosine_hit + 0.3, back - 0.3));
+            if (p.phong_hit) f.circle(p.phong, 11, bright, 3, f.ease(phong_hit + 0.3, phong_hit + 0.7));
         }
         light(f);
     }
@@ -156,7 +157,7 @@ private:
     const PixelStory& story_;
     const OpenPixel& pixel_;
     Hemisphere disc_;
-    std::vector<Traveller> points_;
+    std::vector<MovingPoint> points_;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ NEEDED = ("dask", "distributed", "pyarrow")
 
 
 def require() -> None:
-    """Raises ImportError, in one line, where the packages of the extra are not installed."""
+    """Raises ImportError, in one line, if the packages of the extra are not installed."""
     import importlib.util
 
     def there(name: str) -> bool:

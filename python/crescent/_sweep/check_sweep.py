@@ -47,7 +47,7 @@ class CheckSweep:
 
     @property
     def kinds(self) -> dict[str, int]:
-        """How many points there are of each kind."""
+        """The number of points of each kind."""
         return {kind: sum(p["kind"] == kind for p in self.points) for kind in KINDS}
 
     def summary(self) -> str:
@@ -65,7 +65,7 @@ def kind_of(result: Mapping[str, Any]) -> str:
 
 
 def _parameters(node: ast.AST) -> list[str] | None:
-    """The keywords that a class or function takes; None if any, or if they are not stated here."""
+    """The keywords of a class or function; None if it accepts any, or if they are not in this file."""
     if isinstance(node, ast.ClassDef):
         if any(isinstance(d, (ast.Name, ast.Attribute, ast.Call)) for d in node.decorator_list):  # a dataclass
             return [a.target.id for a in node.body if isinstance(a, ast.AnnAssign) and isinstance(a.target, ast.Name)]
@@ -80,8 +80,8 @@ def _parameters(node: ast.AST) -> list[str] | None:
     return [a.arg for a in (*node.args.args, *node.args.kwonlyargs) if a.arg != "self"]
 
 
-def _look(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
-    """Identity and code of a sampler. UsageError if there is none, or if it does not take these parameters."""
+def _identify(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
+    """Identity and code of a sampler. UsageError if there is none, or if it lacks these parameters."""
     if ":" not in sampler and not sampler.endswith(".py"):
         names = built_in.arm_names()
         if sampler not in names:
@@ -125,7 +125,7 @@ def run_check_sweep(
     sampler: str, *, over: Any, zip: bool, engine: str, out: str | PathLike[str], alpha: float, full: bool, seed: int,
     workers: int | None, progress: bool, dry_run: bool, say: Say,
 ) -> CheckSweep:  # fmt: skip
-    """Checks what is missing and writes the map."""
+    """Checks the missing points and writes the map."""
     if not 0 < alpha < 1:
         raise UsageError(f"--alpha {alpha:g}: expected a probability between 0 and 1")
     axes = axes_of(over)
@@ -134,7 +134,7 @@ def run_check_sweep(
     if engine_of(engine) == "commands":
         raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
     values = grid(axes, zip)
-    identity, code = _look(sampler, [axis.path for axis in axes])
+    identity, code = _identify(sampler, [axis.path for axis in axes])
     folder = _folder(out)
     store = Store(folder)
     state = read_json(folder / "sweep.json") or {"calls": 0, "points": [], "alpha": alpha}
@@ -275,7 +275,7 @@ def summary_of_checks(out: str | PathLike[str]) -> str:
 
 
 def _first(point: Mapping[str, Any], kind: str) -> Mapping[str, Any] | None:
-    """The verdict that makes a point of its kind."""
+    """The verdict that determines the kind of a point."""
     state = {"wrong": "wrong", "error": "error"}.get(kind, "inconclusive")
     for v in point["verdicts"]:
         if kind != "right" and v["state"] == state and (kind != "heavy-tailed" or v["verdict"] == "tail"):

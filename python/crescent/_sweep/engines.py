@@ -30,7 +30,7 @@ from .tasks import Result, Task, host
 _threads = threading.local()
 _LOST_TRIES = 3  # submissions of a task whose reference was lost with its worker
 _BATCH = 64  # results in one request
-_ANSWER_S = 6.0  # a scheduler that is silent for longer is gone: exit within 10 s
+_RESPONSE_S = 6.0  # longest wait for the scheduler to respond; with it the exit takes at most 10 s
 _NO_WORKER_S = 60.0
 
 
@@ -48,7 +48,7 @@ def on_worker(task: Task, reference: Any = None) -> Result:
     worker = _module("distributed").get_worker()
     key = _module("distributed.worker").thread_state.key
 
-    def unwanted() -> bool:
+    def cancelled() -> bool:
         state = worker.state.tasks.get(key)
         return state is None or state.state in ("cancelled", "released", "forgotten") or worker.status.name != "running"
 
@@ -62,7 +62,7 @@ def on_worker(task: Task, reference: Any = None) -> Result:
     if runner is None:
         runner = _threads.runner = Runner()
     try:
-        result: Result = runner.compute(task, reference and reference["reference"], unwanted)
+        result: Result = runner.compute(task, reference and reference["reference"], cancelled)
     except TaskStopped:
         result = {"error": "stopped"}
     return {**result, "worker": str(worker.address), "host": host(), "name": str(worker.name)}
@@ -82,7 +82,7 @@ class Job:
 
 
 def usable_cores() -> int:
-    """The cores that this job was given: affinity and control groups (Dask), and Slurm's own count."""
+    """The cores of this job: affinity and control groups (Dask), and Slurm's own count."""
     from dask.system import CPU_COUNT  # type: ignore[import-untyped,unused-ignore]
 
     count = int(CPU_COUNT)
@@ -144,14 +144,14 @@ def _queue_cluster(name: str) -> tuple[Any, int]:
     except ImportError:
         raise EngineError("crescent sweep: needs dask-jobqueue: pip install 'crescent-bench[sweep]'") from None
     finally:
-        signal.signal(signal.SIGINT, handler)  # dask-jobqueue takes it by being imported
+        signal.signal(signal.SIGINT, handler)  # importing dask-jobqueue replaces it
     kind = _SCHEDULERS[profile.pop("scheduler")]
     jobs = int(profile.pop("jobs", 1))
     options: dict[str, Any] = {"cores": 1, "memory": "4GB", **profile}
     for ours, theirs in (("extra", "job_extra_directives"), ("prologue", "job_script_prologue")):
         if ours in options:
             options[theirs] = options.pop(ours)
-    options.setdefault("processes", options["cores"])  # one thread a process
+    options.setdefault("processes", options["cores"])  # one thread per process
     cluster = (LocalJobs if kind == "LocalCluster" else getattr(dask_jobqueue, kind))(**options)
     cluster.scale(jobs=jobs)
     return cluster, jobs
@@ -213,17 +213,17 @@ class DaskEngine:
                 os.kill(nanny.process.process.pid, 9)
 
     def _watch(self) -> None:
-        """Sets `lost` as soon as the scheduler does not answer."""
+        """Sets `lost` as soon as the scheduler does not respond."""
         since = time.monotonic()
         while not self._closing and not self._lost.is_set():
             try:
                 comm = self.client.scheduler_comm
                 if comm is not None and not comm.comm.closed():
-                    self.client.sync(self.client.scheduler.versions, callback_timeout=_ANSWER_S / 2)
+                    self.client.sync(self.client.scheduler.versions, callback_timeout=_RESPONSE_S / 2)
                     since = time.monotonic()
-            except Exception:  # noqa: BLE001: any failure means that it did not answer
+            except Exception:  # noqa: BLE001: any failure counts as no response
                 pass
-            if time.monotonic() - since > _ANSWER_S:
+            if time.monotonic() - since > _RESPONSE_S:
                 self._lost.set()
             time.sleep(1)
 
@@ -233,11 +233,11 @@ class DaskEngine:
         return str(self.client.dashboard_link)
 
     def workers(self) -> dict[str, Any]:
-        """What the scheduler knows about its workers, by address."""
+        """The scheduler's information about its workers, by address."""
         return dict(self.client.scheduler_info(n_workers=-1)["workers"])
 
     def wait_for_workers(self) -> None:
-        """Waits for the first worker; EngineError if there is none in a minute. Workers of a queue are waited for."""
+        """Waits for the first worker; EngineError if there is none in a minute, except for workers of a queue."""
         start = time.monotonic()
         while True:
             found = self.workers()
@@ -249,7 +249,7 @@ class DaskEngine:
                 raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s")
             time.sleep(0.1)
 
-    def _gone(self) -> bool:
+    def _disconnected(self) -> bool:
         """Whether the connection to the scheduler is closed."""
         comm = self.client.scheduler_comm
         return self._lost.is_set() or self.client.status != "running" or comm is None or bool(comm.comm.closed())
@@ -260,13 +260,13 @@ class DaskEngine:
 
     def run(self, jobs: Iterator[Job], references: Callable[[str], bytes | None]) -> Iterator[tuple[Job, Result]]:
         """Runs jobs and yields them with their results as they end. A job that needs references comes after the job
-        that computes them, whose id is their identity; or `references` has them."""
+        that computes them, whose id is their identity; else `references` returns them."""
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         running: dict[Any, tuple[Any, Job]] = {}
         length = 1.0  # of a task in s, a running mean: long ones are submitted late, so that workers end together
         shared: dict[str, Any] = {}  # references of the current points, as futures
         waiting = self.later
-        held: list[Job] = []  # a job whose references must wait
+        deferred: list[Job] = []  # a job whose references must wait
         exhausted = False
         last_worker = time.monotonic()
 
@@ -284,7 +284,7 @@ class DaskEngine:
             if job.avoid:
                 others = [address for address in self.workers() if address != job.avoid]
                 where = others or None
-            # Never a key that the scheduler has seen. Tasks of one group stay in its queue until a worker is free.
+            # A new key for each task. Tasks of one group stay in the scheduler's queue until a worker is free.
             key = (f"{job.needs or job.task['kind']}-{self._call}", next(self._numbers))
             future = self.client.submit(on_worker, job.task, reference, key=key, pure=False, workers=where, retries=0)
             if job.task["kind"] == "reference":
@@ -293,7 +293,7 @@ class DaskEngine:
             future.add_done_callback(done.put)
 
         def release() -> None:
-            needed = {job.needs for _, job in running.values()} | {job.needs for job in waiting + held}
+            needed = {job.needs for _, job in running.values()} | {job.needs for job in waiting + deferred}
             needed |= {job.id for _, job in running.values() if job.task["kind"] == "reference"}
             for name in [name for name in list(shared)[:-2] if name not in needed]:
                 del shared[name]
@@ -301,17 +301,17 @@ class DaskEngine:
         try:
             while True:
                 most = max(2 * _BATCH, 4 * self.slots) if length < 0.5 else 3 * self.slots + 1
-                while len(running) < most and not (exhausted and not waiting and not held):
-                    job = waiting.pop() if waiting else held.pop() if held else next(jobs, None)
+                while len(running) < most and not (exhausted and not waiting and not deferred):
+                    job = waiting.pop() if waiting else deferred.pop() if deferred else next(jobs, None)
                     if job is None:
                         exhausted = True
                         break
                     new = job.task["kind"] == "reference" or bool(job.needs) and job.needs not in shared
                     if new and running and len(shared) > self.slots + 2:  # references fill the memory of workers
-                        held.append(job)
+                        deferred.append(job)
                         break
                     submit(job)
-                if exhausted and not running and not waiting and not held:
+                if exhausted and not running and not waiting and not deferred:
                     return
                 try:
                     future = done.get(timeout=0.5)
@@ -346,7 +346,7 @@ class DaskEngine:
                     yield job, result
                 release()
         except BaseException as error:
-            if isinstance(error, Exception) and not isinstance(error, EngineError) and self._gone():
+            if isinstance(error, Exception) and not isinstance(error, EngineError) and self._disconnected():
                 self._lost.set()
                 raise EngineError(f"the Dask scheduler of {self._engine} does not answer") from None
             with contextlib.suppress(Exception):
@@ -361,7 +361,7 @@ class DaskEngine:
         try:
             results = self.client.sync(self.client._gather, futures, callback_timeout=60)
             return {future.key: result for future, result in zip(futures, results, strict=True)}
-        except Exception:  # noqa: BLE001: each is asked for by itself, which says what is wrong with it
+        except Exception:  # noqa: BLE001: each is then requested alone, for its own error
             return {}
 
     def _result(self, future: Any, job: Job) -> tuple[Result, bool]:
@@ -405,7 +405,7 @@ class InProcess:
 
 
 def engine_of(text: str) -> str:
-    """The engine of ``--engine``; UsageError with the nearest word for another one."""
+    """Validates the text of ``--engine``; UsageError with the nearest word if it is wrong."""
     kind, colon, rest = text.partition(":")
     if text in ("local", "commands"):
         return text

@@ -1,4 +1,4 @@
-"""The grid of a sweep: ``PATH=VALUES`` as axes, and the points that they span."""
+"""The grid of a sweep: ``PATH=VALUES`` as axes, and their points."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Axis:
 
 
 def hint(near: str) -> str:
-    """The end of a message that has the nearest valid word; empty if none is near."""
+    """The suggestion of the nearest valid word for a message; empty if there is none."""
     return f"; did you mean '{near}'?" if near else ""
 
 
@@ -33,7 +33,7 @@ _SPACINGS = ("log", "lin")
 
 
 def _item(text: str) -> Any:
-    """A value as TOML; else the text itself."""
+    """The value of TOML text; the text itself if it is not TOML."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
@@ -76,7 +76,7 @@ def _spaced(path: str, kind: str, text: str) -> list[float]:
     steps = [k / (count - 1) for k in range(count)]
     if kind == "lin":
         return [a + (b - a) * t for t in steps[:-1]] + [b]
-    # Ten digits: values that a person can type again.
+    # Ten digits, so that the values can be typed.
     return [a, *(float(f"{a * (b / a) ** t:.10g}") for t in steps[1:-1]), b]
 
 

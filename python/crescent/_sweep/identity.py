@@ -1,7 +1,7 @@
-"""What a result depends on, as hashes: the scene, each sampler with its source, and the version of the numerics.
+"""The inputs of a result as hashes: the scene, each sampler with its source, and the version of the numerics.
 
 The scene's hash covers every value of the experiment except those of samplers, plates, assertions, furnaces and titles:
-a sampler that is added, or another number of seeds, changes no finished result.
+adding a sampler or changing the number of seeds keeps the finished results.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _NOT_OF_THE_SCENE = (
 )  # fmt: skip
 _NOT_OF_THE_REFERENCE = ("regions", "firefly_k")
 
-Code = dict[str, Any]  #: {"files": {name: base64}, "at": "FILE.py:NAME"} of a sampler that travels
+Code = dict[str, Any]  #: {"files": {name: base64}, "at": "FILE.py:NAME"} of a sampler that is sent
 
 
 def digest(*parts: Any) -> str:
@@ -40,7 +40,7 @@ def digest(*parts: Any) -> str:
 
 
 def scene_id(e: Experiment) -> str:
-    """The identity of what is rendered and measured, without the samplers."""
+    """The identity of the scene and its metrics, without the samplers."""
     return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in _NOT_OF_THE_SCENE})
 
 
@@ -73,16 +73,16 @@ def python_sources(file: Path) -> tuple[dict[str, bytes], dict[str, str]]:
             continue
         files[at.name] = at.read_bytes()
         for name in sorted(_imported(files[at.name].decode(errors="replace"))):
-            beside = file.parent / f"{name}.py"
-            if beside.is_file():
-                waiting.append(beside)
+            neighbour = file.parent / f"{name}.py"
+            if neighbour.is_file():
+                waiting.append(neighbour)
             elif name not in sys.stdlib_module_names and name in distributions:
                 for package in distributions[name]:
                     packages[package] = importlib.metadata.version(package)
     return files, dict(sorted(packages.items()))
 
 
-def _travelling(files: Mapping[str, bytes], at: str) -> Code:
+def _code_of(files: Mapping[str, bytes], at: str) -> Code:
     return {"files": {name: base64.b64encode(data).decode() for name, data in sorted(files.items())}, "at": at}
 
 
@@ -98,16 +98,16 @@ def _of_python(where: str) -> tuple[Any, Code | None]:
     path = Path(name)
     files, packages = python_sources(path)
     hashes = {file: hashlib.sha256(data).hexdigest() for file, data in files.items()}
-    return [path.name, inside, hashes, packages], _travelling(files, f"{path.name}{colon}{inside}")
+    return [path.name, inside, hashes, packages], _code_of(files, f"{path.name}{colon}{inside}")
 
 
 def _of_plugin(where: str) -> tuple[Any, Code]:
     data = Path(where).read_bytes()
-    return [hashlib.sha256(data).hexdigest()], _travelling({Path(where).name: data}, Path(where).name)
+    return [hashlib.sha256(data).hexdigest()], _code_of({Path(where).name: data}, Path(where).name)
 
 
 def _of_callable(sampler: Sampler) -> tuple[Any, Code]:
-    """Identity and code of a sampler in memory, which travels by value."""
+    """Identity and code of a sampler in memory, which is sent by value."""
     import cloudpickle  # type: ignore[import-untyped,unused-ignore]
 
     modules = set()
@@ -139,7 +139,7 @@ def _of_callable(sampler: Sampler) -> tuple[Any, Code]:
 
 
 class Arm:
-    """One arm of an experiment: its identity, and what a worker needs to run it."""
+    """One arm of an experiment: its identity, and the data with which a worker runs it."""
 
     def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | None, version: str | None) -> None:
         self.name = name
@@ -158,10 +158,10 @@ class Arm:
         kept = {k: v for k, v in table.items() if k not in ("python", "plugin")}
         self.id = digest(NUMERICS, name, kept, source if version is None else ["declared", version])
         self.kind = "callable" if given is not None else kind
-        self.of: list[str] = []  #: the arms that a combination is of
+        self.of: list[str] = []  #: the arms of a combination
 
     def set_parts(self, of: Sequence[Arm]) -> None:
-        """Of a combination: the arms that it is of, themselves complete."""
+        """Sets the arms of a combination, which must be complete."""
         self.of = list(dict.fromkeys(name for arm in of for name in (arm.name, *arm.of)))
         self.built_in = all(arm.built_in for arm in of)
         self.id = digest(self.id, [arm.id for arm in of])

@@ -1,7 +1,7 @@
 """From a grid to tasks: which results are missing, and how many seeds a task has.
 
-A task has as many seeds as last about `TASK_S` seconds by a measurement of the samples a second of each sampler, which
-is made once and kept in the store.
+A task has as many seeds as last about `TASK_S` seconds by a measurement of the samples per second of each sampler,
+which runs once and is stored.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .engines import InProcess, Job
 from .grid import label
 from .identity import NUMERICS, Arm, arms_of, digest, reference_id, scene_id
 from .store import Store, read_json, write_whole
-from .tasks import said
+from .tasks import error_text
 
 TASK_S = 12.0  #: length of a task; results of 5 to 30 s keep both the overhead and the loss of a failure small
 _LONGEST_S = 30.0
@@ -54,7 +54,7 @@ class Point:
         return safe if len(safe) <= 120 else f"{safe[:100]}-{self.scene}"
 
     def task(self, kind: str, arms: Sequence[str] = (), **more: Any) -> dict[str, Any]:
-        """A task of this point, with the arms that combinations among these are of."""
+        """A task of this point, with the arms of the combinations among these."""
         named = {
             name: {
                 "kind": arm.kind, "code": arm.code, "sampler": arm.sampler, "most": arm.most,
@@ -74,7 +74,7 @@ class Point:
 def points_of(
     base: Experiment, values: Sequence[Mapping[str, Any]], seeds: int, versions: Mapping[str, str]
 ) -> tuple[list[Point], dict[str, str]]:
-    """The points of these values, and the errors of those that are no experiment."""
+    """The points of these values, and the errors of those that are not valid."""
     good: list[Point] = []
     bad: dict[str, str] = {}
     for at in values:
@@ -86,14 +86,14 @@ def points_of(
                 dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions)
             )
         except (ValueError, TypeError, OSError) as error:
-            bad[label(at)] = said(error) if not isinstance(error, OSError) else str(error)
+            bad[label(at)] = error_text(error) if not isinstance(error, OSError) else str(error)
             continue
         good.append(point)
     return good, bad
 
 
 def missing(blocks: Sequence[tuple[int, int]], seeds: int) -> list[tuple[int, int]]:
-    """The ranges of 1 to `seeds` that no block has."""
+    """The ranges of 1 to `seeds` that are in no block."""
     out, at = [], 1
     for first, last in sorted(blocks):
         if first > at:
@@ -127,7 +127,7 @@ def _small(base: Experiment) -> tuple[Experiment, int]:
 
 
 def calibrate(point: Point, store: Store) -> dict[str, Any]:
-    """Samples a second of each arm and seconds a pixel of the reference, on one core of this machine."""
+    """Samples per second of each arm and seconds per pixel of the reference, on one core of this machine."""
     path = store.root / "calibration.json"
     known = read_json(path) or {}
     wanted = {name: arm for name, arm in point.arms.items() if arm.id not in known.get("arms", {})}
@@ -236,7 +236,7 @@ class Plan:
         return out
 
     def cost(self) -> dict[str, float]:
-        """Tasks, samples, seconds on one core and bytes of what is missing."""
+        """Tasks, samples, seconds on one core and bytes of the missing results."""
         total = {"tasks": 0.0, "samples": 0.0, "seconds": 0.0, "bytes": 0.0}
         seen: set[str] = set()
         for point in self._points:

@@ -1,4 +1,4 @@
-"""One bar on stderr: tasks, samples a second, time left. A line now and then where stderr is no terminal."""
+"""A bar on stderr: tasks, samples per second, time left. A line every ten seconds if stderr is not a terminal."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import time
 
 
 def duration(seconds: float) -> str:
-    """Seconds in words of two units."""
+    """Seconds as text with at most two units."""
     s = int(round(seconds))
     if s < 60:
         return f"{s} s"
@@ -17,7 +17,7 @@ def duration(seconds: float) -> str:
 
 
 def quantity(value: float) -> str:
-    """A count with a prefix."""
+    """A count with an SI prefix."""
     for limit, unit in ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")):
         if value >= limit:
             return f"{value / limit:.3g} {unit}"
@@ -25,7 +25,7 @@ def quantity(value: float) -> str:
 
 
 class Progress:
-    """What is done of `tasks` and `samples`."""
+    """The finished part of `tasks` and `samples`."""
 
     def __init__(self, tasks: int, samples: float, shown: bool) -> None:
         self.tasks, self.samples, self.shown = tasks, samples, shown

@@ -16,7 +16,7 @@ from .grid import label, short
 from .store import write_whole
 from .summary import Numbers, geometric, state_of, summary
 
-_MOST_LADDERS = 12  # more points than this have their ladders in the dataset alone
+_MOST_LADDERS = 12  # of more points, some ladders are only in the dataset
 _HEAD = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title><style>
 body{{font:15px/1.5 Inter,system-ui,sans-serif;max-width:70rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a}}
 pre{{overflow-x:auto;font:13px/1.45 ui-monospace,monospace;background:#f6f6f4;padding:.8rem}}
@@ -26,7 +26,7 @@ img{{max-width:100%}}.failed{{color:#a40000}}.note{{color:#555}}h1{{font-size:1.
 
 
 def opening(title: str, note: str, state: Mapping[str, Any]) -> list[str]:
-    """The head of a page, a note in text, and what failed."""
+    """The head of a page, a note, and the list of failures."""
     failed = (f"failed: {place}: {error}" for place, error in state.get("failed", {}).items())
     return [
         _HEAD.format(title=html.escape(title)),
@@ -36,7 +36,7 @@ def opening(title: str, note: str, state: Mapping[str, Any]) -> list[str]:
 
 
 def _image(figure: Any, alt: str) -> str:
-    """A figure as an inlined PNG of 160 dots an inch."""
+    """A figure as an inlined PNG of 160 dots per inch."""
     from .. import plot
 
     data = io.BytesIO()

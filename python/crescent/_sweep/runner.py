@@ -1,7 +1,7 @@
 """A child process that computes tasks, one after another, for one thread of a worker.
 
-A user's sampler runs here, so a crash ends this process only, and a task is stopped by ending it. The process ends with
-its worker.
+A user's sampler runs here, so a crash ends this process only, and a task is stopped by ending the process. It ends
+with its worker.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from collections.abc import Callable
 from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
-_KEPT_REFERENCES = 2  # a worker goes from point to point: the current one and the next
+_KEPT_REFERENCES = 2  # a worker computes point after point: the current one and the next
 
 
 class TaskStopped(Exception):
-    """The task is no longer wanted."""
+    """The task was cancelled."""
 
 
 class Runner:
@@ -47,7 +47,7 @@ class Runner:
             stdin=subprocess.DEVNULL,
             stdout=self._errors,
             stderr=self._errors,
-            start_new_session=True,  # Ctrl-C is the client's to handle
+            start_new_session=True,  # the client handles Ctrl-C
         )
         there.close()
         self._line, self._code = here, code
@@ -64,7 +64,7 @@ class Runner:
         self._process = self._line = None
 
     def _ended(self) -> str:
-        """Why the process ended."""
+        """The reason for which the process ended."""
         process = self._process
         assert process is not None
         code = process.wait()
@@ -75,8 +75,8 @@ class Runner:
         how = f"signal {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
         return f"its process ended with {how}" + (f": {last[:300]}" if last else "")
 
-    def compute(self, task: dict[str, Any], reference: bytes | None, unwanted: Callable[[], bool]) -> dict[str, Any]:
-        """The result of a task, or {"error": ...}. Raises TaskStopped as soon as it is unwanted."""
+    def compute(self, task: dict[str, Any], reference: bytes | None, cancelled: Callable[[], bool]) -> dict[str, Any]:
+        """The result of a task, or {"error": ...}. Raises TaskStopped as soon as `cancelled` returns True."""
         code = task.get("code_id")
         if self._line is not None and self._code != code:
             self.stop()
@@ -85,7 +85,7 @@ class Runner:
             line.send(("task", task))
             while True:
                 while not line.poll(0.1):
-                    if unwanted():
+                    if cancelled():
                         self.stop()
                         raise TaskStopped
                 what, value = line.recv()
@@ -106,7 +106,7 @@ def _end_with_parent(parent: int) -> None:
 
 def main() -> int:
     """The process itself."""
-    from .tasks import compute, said
+    from .tasks import compute, error_text
 
     faulthandler.enable()
     parent = os.getppid()
@@ -133,7 +133,7 @@ def main() -> int:
         except MemoryError:
             result = {"error": "not enough memory"}
         except BaseException as error:  # noqa: BLE001: the sweep lists every error
-            result = {"error": said(error)}
+            result = {"error": error_text(error)}
         line.send(("result", result))
 
 

@@ -1,4 +1,4 @@
-"""The folder of a sweep: results by their identity, and what is made of them.
+"""The folder of a sweep: results by their identity, and the files derived from them.
 
     store/results/SCENE/ARM/FIRST-LAST.json   one arm, a block of seeds: metrics.json as text, and who computed it
     store/references/ID                       references of a scene
@@ -7,7 +7,7 @@
     data/*.parquet                            the dataset, a file for each result
     points/LABEL/                             metrics.json, metrics.csv of a finished point; films/ on request
 
-Every file is written under another name and renamed, so it is there as a whole or not at all.
+Every file is written under another name and renamed, so it is complete or does not exist.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Store:
         return self.root / "results" / scene / arm
 
     def blocks(self, scene: str, arm: str) -> list[tuple[int, int]]:
-        """The blocks of seeds that are there, ascending; suspect ones are not."""
+        """The blocks of seeds that exist, ascending, without suspect ones."""
         out = []
         folder = self._folder(scene, arm)
         for name in os.listdir(folder) if folder.is_dir() else ():
@@ -80,7 +80,7 @@ class Store:
         return path
 
     def result(self, scene: str, arm: str, first: int, last: int) -> dict[str, Any] | None:
-        """A result; None if it is not there or cannot be read."""
+        """A result; None if it does not exist or cannot be read."""
         found = read_json(self._folder(scene, arm) / f"{first}-{last}.json")
         return found if isinstance(found, dict) else None
 
@@ -93,7 +93,7 @@ class Store:
     # ---- suspects
 
     def suspect(self) -> set[str]:
-        """The names of results that a check of the bits has called into question."""
+        """The names of results for which two workers computed different bits."""
         return set(self._suspect)
 
     def mark(self, keys: set[str]) -> None:
@@ -109,18 +109,18 @@ class Store:
     # ---- references, studies, checks
 
     def reference_path(self, name: str) -> Path:
-        """Where the references of that identity are."""
+        """The path of the references with this identity."""
         return self.root / "references" / name
 
     def reference(self, name: str) -> bytes | None:
-        """The references of that identity."""
+        """The references with this identity."""
         try:
             return self.reference_path(name).read_bytes()
         except OSError:
             return None
 
     def add_reference(self, name: str, data: bytes) -> None:
-        """Keeps references."""
+        """Stores references."""
         write_whole(self.reference_path(name), data)
 
     def studies(self, name: str) -> str | None:
@@ -129,14 +129,14 @@ class Store:
         return found["json"] if found else None
 
     def add_studies(self, name: str, result: dict[str, Any]) -> None:
-        """Keeps studies."""
+        """Stores studies."""
         write_whole(self.root / "studies" / f"{name}.json", json.dumps(result))
 
     def check(self, name: str) -> dict[str, Any] | None:
-        """The verdicts of that identity."""
+        """The verdicts with this identity."""
         found = read_json(self.root / "checks" / f"{name}.json")
         return found if isinstance(found, dict) else None
 
     def add_check(self, name: str, result: dict[str, Any]) -> None:
-        """Keeps verdicts."""
+        """Stores verdicts."""
         write_whole(self.root / "checks" / f"{name}.json", json.dumps(result))

@@ -19,7 +19,7 @@ Rows = list[dict[str, Any]]
 
 
 def state_of(out: str | PathLike[str]) -> dict[str, Any]:
-    """What sweep.json holds."""
+    """The contents of sweep.json."""
     found = read_json(Path(out) / "sweep.json")
     if not found:
         raise UsageError(f"{out}: no sweep: expected a folder that `crescent sweep --out` made")
@@ -101,7 +101,7 @@ class Numbers:
 
 
 def geometric(values: Sequence[float]) -> float:
-    """The geometric mean; the mean where a value is not positive."""
+    """The geometric mean; the arithmetic mean if a value is not positive."""
     v = np.asarray(values, dtype=float)
     return float(np.exp(np.log(v).mean())) if (v > 0).all() else float(v.mean())
 

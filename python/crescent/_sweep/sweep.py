@@ -1,4 +1,4 @@
-"""Runs an experiment over a grid: plans the missing tasks, computes them on an engine, writes what follows."""
+"""Runs an experiment over a grid: plans the missing tasks, computes them on an engine, writes the outputs."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ Over = Mapping[str, Any] | Sequence[str] | str
 
 @dataclass
 class Sweep:
-    """The result of :func:`crescent.sweep`: what was computed, what failed, and the dataset."""
+    """The result of :func:`crescent.sweep`: the computed tasks, the errors, and the dataset."""
 
     out: Path
     points: list[dict[str, Any]]
     computed: int  #: tasks computed by this call
     failed: dict[str, str]  #: by task or point, the error
-    cost: dict[str, float] = field(default_factory=dict)  #: of what was missing: tasks, samples, seconds, bytes
+    cost: dict[str, float] = field(default_factory=dict)  #: of the missing results: tasks, samples, seconds, bytes
 
     def to_arrow(self) -> Any:
         """The dataset as a pyarrow.Table."""
@@ -70,7 +70,7 @@ class Sweep:
 
 @dataclass
 class Options:
-    """What a call was given."""
+    """The arguments of a call."""
 
     over: Any
     zip: bool
@@ -99,7 +99,7 @@ def fraction(given: float | str) -> float:
 
 
 def _folder(out: str | PathLike[str]) -> Path:
-    """The folder of a sweep, which is a new or empty one, or has a sweep."""
+    """The folder of a sweep: a new or empty one, or one with a sweep."""
     path = Path(os.path.abspath(out))
     if path.is_file():
         raise UsageError(f"--out {out}: is a file; expected a folder")
@@ -221,7 +221,7 @@ class Run:
         return Job(f"verify-{job.id}", task, ("verify", job.about, result), needs=job.needs, avoid=result["worker"])
 
     def compare(self, job: Job, second: Result) -> None:
-        """Compares two computations of one task; marks what both workers computed if their bits differ."""
+        """Compares two computations of one task; if their bits differ, marks all results of both workers."""
         _, about, first = job.about
         _, point, arms, start, end = about
         for name in arms:
@@ -260,7 +260,7 @@ class Run:
         return f"{point.label}, {kind}"
 
     def execute(self, plan: Plan, engine: DaskEngine) -> None:
-        """Computes what is missing."""
+        """Computes the missing results."""
         cost = plan.cost()
         bar = Progress(int(cost["tasks"]), cost["samples"], self.options.progress)
         plan.slots = engine.slots
@@ -325,7 +325,7 @@ class Run:
 
 
 def _estimate(run: Run, plan: Plan) -> list[str]:
-    """What is missing, in words."""
+    """The missing results, in words."""
     cost = plan.cost()
     cores = run.options.workers or usable_cores()
     head = (

@@ -1,8 +1,8 @@
-"""The tasks of a sweep as plain data, and what computes one in this process.
+"""The tasks of a sweep as plain data, and their computation in this process.
 
 A task has a kind: ``reference`` (of one scene), ``part`` (some arms and seeds of one point), ``studies`` (furnaces and
-checks of the article's claims of one point), ``check`` (a sampler at one point), ``sleep`` (a stub for measurements).
-Its result is plain data too; references are bytes.
+checks of the article's claims of one point), ``check`` (a sampler at one point), ``sleep`` (waits, to
+measure the overhead of a task). Its result is plain data too; references are bytes.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def host() -> str:
 
 
 def _code_folder(files: Mapping[str, str]) -> Path:
-    """The folder of these files on this machine; its name is that of their content."""
+    """The folder of these files on this machine, named by the hash of their contents."""
     name = hashlib.sha256(repr(sorted(files.items())).encode()).hexdigest()[:24]
     folder = Path(tempfile.gettempdir()) / f"crescent-sweep-{os.getuid()}" / name
     folder.parent.mkdir(exist_ok=True, mode=0o700)
@@ -52,14 +52,14 @@ def _code_folder(files: Mapping[str, str]) -> Path:
 
 
 def _sampler(code: Mapping[str, Any]) -> Any:
-    """The sampler in Python that travelled with a task."""
+    """The Python sampler that was sent with a task."""
     if code.get("pickle"):
         return pickle.loads(base64.b64decode(code["pickle"]))
     return sampler_at(str(_code_folder(code["files"]) / code["at"]))
 
 
 def experiment_of(task: Task) -> Any:
-    """The experiment of a task, with its plugins where this machine has them."""
+    """The experiment of a task, with the paths of its plugins on this machine."""
     changes = list(task["changes"])
     for name, arm in task.get("arms", {}).items():
         if arm["kind"] == "plugin":
@@ -69,7 +69,7 @@ def experiment_of(task: Task) -> Any:
 
 
 def _callables(task: Task) -> list[Any]:
-    """The arms in Python of a task."""
+    """The Python arms of a task."""
     out = []
     for name, arm in task.get("arms", {}).items():
         if arm["kind"] in ("python", "callable"):
@@ -136,14 +136,14 @@ def _sampler_with(code: Mapping[str, Any], values: Mapping[str, Any]) -> Any:
     found = getattr(_module_in(Path(file)), inside) if colon else None
     if found is None or isinstance(found, Sampler) or not callable(found):
         return sampler_at(at)
-    made = found(**values)
-    if isinstance(made, Sampler):
-        return made
-    return Sampler(made.sample, getattr(made, "pdf", None), getattr(made, "f", None), name=inside)
+    sampler = found(**values)
+    if isinstance(sampler, Sampler):
+        return sampler
+    return Sampler(sampler.sample, getattr(sampler, "pdf", None), getattr(sampler, "f", None), name=inside)
 
 
 def _rates(task: Task) -> Result:
-    """Measures samples a second of each arm, and seconds a pixel of the reference, on a small picture of the scene."""
+    """Measures samples per second of each arm and seconds per pixel of the reference on a small image of the scene."""
     e = experiment_of(task)
     pixels = task["pixels"]
     start = time.perf_counter()
@@ -169,11 +169,11 @@ def _rates(task: Task) -> Result:
             seen = json.loads(run.json)["geometry_pixels"] / pixels
             arms[name] = seen * pixels * last * arm["most"] / seconds
         except Exception as error:  # noqa: BLE001: the tasks of this arm report it
-            errors[name] = said(error)
+            errors[name] = error_text(error)
     return {"arms": arms, "reference_s": reference_s, "seen": seen, "errors": errors}
 
 
-def said(error: BaseException) -> str:
+def error_text(error: BaseException) -> str:
     """An error in one line."""
     text = " ".join(str(error).split())
     return text if isinstance(error, ValueError) and text else f"{type(error).__name__}: {text}"
@@ -187,8 +187,8 @@ def compute(task: Task, reference: Any = None) -> Result:
     kind = task["kind"]
     out: Result
     if kind == "reference":
-        made = _crescent.references(experiment_of(task), task.get("threads", 1), "", None)
-        out = {"reference": pickle.dumps(made, protocol=5), "id": task["id"]}
+        references = _crescent.references(experiment_of(task), task.get("threads", 1), "", None)
+        out = {"reference": pickle.dumps(references, protocol=5), "id": task["id"]}
     elif kind == "part":
         out = _part(task, reference)
     elif kind == "studies":

@@ -1,4 +1,4 @@
-// The new folder of the baseline is written beside the old one and exchanged with it (base/files.h). Files of views
+// The new folder of the baseline is written next to the old one and exchanged with it (base/files.h). Files of views
 // that are not accepted are linked into it.
 #include "compare/suite/accept.h"
 
@@ -40,7 +40,7 @@ std::string hash_of_file(const std::string& path) {
     return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-/// A candidate's file and the name that it has as the baseline, relative to the folder of the baseline.
+/// A candidate's file and its name in the folder of the baseline.
 struct Accepted {
     std::string from, name;
 };
@@ -74,7 +74,7 @@ std::vector<Accepted> renders_of(const Suite& suite, const SuiteView& view, cons
     return out;
 }
 
-/// The name of the moments of a view: "moments" in place of the wildcards.
+/// Returns the name of the moments of a view: "moments" in place of the wildcards.
 std::string moments_name(const Suite& suite, const SuiteView& view, const std::string& folder) {
     for (const std::string& pattern : suite.options.baseline)
         if (const auto path = path_from(pattern, view.name, {"moments"}); path && path->ends_with(".exr"))
@@ -85,7 +85,7 @@ std::string moments_name(const Suite& suite, const SuiteView& view, const std::s
             fmt::join(suite.options.baseline, "', '")));
 }
 
-/// The candidate alone.
+/// Returns a plan with the candidate only.
 ComparePlan plan_of_candidate(const Suite& suite, const SuiteView& view, const std::vector<std::string>& files) {
     ComparePlan plan;
     plan.file = suite.file.empty() ? "crescent compare" : suite.file;
@@ -95,7 +95,7 @@ ComparePlan plan_of_candidate(const Suite& suite, const SuiteView& view, const s
     return plan;
 }
 
-/// One file for each different render; whether there were several and all were equal.
+/// Returns one file for each different render, and whether there were several renders and all were equal.
 std::pair<std::vector<std::string>, bool> different_files(const Suite& suite, const SuiteView& view) {
     std::vector<std::string> out;
     std::vector<std::uint64_t> hashes;
@@ -150,8 +150,8 @@ std::vector<const SuiteView*> wanted_views(const Suite& suite, const std::vector
     return out;
 }
 
-/// A file of the old folder in the new one, by a second name where the file system has that.
-void carry(const std::string& from, const std::string& to) {
+/// Makes a file of the old folder appear in the new one, by a hard link if the file system supports it.
+void link_or_copy(const std::string& from, const std::string& to) {
     std::error_code error;
     fs::create_hard_link(from, to, error);
     if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
@@ -212,7 +212,7 @@ std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acce
     }
     for (const SuiteView& view : suite.views)
         if (std::find(views.begin(), views.end(), &view) == views.end())
-            for (const std::string& path : view.baseline) carry(path, staging.path(relative_to(path, folder)));
+            for (const std::string& path : view.baseline) link_or_copy(path, staging.path(relative_to(path, folder)));
     replaced.push_back(manifest_name);
     staging.write(manifest_name, text(manifest));
     staging.adopt(replaced);

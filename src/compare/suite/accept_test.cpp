@@ -1,5 +1,5 @@
-// --accept: the candidate's files become the baseline's, with a manifest; and a baseline stored as moments leads to the
-// numbers that its renders lead to.
+// --accept: the candidate's files become the baseline's, with a manifest; a baseline stored as moments gives the same
+// numbers as its renders.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -43,7 +43,7 @@ protected:
         const char* channels[] = {"R", "G", "B"};
         for (std::uint32_t c = 0; c < 3; ++c) {
             for (std::uint32_t i = 0; i < side * side; ++i)
-                planes[c].push_back(static_cast<float>(made_pixel(of, 3 * seed + c, i, side)));
+                planes[c].push_back(static_cast<float>(synthetic_pixel(of, 3 * seed + c, i, side)));
             header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
             buffer.insert(channels[c],
                 Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes[c].data()), 4, 4 * std::size_t{side}));
@@ -93,7 +93,7 @@ TEST_F(Accepting, TheCandidateBecomesTheBaseline) {
     EXPECT_EQ(entry["accepted"], "2026-01-02T03:04:05Z");
     EXPECT_EQ(entry["files"].size(), 2u);
     EXPECT_NEAR(entry["statistics"]["regions"]["frame"]["mean_y"].get<double>(), 1.05, 0.01);
-    accept({});  // the rest too; a second time nothing of the first is kept aside
+    accept({});  // accepts the other views too; former files of the first view are not kept
     EXPECT_THAT(baseline(),
         UnorderedElementsAre(
             "a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "README", "baseline.json", ".crescent-baseline"));
@@ -101,7 +101,7 @@ TEST_F(Accepting, TheCandidateBecomesTheBaseline) {
     for (const ViewResult& view : compare().views) EXPECT_EQ(view.state, ViewState::same) << view.sentence;
 }
 
-TEST_F(Accepting, AFirstBaselineNeedsNone) {
+TEST_F(Accepting, AFirstBaselineNeedsNoFormerOne) {
     renders("out/a-", noise, 30, 2);
     EXPECT_EQ(compare().views[0].state, ViewState::added);
     accept({});
@@ -114,7 +114,7 @@ TEST_F(Accepting, UnknownViewsAreRefused) {
     EXPECT_FALSE(fs::exists(path("base")));
 }
 
-TEST_F(Accepting, MomentsLeadToTheNumbersOfTheirRenders) {
+TEST_F(Accepting, MomentsGiveTheNumbersOfTheirRenders) {
     const std::string region = "[view.same]\nregions.box = [3, 4, 40, 50]\n";
     for (const char* folder : {"base/", "out/"}) {
         const std::uint32_t seed = folder[0] == 'b' ? 100 : 200;

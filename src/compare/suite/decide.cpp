@@ -9,12 +9,13 @@ namespace crescent::inline comparison {
 
 namespace {
 
-/// p of "neither the means nor the variances differ", the level being shared as share_of_means states.
+/// Returns p of "neither the means nor the variances differ"; the level is shared as in share_of_means.
 double view_p(const ViewResult& view) {
     return std::fmin(view.mean_p / share_of_means, view.variance_p / (1 - share_of_means));
 }
 
-/// Holm 1979: the level that each view has, the one at which the method stopped for all that are not rejected.
+/// Sets the level of each view by Holm 1979; all views that are not rejected have the level at which the method
+/// stopped.
 void set_levels(std::vector<ViewResult*>& views, double alpha) {
     std::sort(views.begin(), views.end(), [](const ViewResult* a, const ViewResult* b) {
         const double p = view_p(*a), q = view_p(*b);
@@ -29,7 +30,7 @@ void set_levels(std::vector<ViewResult*>& views, double alpha) {
     }
 }
 
-/// Names no place of a view in which no difference was decided.
+/// Removes the places of a view in which no difference was decided.
 void forget_places(BiasResult& means) {
     for (MeanTest& t : means.regions) {
         t.differs = false;
@@ -38,10 +39,10 @@ void forget_places(BiasResult& means) {
     means.tiles.different = 0, means.tiles_found.clear(), means.tiles_by.clear();
     means.pixels_different = 0, means.pixels_found.clear(), means.pixels_by.clear();
     for (FailedGroups& g : means.non_finite.groups) g.differs = false;
-    means.unless.reset();
+    means.missed_events.reset();
 }
 
-/// +1: more variance somewhere, -1: less somewhere and more nowhere, 0: none of both.
+/// Returns +1: more variance somewhere, -1: less somewhere and more nowhere, 0: neither.
 int compare_variances(ViewResult& view) {
     int sign = 0;
     const double tests = static_cast<double>(
@@ -64,7 +65,7 @@ std::string variance_sentence(const ViewResult& view, int sign) {
         figures(shown->candidate / shown->baseline, 3), shown->welch.p);
 }
 
-/// The largest of the differences that would be found.
+/// States the largest of the differences that would be found.
 std::string power_sentence(const BiasResult& means) {
     const MeanTest* largest = nullptr;
     for (const MeanTest& t : means.regions)

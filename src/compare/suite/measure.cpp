@@ -1,5 +1,5 @@
-// One view: its renders are read once into memory where they fit, copies are left out, and the tests of `crescent
-// compare` are made of the candidate against the baseline; then the variances of both sides are compared.
+// One view: its renders are read once into memory if they fit, copies are left out, and the tests of `crescent compare`
+// compare the candidate with the baseline; then the variances of both sides are compared.
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -18,8 +18,8 @@ namespace crescent::inline comparison {
 
 namespace {
 
-/// Renders of one view that are kept for the second reading: at most 768 MiB, 30 renders of 1920 x 1080. A view with
-/// more is read from its files again.
+/// Renders of one view that are kept for the second reading: at most 768 MiB, 30 renders of 1920 x 1080. The other
+/// renders are read from their files again.
 constexpr std::size_t most_kept = std::size_t{768} << 20;
 
 /// The renders of a view by path, with their hashes.
@@ -42,7 +42,8 @@ public:
     }
 
     std::uint64_t hash(const std::string& path) const { return files_.at(path).hash; }
-    /// Paths of one side whose pixels differ from those of all paths before; the others become notes.
+    /// Returns the paths of one side whose pixels differ from those of all paths before; the others are listed in
+    /// `notes`.
     std::vector<std::string> different(
         const std::vector<std::string>& paths, const char* side, std::vector<std::string>& notes) const {
         std::vector<std::string> out;
@@ -62,7 +63,7 @@ public:
                     copies.size() > 1 ? ", and others" : ""));
         return out;
     }
-    /// Gives each render that is kept twice from memory, as often as the tests read it, unless they compare pairs;
+    /// Returns a source that reads each kept render twice from memory, as often as the tests read it without pairs;
     /// later from its file.
     RenderSource reader() {
         RenderSource out = source_;
@@ -91,10 +92,11 @@ private:
     Mutex lock_;
 };
 
-/// Renders in memory have no file.
-bool is_moments(const std::string& path) { return std::filesystem::is_regular_file(path) && holds_moments(path); }
+/// renders of tests in memory have no file
+bool is_moments(const std::string& path) { return std::filesystem::is_regular_file(path) && has_moments(path); }
 
-/// Of a baseline stored as moments; nothing if it is stored as renders. Throws InputError if both are there.
+/// Returns the header of a baseline stored as moments; nothing if it is stored as renders. Throws InputError if both
+/// exist.
 std::optional<MomentsHeader> moments_of(const SuiteView& view) {
     for (const std::string& path : view.baseline) {
         if (!is_moments(path)) continue;
@@ -116,7 +118,7 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
         arm.name = name, arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
     }
     plan.regions = view.regions;
-    constexpr int blocks = 256;  // a quarter: over the renders of a side they are enough to find correlation
+    constexpr int blocks = 256;  // a quarter of the default: enough to find correlation over the renders of a side
     plan.flip = plan.count_pixel_p = false, plan.spectrum_blocks = blocks;
     plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
     return plan;
@@ -156,8 +158,9 @@ void test_variances(const RenderStats& all, const CompareResult& measured, ViewR
     if (tested > 0) out.variance_p = std::min(1.0, out.variance_p * tested);
 }
 
-/// Degrees of freedom with which the error of a test is known. Those of Welch's test are themselves estimated, and too
-/// many if the noise of the side with fewer renders is underestimated: at most those of two sides of equal noise.
+/// Returns the degrees of freedom of the standard error of a test. Those of Welch's test are themselves estimated, and
+/// too many if the noise of the side with fewer renders is underestimated: they are limited to those of two sides of
+/// equal noise.
 double known_df(const RenderStats& all, const MeanTest& test) {
     if (test.paired) return test.welch.df;
     const double a = static_cast<double>(all.arms[0].files.size()), b = static_cast<double>(all.arms[1].files.size());
@@ -165,7 +168,7 @@ double known_df(const RenderStats& all, const MeanTest& test) {
     return std::min(test.welch.df, equal);
 }
 
-/// Renders of each side that the region needs; nothing if no number is known to do.
+/// Returns the renders of each side that the region needs; nothing if the number is unknown.
 std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult& means, const MeanTest& test,
     const std::vector<ArmResult>& arms, std::size_t region, double smallest, double level) {
     if (!test.why.empty()) {
@@ -199,7 +202,8 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
     return renders_needed(power, smallest, level);
 }
 
-/// Differences that a test finds, with what is not known of the noise; what rare events could hide stays.
+/// Increases the stated differences that a test finds by the uncertainty of the noise; those that rare events could
+/// explain are unchanged.
 void restate_power(const RenderStats& all, double level, BiasResult& means) {
     const double of_region = level / 2 / static_cast<double>(means.regions.size());
     const auto restate = [&](MeanTest& t, std::size_t quantity) {
@@ -215,14 +219,14 @@ void restate_power(const RenderStats& all, double level, BiasResult& means) {
     }
 }
 
-/// Why equality of the means cannot be stated, and the renders that would do.
+/// States why equality of the means cannot be stated, and how many renders would be needed.
 void state_power(const RenderStats& all, const CompareResult& measured, double level, ViewResult& out) {
     const BiasResult& means = *out.means;
     bool known = true;
     std::size_t needed = 0;
     for (std::size_t r = 0; r < means.regions.size(); ++r) {
         const MeanTest& t = means.regions[r];
-        std::string why = !t.doubt.empty() ? t.doubt : t.why;
+        std::string why = !t.caveat.empty() ? t.caveat : t.why;
         for (const MeanTest& c : t.channels)
             if (why.empty() && !c.why.empty()) why = fmt::format("{}: {}", c.region, c.why);
         if (why.empty() && !(t.smallest <= out.smallest))
@@ -244,14 +248,14 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
     if (!out.too_few.empty() && known) out.renders_needed = needed;
 }
 
-/// The memory of a suite does not grow with the pixels of its views.
+/// Removes the results per pixel and tile, so that the memory of a suite does not grow with the pixels of its views.
 void drop_places(BiasResult& means) {
     means.different_pixels = {};
     means.tiles.p = {}, means.tiles.quantity = {}, means.tiles.difference = {}, means.tiles.differs = {};
     means.non_finite.a.pixels = {}, means.non_finite.b.pixels = {};
 }
 
-/// A side whose renders all have the same pixels although there are several.
+/// Returns whether all of several renders of a side have the same pixels.
 bool is_constant(const std::vector<std::string>& files, const std::vector<std::string>& different) {
     return files.size() > 1 && different.size() == 1;
 }

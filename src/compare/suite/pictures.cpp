@@ -1,5 +1,5 @@
-// Means over renders as photographs; the difference of the means over their mean brightness, blue where the candidate
-// is darker and orange where it is brighter. All pictures of a report together take 36 MB at most.
+// Means over renders as photographs; the difference of the means over their mean brightness, blue if the candidate is
+// darker and orange if it is brighter. All pictures of a report together take at most 36 MB.
 #include "compare/suite/suite_outputs.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace crescent::inline comparison {
 
 namespace {
 
-/// Budgets: of all pictures, which base64 makes a third larger in a page under 60 MB, and of one view.
+/// Budgets: of all pictures (base64 adds a third, for a page under 60 MB), and of one view.
 constexpr std::size_t most_bytes = 36'000'000, most_of_view = 2'000'000;
 constexpr int largest_width = 800, smallest_width = 48;
-/// The difference map's colours end at this multiple of the difference that must be found, or where 1 % of the map
-/// lies beyond.
+/// The colours of the difference map end at this multiple of the difference that must be found, or at the value that 1
+/// % of the map exceeds.
 constexpr double ends_at = 5, beyond = 0.99;
 
 std::size_t budget(const Suite& suite) {
@@ -35,7 +35,7 @@ plates::Block photograph(const Render& r, int width, double exposure) {
     return plates::photograph_block(view, plates::whole(view), fit, exposure);
 }
 
-/// Means of d / brightness over cells of the picture, row by row from the top.
+/// Returns means of d / brightness over cells of the picture, row by row from the top.
 std::vector<double> relative_differences(const RenderStats& all, const BiasResult& means, int width, int height) {
     const std::size_t q = means.shown();
     const MeanPlane &a = all.arms[means.arm_a].film.of(q), &b = all.arms[means.arm_b].film.of(q);
@@ -58,7 +58,7 @@ std::vector<double> relative_differences(const RenderStats& all, const BiasResul
     for (std::size_t c = 0; c < cells; ++c) mean += brightness[c], counted += count[c];
     mean = counted > 0 ? mean / counted : 0;
     std::vector<double> out(cells, std::nan(""));
-    for (std::size_t c = 0; c < cells; ++c)  // a hundredth of the mean keeps black cells from deciding the scale
+    for (std::size_t c = 0; c < cells; ++c)  // a hundredth of the mean, so that black cells do not decide the scale
         if (count[c] > 0 && mean > 0) out[c] = difference[c] / (brightness[c] + 0.01 * mean * count[c]);
     return out;
 }
@@ -81,7 +81,8 @@ double scale_of(const std::vector<double>& values, double smallest) {
     return std::max(ends_at * smallest, sizes.empty() ? 0 : quantile(std::move(sizes), beyond));
 }
 
-/// Calls draw(width), which sets the pictures, until they fit the budget. `bytes`: of a picture of the largest width.
+/// Calls draw(width), which sets the pictures, with smaller widths until they fit the budget. `bytes_of_one`: of a
+/// picture of the largest width.
 template <class Draw>
 void within_budget(const Suite& suite, int width, std::size_t bytes_of_one, ViewPictures& to, const Draw& draw) {
     constexpr double pictures = 3;

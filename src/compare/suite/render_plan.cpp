@@ -1,4 +1,4 @@
-// Both sides are taken to have the variance of the baseline, which falls as 1/N with N samples.
+// Both sides are assumed to have the variance of the baseline, which falls as 1/N with N samples.
 #include "compare/suite/render_plan.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace crescent::inline comparison {
 
-// ---- With s1 and s2 the estimated over the true standard error, now and in the repetition, the repetition finds c s1
-// if c s1 + Z > t s2, Z normal. By normal approximation of s (mean 1 - 1/(4 df), variance 1/(2 df)) this has a
+// ---- Let s1 and s2 be the estimated over the true standard error, now and in the repetition. The repetition finds c
+// s1 if c s1 + Z > t s2, with Z normal. In normal approximation of s (mean 1 - 1/(4 df), variance 1/(2 df)) this has a
 // probability of 90 % if c m1 - t m2 = z sqrt(1 + c^2/(2 df1) + t^2/(2 df2)), z = 1.2816: a quadratic equation for c.
-// Against simulation c is right to 1 % from 10 degrees of freedom on, and too large by 10 % with 3. The standard error
-// falls as n^-1/2 with n renders, what rare events could hide as 1/n.
+// In simulation c is accurate to 1 % from 10 degrees of freedom on, and too large by 10 % with 3. The standard error
+// falls as n^-1/2 with n renders, the difference that rare events could explain as 1/n.
 
 namespace {
 
@@ -65,7 +65,7 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
     plan.file = suite.file.empty() ? "crescent compare" : suite.file;
     RenderArm& arm = plan.arms.emplace_back();
     arm.name = "baseline", arm.at = {plan.file, 0, 0}, arm.layer = suite.options.layer;
-    arm.moments = view.baseline.size() == 1 && holds_moments(view.baseline.front());
+    arm.moments = view.baseline.size() == 1 && has_moments(view.baseline.front());
     std::vector<std::uint64_t> hashes;
     for (const std::string& path : view.baseline) {
         const std::uint64_t hash = pixel_hash(read_render(path, arm.moments ? "" : arm.layer));

@@ -1,4 +1,4 @@
-// --plan: how many renders of each side, at how many samples, a view needs; from the variance of the baseline alone.
+// --plan: how many renders of each side, with how many samples, a view needs, from the variance of the baseline only.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace crescent::inline comparison {
 
-// ---- How large a difference of means a test finds with a probability of 90 %, and how many renders it needs.
+// ---- The difference of means that a test finds with a probability of 90 %, and the renders that it needs.
 
-/// The difference that a repetition of the test finds with a probability of 90 % at this level, if the error of a mean
-/// is known from an estimate with `estimate_df` degrees of freedom alone. The estimate may be too small by chance, and
-/// so may that of the repetition: the difference is larger than detectable() has it (by a fifth for 8 renders of each
-/// side), and infinite for too few degrees of freedom.
+/// Returns the difference that a repetition of the test finds with a probability of 90 % at this level, if the error of
+/// a mean is known only from an estimate with `estimate_df` degrees of freedom. The estimate may be too small by
+/// chance, and so may that of the repetition: the difference is larger than that of detectable() (by a fifth for 8
+/// renders of each side), and infinite for too few degrees of freedom.
 double found_difference(const Welch& test, double estimate_df, double level);
 
-/// What is known of the mean of a region before more renders are made.
+/// The noise of the mean of a region, known before more renders exist.
 struct RegionPower {
     double mean = 0;                        // of Y
     double variance_a = 0, variance_b = 0;  // of the mean of one render of each side; in pairs a: of a difference
@@ -29,17 +29,17 @@ struct RegionPower {
     double missed = 0;  // difference that rare events could hide, times the renders of a side
 };
 
-/// The difference that a test with `renders` renders of each side finds with a probability of 90 %.
+/// Returns the difference that a test with `renders` renders of each side finds with a probability of 90 %.
 double detectable_with(const RegionPower& power, std::size_t renders, double level);
 
 /// The smallest number of renders of each side with which a relative difference `smallest` is found; nothing above
 /// 100 000.
 std::optional<std::size_t> renders_needed(const RegionPower& power, double smallest, double level);
 
-/// Samples of a render over those of a render of the baseline, for which the plan states renders.
+/// The samples of a render over those of a render of the baseline for which the plan states renders.
 inline constexpr std::array<double, 3> plan_samples = {0.25, 1, 4};
 
-/// How many renders a view needs to find its smallest difference, from the variance of its baseline.
+/// The renders that a view needs to find its smallest difference, from the variance of its baseline.
 struct ViewPlan {
     std::string name, region;  // the region that needs the most renders
     std::size_t renders = 0;   // of the baseline

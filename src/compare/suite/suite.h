@@ -1,5 +1,5 @@
-// A suite of views: each has renders of a baseline and of a candidate, and one level of false alarms is shared by all
-// tests of all views. Plain data of the file and of the result.
+// A suite of views: each has renders of a baseline and of a candidate, and all tests of all views share one level of
+// false alarms. The data of the file and of the result.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace crescent::inline comparison {
 
-/// Share of a view's level for the tests of equal means and of finite values; the rest is for the variances.
+/// The share of a view's level for the tests of equal means and of finite values; the rest is for the variances.
 inline constexpr double share_of_means = 0.75;
 
 /// How --accept stores a baseline: its renders, or the mean and the variance of each pixel.
@@ -32,7 +32,7 @@ struct SuiteOptions {
     BaselineStorage store = BaselineStorage::renders;
 };
 
-/// What the file states about one view, and the renders of it.
+/// The file's statements about one view, and its renders.
 struct SuiteView {
     std::string name;
     SourceLocation at;
@@ -50,36 +50,36 @@ struct Suite {
     double smallest(const SuiteView& view) const { return view.smallest.value_or(options.smallest); }
 };
 
-/// What replaces or completes the keys of a suite file.
+/// Flags that replace or complete the keys of a suite file.
 struct SuiteFlags {
     std::vector<CompareFlag> keys;    // of [suite]
     std::string baseline, candidate;  // folders with VIEW/*.exr or VIEW-SEED.exr; "": the file's patterns
     bool baseline_only = false;       // no renders of the candidate are needed
 };
 
-/// Whether the file is a suite: it has a table [suite].
+/// Returns whether the file is a suite: it has a table [suite].
 bool is_suite(const std::string& file);
 /// Reads a suite file ("": none, the folders of the flags) and finds the renders of each view. Throws InputError.
 Suite read_suite(const std::string& file, const SuiteFlags& flags);
-/// The manual of a suite file.
+/// Returns the manual of a suite file.
 std::string suite_schema_text();
 
-/// A file that a pattern with {view} matches: its view, and what its other wildcards match, in order.
+/// A file that matches a pattern with {view}: its view, and the matches of its other wildcards, in order.
 struct MatchedFile {
     std::string path, view;
     std::vector<std::string> wildcards;
 };
-/// Files of the pattern, sorted by path. Patterns have *, ?, [..] and %d besides {view}.
+/// Returns the files of the pattern, sorted by path. Patterns have *, ?, [..] and %d in addition to {view}.
 std::vector<MatchedFile> match_views(const std::string& pattern);
-/// The path that the pattern gives for this view and these wildcards; nothing if their numbers differ.
+/// Returns the path of the pattern for this view and these wildcards; nothing if their numbers differ.
 std::optional<std::string> path_from(
     const std::string& pattern, const std::string& view, const std::vector<std::string>& wildcards);
 
-/// What a comparison of one view finds, the most severe first.
+/// The results for a view, the most severe first.
 enum class ViewState { changed, noisier, too_few, missing, added, improved, same };
 inline constexpr std::array<const char*, 7> view_state_names = {
     "changed", "noisier", "too few renders", "missing", "new", "improved", "same"};
-/// Returns the state as outputs name it.
+/// Returns the state as in the outputs.
 inline const char* name_of(ViewState state) { return view_state_names[static_cast<std::size_t>(state)]; }
 
 /// Welch's test over renders of the variance of a pixel, mean over a region.
@@ -126,10 +126,11 @@ struct SuiteResult {
     std::string sentence;
 };
 
-/// The exit code: 1 for changed, noisier or missing views (if `strict` also for new ones), 4 for too few renders, 0.
+/// Returns the exit code: 1 for changed, noisier or missing views (if `strict` also for new ones), 4 for too few
+/// renders, else 0.
 int exit_code(const SuiteResult& result, bool strict);
 
-/// Of the pixels of a render, to find copies.
+/// Returns a hash of the pixels of a render, to find copies.
 std::uint64_t pixel_hash(const Render& render);
 
 /// Reads and tests one view. `compared`: the number of views that share alpha.

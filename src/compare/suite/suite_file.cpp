@@ -1,4 +1,4 @@
-// A suite file -> Suite: the table of its keys, and the files of each view.
+// Reads a suite file: the table of its keys, and the files of each view.
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ const Section& suite_schema() {
     return root;
 }
 
-/// "2 %" -> 0.02; other text stays, and the reader reports it.
+/// "2 %" -> 0.02; other text is unchanged, and the parser reports it.
 void read_percent(Node* table) {
     Member* found = table ? table->find("smallest") : nullptr;
     if (!found || found->value.kind != Node::Kind::text) return;
@@ -101,7 +101,7 @@ SourceLocation place_of(const Node& root, const char* key, const std::string& fi
     return found ? found->value.at : SourceLocation{file, 0, 0};
 }
 
-/// The files of one side by view, from its patterns.
+/// Returns the files of one side by view, from its patterns.
 std::map<std::string, std::vector<std::string>> files_by_view(
     const std::vector<std::string>& patterns, const SourceLocation& at) {
     std::map<std::string, std::vector<std::string>> out;
@@ -151,7 +151,7 @@ void find_renders(
     suite.views = std::move(views);
 }
 
-/// Patterns of a folder with VIEW/*.exr or VIEW-SEED.exr.
+/// Returns the patterns of a folder with VIEW/*.exr or VIEW-SEED.exr.
 std::vector<std::string> patterns_in(const std::string& folder, const char* flag) {
     if (!std::filesystem::is_directory(folder))
         throw InputError({fmt::format("{} {}", flag, folder), 0, 0}, "expected a folder");

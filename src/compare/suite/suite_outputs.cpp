@@ -21,7 +21,7 @@ Json mean_json(const MeanTest& t) {
     else
         out["p"] = p_json(t.joint_p), out["standard_error"] = number(t.welch.se), out["smallest"] = number(t.smallest),
         out["paired"] = t.paired;
-    if (!t.doubt.empty()) out["doubt"] = t.doubt;
+    if (!t.caveat.empty()) out["doubt"] = t.caveat;
     return out;
 }
 
@@ -71,7 +71,7 @@ JunitCase::State junit_state(const ViewResult& view, bool strict) {
     }
 }
 
-/// Text in a cell of a Markdown table.
+/// Escapes text for a cell of a Markdown table.
 std::string cell(const std::string& text) {
     std::string out;
     for (const char c : printable(text)) {

@@ -109,7 +109,7 @@ std::string filter_bar(const SuiteResult& result) {
     return out + "<output></output></div>\n";
 }
 
-/// The places that differ, as frames over the map.
+/// The places that differ, as frames on the map.
 std::string frames(const ViewResult& view) {
     std::string out;
     if (!view.means) return out;
@@ -121,7 +121,7 @@ std::string frames(const ViewResult& view) {
     return out;
 }
 
-/// The picture of the card, for which `png` is empty, or another one.
+/// Returns an <img> of one picture; `png` is empty for the picture of the card.
 std::string picture(const std::vector<unsigned char>& png, const ViewPictures& all, const std::string& alt) {
     return fmt::format("<img alt=\"{}\" width=\"{}\" height=\"{}\" data-src=\"{}\" />", escape(alt), all.width,
         all.height, png.empty() ? "" : source_of(png));

@@ -1,4 +1,4 @@
-// Suites: patterns, decisions over all views, power, on renders in memory whose truth is known.
+// Suites: patterns, decisions over all views and power, on synthetic renders in memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ public:
         const std::string path = view + "/" + which + "/" + std::to_string(k);
         Render render(path, side, side);
         for (std::uint32_t i = 0; i < render.size(); ++i)
-            render.r[i] = render.g[i] = render.b[i] = static_cast<float>(made_pixel(noise, seed, i, side));
+            render.r[i] = render.g[i] = render.b[i] = static_cast<float>(synthetic_pixel(noise, seed, i, side));
         renders[path] = std::move(render);
         auto found =
             std::find_if(suite.views.begin(), suite.views.end(), [&](const SuiteView& v) { return v.name == view; });
@@ -64,7 +64,7 @@ constexpr SyntheticNoise noise{Kind::gamma, 0.2};
 constexpr SyntheticNoise brighter{Kind::gamma, 0.2, 0.05};
 constexpr SyntheticNoise calmer{Kind::gamma, 0.1};
 
-TEST(Suites, EachViewEndsInTheStateOfItsRenders) {
+TEST(Suites, EachViewHasTheStateOfItsRenders) {
     MemorySuite s;
     s.suite.options.smallest = 0.03;
     s.put_both("same", noise, noise, 100);
@@ -107,7 +107,7 @@ TEST(Suites, TheFirstExitCodeThatAppliesIsTaken) {
     EXPECT_EQ(code({ViewState::too_few, ViewState::added}, true), 1);
 }
 
-TEST(Suites, TheRendersThatWouldDoAreEnough) {
+TEST(Suites, TheStatedNumberOfRendersIsEnough) {
     MemorySuite few;
     few.suite.options.smallest = 0.004;
     few.put_both("view", noise, noise, 1000, 6);
@@ -163,7 +163,7 @@ TEST(Suites, RendersWithTheSameSeedsAreComparedInPairs) {
     EXPECT_TRUE(result.views[0].means->paired);
 }
 
-TEST(Suites, AHeavyTailIsStatedAndNotDecided) {
+TEST(Suites, AHeavyTailIsReportedAndNotDecided) {
     MemorySuite s;
     s.suite.options.smallest = 0.05;
     s.put_both("view", {Kind::pareto, 1.2}, {Kind::pareto, 1.2}, 2300);

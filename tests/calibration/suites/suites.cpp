@@ -77,7 +77,7 @@ public:
             SyntheticScene scene;
             scene.width = side, scene.own = kind.own;
             const std::uint32_t render = kind.deterministic ? 0 : 2 * k + (candidate ? 1 : 0);
-            return made_render(path, noise, seed_for(seed_, suite_, view, render), scene);
+            return synthetic_render(path, noise, seed_for(seed_, suite_, view, render), scene);
         };
         return out;
     }
