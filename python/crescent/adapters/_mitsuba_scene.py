@@ -1,0 +1,282 @@
+"""A Mitsuba 3 scene as an experiment: meshes, sky, materials, lights and camera."""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..experiments import Experiment, load
+from ..scenes import write_mesh, write_sky
+
+#: One table of the experiment file: its keys in order.
+Table = dict[str, Any]
+
+
+class UnsupportedScene(ValueError):
+    """Parts of a scene without a counterpart; `.parts` has one line for each."""
+
+    def __init__(self, parts: list[str]) -> None:
+        super().__init__("\n".join(["the scene has parts without a counterpart:", *parts]))
+        self.parts = parts
+
+
+@dataclass
+class _Made:
+    """The parts of an experiment so far. Files are written at the end, if nothing is refused."""
+
+    mi: Any  #: the module
+    tables: dict[str, Table] = field(default_factory=dict)
+    files: dict[str, Callable[[Path], None]] = field(default_factory=dict)
+    replaced: list[str] = field(default_factory=list)
+
+    def refuse(self, what: str, instead: str) -> None:
+        self.replaced.append(f"{what}; with approximate=True {instead}")
+
+
+def _kind(thing: Any) -> str:
+    """The class of a Mitsuba object, as its text begins."""
+    return re.match(r"\w+", str(thing))[0]  # type: ignore[index]
+
+
+def _rgb(params: Any, key: str, default: float) -> list[float] | None:
+    """A colour of a material; None where it varies over the surface."""
+    if key + ".data" in params or any(k.startswith(key + ".") and not k.endswith(".value") for k in params.keys()):
+        return None
+    value = np.ravel(np.array(params[key + ".value"], float)) if key + ".value" in params else np.array([default])
+    return [float(v) for v in (np.repeat(value, 3) if value.size == 1 else value[:3])]
+
+
+def _mean_of_texture(params: Any, key: str) -> list[float]:
+    pixels = np.array(params[key + ".data"], float)
+    return [float(v) for v in np.atleast_1d(pixels.reshape(-1, pixels.shape[-1]).mean(axis=0))[:3]]
+
+
+def _colour(made: _Made, params: Any, key: str, default: float, name: str) -> list[float]:
+    colour = _rgb(params, key, default)
+    if colour is None:
+        made.refuse(f"{name}: a texture of {key.rsplit('.', 1)[-1]}", "its mean is used")
+        colour = _mean_of_texture(params, key) if key + ".data" in params else [default] * 3
+        colour = colour * 3 if len(colour) == 1 else colour
+    return [min(1.0, max(0.0, v)) for v in colour]
+
+
+def _number(params: Any, key: str, default: float) -> float:
+    return float(np.ravel(np.array(params[key], float))[0]) if key in params else default
+
+
+def _material(made: _Made, bsdf: Any, name: str) -> Table:
+    """The keys rho_d, rho_s, brdf and alpha or s."""
+    params, text, kind = made.mi.traverse(bsdf), str(bsdf), _kind(bsdf)
+    prefix = ""
+    if kind == "TwoSided":
+        prefix = "brdf_0." if any(k.startswith("brdf_0.") for k in params.keys()) else "bsdf."
+        text = text[text.index("=") + 1 :].strip()
+        kind = _kind(text)
+    if kind == "SmoothDiffuse":
+        return {"rho_d": _colour(made, params, prefix + "reflectance", 0.5, name)}
+    if kind == "RoughConductor":
+        values = np.ravel(np.array(params[prefix + "k.value"], float)) if prefix + "k.value" in params else np.zeros(1)
+        eta = np.ravel(np.array(params[prefix + "eta.value"], float)) if prefix + "eta.value" in params else np.zeros(1)
+        if eta.any() or (values.any() and not np.allclose(values, 1)):
+            made.refuse(f"{name}: the Fresnel factor of a conductor", "it is 1")
+        beckmann = "distribution = beckmann" in text
+        alpha = [_number(params, prefix + key, 0.1) for key in ("alpha.value", "alpha_u.value", "alpha_v.value")]
+        if prefix + "alpha_u.value" in params and alpha[1] != alpha[2]:
+            made.refuse(f"{name}: an anisotropic roughness", "the geometric mean is used")
+        wide = alpha[0] if prefix + "alpha.value" in params else math.sqrt(alpha[1] * alpha[2])
+        specular = _colour(made, params, prefix + "specular_reflectance", 1.0, name)
+        return {"rho_d": [0.0, 0.0, 0.0], "rho_s": specular, "brdf": "beckmann" if beckmann else "ggx", "alpha": wide}
+    if kind == "Phong":
+        return {
+            "rho_d": _colour(made, params, prefix + "diffuse_reflectance", 0.5, name),
+            "rho_s": _colour(made, params, prefix + "specular_reflectance", 0.2, name),
+            "brdf": "phong",
+            "s": _number(params, prefix + "exponent.value", 30.0),
+        }
+    made.refuse(f"{name}: the BSDF {kind}", "it is diffuse")
+    for key in ("diffuse_reflectance", "base_color", "reflectance"):
+        if _rgb(params, prefix + key, -1.0) not in (None, [-1.0] * 3):
+            return {"rho_d": _colour(made, params, prefix + key, 0.5, name)}
+    return {"rho_d": [0.5, 0.5, 0.5]}
+
+
+def _name_of(shape: Any, k: int, taken: dict[str, Table]) -> str:
+    name = re.sub(r"[^A-Za-z0-9_-]", "-", shape.id() or "") or f"shape-{k}"
+    used = {key.split(".")[-1] for key in taken}
+    return name if name not in used else f"{name}-{k}"
+
+
+def _radiance(made: _Made, emitter: Any) -> list[float] | None:
+    return _rgb(made.mi.traverse(emitter), "radiance", 1.0)
+
+
+def _matrix(made: _Made, thing: Any) -> Any:
+    return np.array(made.mi.traverse(thing)["to_world"].matrix, float)[:4, :4]
+
+
+def _add_mesh(made: _Made, shape: Any, name: str) -> None:
+    params = made.mi.traverse(shape)
+    if "vertex_positions" in params:
+        positions = np.array(params["vertex_positions"], np.float32).reshape(-1, 3)
+        triangles = np.array(params["faces"], np.int64).reshape(-1, 3)
+        normals = np.array(params["vertex_normals"], np.float32).reshape(-1, 3) if "vertex_normals" in params else None
+        if normals is not None and (len(normals) != len(positions) or not (np.linalg.norm(normals, axis=1) > 0).all()):
+            normals = None
+    else:  # a rectangle: [-1, 1]^2 at z = 0, its front towards +z
+        to_world = _matrix(made, shape)
+        corners = np.array([[-1, -1, 0, 1], [1, -1, 0, 1], [1, 1, 0, 1], [-1, 1, 0, 1]], float)
+        positions, normals = (corners @ to_world.T)[:, :3], None
+        triangles = np.array([[0, 1, 2], [0, 2, 3]])
+        if np.linalg.det(to_world[:3, :3]) < 0:
+            triangles = triangles[:, ::-1]
+    made.files[f"{name}.mesh"] = lambda path: write_mesh(path, positions, triangles, normals)
+    table: Table = {"file": f"{name}.mesh", **_material(made, shape.bsdf(), name)}
+    if shape.emitter() is not None:
+        radiance = _radiance(made, shape.emitter())
+        if radiance is None:
+            made.refuse(f"{name}: a texture of the emitted radiance", "it emits nothing")
+        else:
+            table["emission"] = radiance
+    made.tables[f"meshes.{name}"] = table
+
+
+def _add_sphere(made: _Made, shape: Any, name: str) -> None:
+    to_world = _matrix(made, shape)
+    lengths = np.linalg.norm(to_world[:3, :3], axis=0)
+    if not np.allclose(lengths, lengths[0], rtol=1e-4):
+        return made.refuse(f"{name}: a sphere that is scaled to an ellipsoid", "it is left out")
+    place = {"center": [float(v) for v in to_world[:3, 3]], "radius": float(lengths[0])}
+    if shape.emitter() is not None:
+        radiance = _radiance(made, shape.emitter())
+        if radiance is not None:
+            made.tables[f"lights.{name}"] = {"kind": "sphere", **place, "radiance": radiance}
+            return None
+        made.refuse(f"{name}: a texture of the emitted radiance", "it emits nothing")
+    made.tables[f"shapes.{name}"] = {"kind": "sphere", **place, "occludes": True, **_material(made, shape.bsdf(), name)}
+    return None
+
+
+def _add_sky(made: _Made, emitter: Any) -> None:
+    params = made.mi.traverse(emitter)
+    if _kind(emitter) == "ConstantBackgroundEmitter":
+        radiance = _radiance(made, emitter)
+        even = np.broadcast_to(np.array(radiance or [1, 1, 1], np.float32), (2, 4, 3))
+        made.files["sky.exr"] = lambda path: write_sky(path, even)
+        made.tables["sky"] = {"file": "sky.exr"}
+        return
+    turn = _matrix(made, emitter)[:3, :3]
+    degrees = math.degrees(math.atan2(turn[0, 2], turn[0, 0]))
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    if not np.allclose(turn, [[c, 0, s], [0, 1, 0], [-s, 0, c]], atol=1e-4):
+        made.refuse("envmap: a rotation that is not about the y axis", "only the part about it is used")
+    pixels = np.array(params["data"], np.float32)[..., :3]
+    width = 2 * pixels.shape[0]
+    if pixels.shape[1] == width + 1:  # Mitsuba repeats the first column at the end
+        pixels = pixels[:, :-1]
+    if pixels.shape[1] != width:
+        made.refuse(f"envmap: an image of {pixels.shape[1]} x {pixels.shape[0]}", "the nearest texels are used, twice as wide as high")
+        columns = (np.arange(width) + 0.5) * pixels.shape[1] / width
+        pixels = pixels[:, columns.astype(int)]
+    made.files["sky.exr"] = lambda path: write_sky(path, pixels)
+    made.tables["sky"] = {"file": "sky.exr", "rotation": degrees, "scale": _number(params, "scale", 1.0)}
+
+
+def _camera(made: _Made, sensor: Any) -> tuple[Table, Table]:
+    """The tables [image] and [camera]."""
+    if _kind(sensor) != "PerspectiveCamera":
+        made.refuse(f"the sensor {_kind(sensor)}", "it is a pinhole camera")
+    width, height = (int(v) for v in sensor.film().size())
+    if [int(v) for v in sensor.film().crop_size()] != [width, height]:
+        made.refuse("a crop of the film", "the whole film is used")
+    to_world = _matrix(made, sensor)
+    eye, forward, up = to_world[:3, 3], to_world[:3, 2], to_world[:3, 1]
+    if np.linalg.det(to_world[:3, :3]) < 0:
+        made.refuse("a mirrored camera", "it is not mirrored")
+    x_fov = math.radians(_number(made.mi.traverse(sensor), "x_fov", 45.0))
+    vfov = 2 * math.degrees(math.atan(math.tan(x_fov / 2) * height / width))
+    image: Table = {"width": width, "height": height}
+    camera: Table = {"eye": eye.tolist(), "target": (eye + forward / np.linalg.norm(forward)).tolist()}
+    camera |= {"up": (up / np.linalg.norm(up)).tolist(), "vfov_deg": vfov}
+    return image, camera
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_toml(v) for v in value) + "]"
+    return repr(value)
+
+
+def _written(title: str, tables: dict[str, Table]) -> str:
+    lines = [f"title = {_toml(title)}"]
+    for name, table in tables.items():
+        lines += ["", f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def mitsuba_scene(
+    scene: Any,
+    folder: str | PathLike[str],
+    *,
+    samplers: tuple[str, ...] = ("cosine", "sky", "light-triangle"),
+    n: tuple[int, ...] = (4, 16, 64),
+    approximate: bool = False,
+) -> Experiment:
+    """Turns a Mitsuba 3 scene into an experiment: `folder`/scene.toml with its meshes and its sky, returned loaded.
+
+    scene: the path of an XML file, a dictionary as mi.load_dict takes it, or a loaded mi.Scene. Meshes, rectangles and
+    spheres; area emitters of one radiance, envmap and constant; the BSDFs diffuse, roughconductor without a Fresnel
+    factor and phong, also two-sided; a perspective sensor. Anything else raises :class:`UnsupportedScene`, which lists
+    every such part, and nothing is written; with `approximate` each is replaced, with a warning that says by what.
+    Mitsuba interpolates between the texels of an envmap; here each texel is constant. `samplers` that the scene has no
+    light for are left out.
+    """
+    import mitsuba as mi
+
+    if not mi.variant():
+        mi.set_variant("scalar_rgb", "llvm_ad_rgb")
+    title = "scene"
+    if isinstance(scene, str | PathLike):
+        title, scene = Path(fspath(scene)).stem, mi.load_file(fspath(scene))
+    elif isinstance(scene, dict):
+        scene = mi.load_dict(scene)
+    made = _Made(mi)
+    image, camera = _camera(made, scene.sensors()[0])
+    for k, shape in enumerate(scene.shapes()):
+        name, kind = _name_of(shape, k, made.tables), _kind(shape)
+        if shape.is_mesh():
+            _add_mesh(made, shape, name)
+        elif kind == "Sphere":
+            _add_sphere(made, shape, name)
+        else:
+            made.refuse(f"{name}: the shape {kind}", "it is left out")
+    for emitter in scene.emitters():
+        kind = _kind(emitter)
+        if kind in ("EnvironmentMapEmitter", "ConstantBackgroundEmitter"):
+            _add_sky(made, emitter)
+        elif kind != "AreaLight":
+            made.refuse(f"the emitter {kind}", "it is left out")
+    if made.replaced and not approximate:
+        raise UnsupportedScene(made.replaced)
+    for line in made.replaced:
+        warnings.warn(line, stacklevel=2)
+    there = {"sky": "sky" in made.tables, "light-triangle": any("emission" in t for t in made.tables.values())}
+    arms = {f"arms.{name}": {"n": list(n)} for name in samplers if there.get(name, True)}
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    for name, write in made.files.items():
+        write(target / name)
+    path = target / "scene.toml"
+    path.write_text(_written(title, {"image": image, "camera": camera, **made.tables, **arms}), encoding="utf-8")
+    return load(path)

@@ -1,0 +1,96 @@
+"""Scenes from arrays: the files that the tables [meshes.NAME] and [sky] of an experiment name.
+
+write_mesh(path, positions, triangles)    a .mesh file
+write_sky(path, rgb)                      a latitude-longitude image
+"""
+
+from __future__ import annotations
+
+import struct
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+__all__ = ["write_mesh", "write_sky"]
+
+
+def _rows(name: str, values: Any, columns: int) -> Any:
+    rows = np.asarray(values, "<f4")
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        raise ValueError(f"{name} has the shape {rows.shape}: expected (n, {columns})")
+    if not np.isfinite(rows).all():
+        raise ValueError(f"{name}: row {int(np.argmin(np.isfinite(rows).all(axis=1)))} is not finite")
+    return np.ascontiguousarray(rows)
+
+
+def write_mesh(
+    path: str | PathLike[str], positions: Any, triangles: Any, normals: Any = None, uv: Any = None
+) -> None:
+    """Writes a .mesh file.
+
+    positions (n, 3), triangles (m, 3): indices of positions, counterclockwise seen from the front. normals (n, 3):
+    smooth ones, of any length but 0; None: those of the triangles. uv (n, 2). ValueError says which row is wrong.
+    """
+    points = _rows("positions", positions, 3)
+    corners = np.asarray(triangles)
+    if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
+        raise ValueError(f"triangles has {corners.dtype} of the shape {corners.shape}: expected integers (m, 3)")
+    beyond = ((corners < 0) | (corners >= len(points))).any(axis=1)
+    if beyond.any():
+        at = int(np.argmax(beyond))
+        raise ValueError(f"triangles: row {at} is {corners[at].tolist()}, with {len(points)} positions")
+    parts = [points]
+    flags = 0
+    if normals is not None:
+        smooth = _rows("normals", normals, 3)
+        length = np.linalg.norm(smooth.astype(float), axis=1, keepdims=True)
+        if not (length > 0).all():
+            raise ValueError(f"normals: row {int(np.argmin(length > 0))} is 0")
+        parts.append((smooth / length).astype("<f4"))
+        flags |= 1
+    if uv is not None:
+        parts.append(_rows("uv", uv, 2))
+        flags |= 2
+    for name, part in zip(("normals", "uv"), parts[1:], strict=False):
+        if len(part) != len(points):
+            raise ValueError(f"{name} has {len(part)} rows for {len(points)} positions")
+    head = struct.pack("<8s6IQ", b"crescent", 0x6873656D, 1, len(points), len(corners), flags, 0, 0)
+    data = b"".join(part.tobytes() for part in parts) + corners.astype("<u4").tobytes()
+    Path(path).write_bytes(head + data)
+
+
+def write_sky(path: str | PathLike[str], rgb: Any) -> None:
+    """Writes a latitude-longitude image as OpenEXR, float and uncompressed.
+
+    rgb (height, 2 height, 3), linear, W/(sr m^2): the first row is up (+y), the first column towards -z, the next ones
+    towards +x.
+    """
+    image = np.asarray(rgb, "<f4")
+    if image.ndim != 3 or image.shape[2] != 3 or image.shape[1] != 2 * image.shape[0]:
+        raise ValueError(f"rgb has the shape {image.shape}: expected (height, 2 height, 3)")
+    height, width, _ = image.shape
+
+    def attribute(name: bytes, kind: bytes, data: bytes) -> bytes:
+        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
+
+    channels = b"".join(name + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    head = struct.pack("<ii", 20000630, 2) + b"".join(
+        (
+            attribute(b"channels", b"chlist", channels),
+            attribute(b"compression", b"compression", b"\0"),
+            attribute(b"dataWindow", b"box2i", window),
+            attribute(b"displayWindow", b"box2i", window),
+            attribute(b"lineOrder", b"lineOrder", b"\0"),
+            attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+            attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)),
+            attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)),
+            b"\0",
+        )
+    )
+    row = 8 + 12 * width
+    offsets = struct.pack(f"<{height}Q", *(len(head) + 8 * height + row * y for y in range(height)))
+    lines = (struct.pack("<ii", y, 12 * width) + image[y, :, ::-1].T.tobytes() for y in range(height))
+    Path(path).write_bytes(head + offsets + b"".join(lines))
