@@ -257,20 +257,21 @@ namespace {
 void resolve_s(ParseContext& context) {
     Experiment& e = context.e;
     if (e.exponent && context.is_valid("exponent.shape")) {
-        const Shape* shape = e.find_shape(e.exponent->shape);
-        if (shape && !shape->material.s && context.is_valid("shapes." + shape->name + ".s"))
+        const auto surface = e.find_surface(e.exponent->shape);
+        if (surface && !e.material(*surface).s && context.is_valid(e.surface_path(*surface) + ".s"))
             context.report("exponent.shape",
-                fmt::format(
-                    "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
+                fmt::format("exponent.shape: expected a shape with an s of its own, found '{}' without one",
+                    e.exponent->shape));
     }
     if (e.exponent) e.s_of = e.exponent->shape;
     const double s = e.s();
-    for (Shape& shape : e.shapes)
-        if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
-    if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
-            return !context.is_valid("shapes." + x.name + ".s");
-        }))
-        return;
+    bool valid = true;
+    for (std::size_t k = 0; k < e.surface_count(); ++k) {
+        Material& material = e.material(k);
+        if (!material.s && s > 0) material.s = s, material.inherits_s = true;
+        valid = valid && context.is_valid(e.surface_path(k) + ".s");
+    }
+    if (s > 0 || !valid) return;
     for (const ArmPlan& arm : e.arms)
         if (const SamplerInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
             context.report("arms." + arm.name,
@@ -424,12 +425,18 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
             context.e.figures = load_published(*context.e.published);
         } catch (const InputError& error) { context.report("published", fmt::format("published: {}", error.what())); }
     }
+    if (context.diagnostics.empty()) {
+        try {
+            read_meshes(context.e);
+        } catch (const InputError& error) { context.diagnostics = error.diagnostics(); }
+    }
     throw_if_any(std::move(context.diagnostics));
     return std::move(context.e);
 }
 
-Experiment with_figures(Experiment experiment) {
+Experiment with_files(Experiment experiment) {
     if (experiment.published && !experiment.figures) experiment.figures = load_published(*experiment.published);
+    read_meshes(experiment);
     return experiment;
 }
 
