@@ -205,7 +205,7 @@ Experiment settled_paths(Experiment e) {
     const auto absolute = [](std::optional<std::string>& path) {
         if (path) path = std::filesystem::absolute(*path).lexically_normal().string();
     };
-    e = with_figures(std::move(e));
+    e = with_files(std::move(e));
     absolute(e.published);
     for (ArmPlan& arm : e.arms) {
         absolute(arm.plugin);

@@ -161,6 +161,7 @@ std::uint64_t hash(const Experiment& experiment) {
     Experiment counted = experiment;
     counted.seeds = 1;                                  // a longer series is more of the same experiment
     if (experiment.figures) counted.published.reset();  // their content counts, not their path
+    if (experiment.sky && experiment.sky->content) counted.sky->file.clear();
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);
     text += sampler_file_hashes(experiment);

@@ -56,7 +56,7 @@ public:
     Products(const ShadingPoints& points, bool with_light)
         : points_(points),
           with_light_(with_light),
-          memory_(memory_of_light * points.light_count()),
+          memory_(points.kernel_memory()),
           room_(points, memory_.data()) {}
 
     double operator()(const PointRun& run, const PointDraw& drawn) {

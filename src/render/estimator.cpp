@@ -21,14 +21,13 @@ namespace crescent::inline render {
 namespace {
 
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
-    std::vector<std::byte> memory(memory_of_light * call.shading_points->light_count());
+    std::vector<std::byte> memory(call.shading_points->kernel_memory());
     call.memory = memory.data();
     if (arm.outside && arm.outside->as_combination()) return estimate_combination(*arm.outside->as_combination(), call);
     if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
-    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.shading_points->lobe + 1)](
-        call);
+    kernels_for(isa).kernel(index, *call.shading_points)(call);
 }
 
 SampleCost cost_of_sample(const SamplerRef& arm) {
@@ -75,6 +74,10 @@ private:
             }
         }
         Rgb out{};
+        if (shading_points_.around) {
+            fill_g -= m_.around_g[i], fill_lobe -= m_.around_g_lobe[i];
+            for (std::size_t c = 0; c < 3; ++c) diffuse[c] += m_.around[c][i], lobe[c] += m_.around_lobe[c][i];
+        }
         for (std::size_t c = 0; c < 3; ++c) {
             diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
             lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
@@ -129,7 +132,7 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
         double samples = 0;
         const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
         for (const ShadingPoints& shading_points : *groups) {
-            for (Moments& m : moments) m.resize(shading_points.pixel.size(), shading_points.light_count());
+            for (Moments& m : moments) m.resize(shading_points);
             run_kernel(isa, arm, {&shading_points, n, seed, moments, &monitor.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 resolve_film(view.scene(), shading_points, moments[r], films[r]);
@@ -161,7 +164,7 @@ ShapeMap shape_map(const Scene& scene) {
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
-    moments[0].resize(shading_points.pixel.size(), shading_points.light_count());
+    moments[0].resize(shading_points);
     const std::array<std::uint64_t, 1> sample_counts = {n};
     run_kernel(isa, arm, {&shading_points, sample_counts, seed, moments, stop, samples});
     return std::move(moments[0]);

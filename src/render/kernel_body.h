@@ -8,7 +8,7 @@
 #include <concepts>
 
 #include "math/simd/random.h"
-#include "render/kernel_lights.h"
+#include "render/kernel_surroundings.h"
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
@@ -232,12 +232,12 @@ template <class A, class L, class E, class F> void estimate(const KernelCall& ca
 }
 
 /// The kernels of one sampler, [lobe + 1].
-template <class F, template <class> class A, template <class> class... L>
+template <class E, class F, template <class> class A, template <class> class... L>
 constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
-    return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};
+    return {estimate<A<F>, NoLobe<F>, E, F>, estimate<A<F>, L<F>, E, F>...};
 }
 template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
-    return {isa, {{kernels_on<F, A>(Lobes{})...}}};
+    return {isa, {{kernels_on<Lights<F>, F, A>(Lobes{})...}}, {{kernels_on<Surrounded<F>, F, A>(Lobes{})...}}};
 }
 
 }  // namespace CRESCENT_ISA

@@ -46,7 +46,7 @@ public:
 private:
     template <class Work> static void each_run(const PointRows& at, Work&& work) {
         const ShadingPoints& p = at.points;
-        std::vector<std::byte> memory(memory_of_light * p.light_count());
+        std::vector<std::byte> memory(p.kernel_memory());
         scalar::LightRoom<float> room(p, memory.data());
         for (const PointRun& run : at.runs) {
             const scalar::Lights<float> lights(p, run.point, room);

@@ -134,11 +134,11 @@ bool plain(const ArmPlan& arm) {
 }
 
 /// Returns the arm's name, with its sampler if that differs, and the light that it cannot reach.
-std::string name_of(const ArmPlan& arm, const SamplerInfo& info, bool fill) {
+std::string name_of(const ArmPlan& arm, const SamplerInfo& info, const Experiment& e) {
     std::string out = escape(arm.name == arm.sampler ? std::string(info.label) : arm.name);
     if (arm.name != arm.sampler) out += ", sampler " + html::code(arm.sampler);
-    if (!info.misses.empty() && fill)
-        out += fmt::format("<br /><small>cannot reach {}: biased here</small>", info.misses);
+    if (const std::string missed = missed_light(arm, e); !missed.empty())
+        out += fmt::format("<br /><small>cannot reach {}: biased here</small>", missed);
     return out;
 }
 
@@ -156,7 +156,7 @@ PageSection densities(Page& page) {
                 words(sample_counts(arm))});
             continue;
         }
-        table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
+        table.row({html::heading(name_of(arm, *info, page.in.experiment)),
             words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
             words(formula::html(info->axis)), words(sample_counts(arm))});
     }

@@ -14,6 +14,7 @@
 #include "samplers/mixture.h"
 #include "samplers/phong.h"
 #include "samplers/sampler.h"
+#include "samplers/sky.h"
 #include "samplers/uniform.h"
 
 namespace crescent::inline samplers {
@@ -26,7 +27,7 @@ struct ArmList {
 };
 
 using Samplers = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
-    GgxVndf, GgxBoundedVndf, BeckmannD>;
+    GgxVndf, GgxBoundedVndf, BeckmannD, Sky>;
 
 /// Calls f.template operator()<A>() for every sampler A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_sampler(ArmList<A...>, Call&& f) {

@@ -28,6 +28,15 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
     }
     if (const Shape* own = data.shape_of_s()) s_shape = own - data.shapes.data();
     origin = nearest_seen();
+    around = surroundings();
+}
+
+std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
+    if (!data.sky) return nullptr;
+    auto out = std::make_shared<Surroundings>();
+    out->sky.emplace(*data.sky);
+    out->eye = as<float>(data.camera.eye - origin);
+    return out;
 }
 
 Scene::Scene(SceneData data) : made_(std::make_shared<const Made>(std::move(data))), s_(made_->data.s()) {}

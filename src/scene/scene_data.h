@@ -14,6 +14,7 @@
 #include "scene/lights/all.h"
 #include "scene/lobes/lobe.h"
 #include "scene/shapes/all.h"
+#include "scene/sky.h"
 
 namespace crescent::inline scene {
 
@@ -223,6 +224,7 @@ struct SceneData {
     std::vector<Shape> shapes;
     std::vector<DiskLight> disks;  // lights too, before the others
     std::vector<Light> lights;
+    std::optional<SkyLight> sky;
     Rgb fill{};  // uniform over the hemisphere
     std::string
         s_of;  // the shape whose exponent is the scene's; empty: the first with a lobe, else the first with an s
