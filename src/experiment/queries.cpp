@@ -68,7 +68,8 @@ std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const Rgb& fill = experiment.fill;
     std::string out;
     for (const auto& [there, reached, name] : {std::tuple(fill[0] + fill[1] + fill[2] > 0, info->reaches.fill, "the fill"),
-             {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"}})
+             {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"},
+             {std::ranges::any_of(experiment.meshes, &MeshObject::emits), info->reaches.triangles, "the triangles"}})
         if (there && !reached) out += (out.empty() ? "" : " and ") + std::string(name);
     return out;
 }

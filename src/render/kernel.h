@@ -52,15 +52,15 @@ struct KernelCall {
 
 using Kernel = void (*)(const KernelCall&);
 
-/// The kernels of one instruction set, [index of the sampler in its list][lobe + 1].
+/// The kernels of one instruction set, by the index of the sampler in its list.
 struct KernelTable {
     std::string_view isa;
-    using Kernels = std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count>;
-    Kernels of_lights, of_surroundings;  // the second for shading points with surroundings
+    std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count> of_lights;  // [lobe + 1]
+    std::array<Kernel, Samplers::count> of_surroundings;                          // for points with surroundings
 
     Kernel kernel(int sampler, const ShadingPoints& points) const {
-        return (points.around ? of_surroundings
-                              : of_lights)[static_cast<std::size_t>(sampler)][static_cast<std::size_t>(points.lobe + 1)];
+        const auto k = static_cast<std::size_t>(sampler);
+        return points.around ? of_surroundings[k] : of_lights[k][static_cast<std::size_t>(points.lobe + 1)];
     }
 };
 

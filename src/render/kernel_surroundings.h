@@ -97,27 +97,63 @@ template <class F> struct Surrounded : Lights<F> {
         return any(up) ? resolve(drawn, g, lobe, x, up) : x;
     }
 
+    /// Returns which directions are below the triangle of the surface point, though above its smooth normal.
+    [[gnu::always_inline]] MaskOf<F> below_face(Vec3<F> wi) const {
+        if (!shading_points.has_faces) return number<F>(1) < number<F>(0);
+        return dot(load_lanes<F>(shading_points.face_x, shading_points.face_y, shading_points.face_z, at), wi) <=
+            number<F>(0);
+    }
+
 private:
     template <class D> [[gnu::noinline]] F resolve(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
         const F zero = number<F>(0), one = number<F>(1);
-        const auto nearest = this->nearest_light(drawn);
-        const auto lit = nearest.distance < number<F>(Lights<F>::far);
-        const auto ray = this->ray_of(drawn.wi);
         const Surroundings& scene = *shading_points.around;
-        // Nothing that is closer than 1e-5 of the distance to the camera hides the sky.
+        const auto lights = this->nearest_light(drawn);
+        const auto ray = this->ray_of(drawn.wi);
         const Vec3<F> to_eye = ray.o - Vec3<F>{F(scene.eye.x), F(scene.eye.y), F(scene.eye.z)};
-        const F lo = select(lit, nearest.distance, sqrt(dot(to_eye, to_eye))) * number<F>(1e-5);
-        const F hi = nearest.distance * number<F>(1 - 1e-5);
-        F seen = select(up, one, zero);
-        seen = this->seen_past_bodies(ray, lo, hi, seen);
-        x = this->add_light(nearest.light, seen, g, lobe, x);
-        const auto open = (seen > zero) & !lit;
-        const Vec3<F> l = radiance(drawn, ray.d, open);
-        const auto shines = open & (number<F>(scene.sky ? 1 : 0) > zero);
-        x = select(shines, add(l, select(shines, g, zero), lobe), x);
-        met.hits = plus_one_where((seen > zero) & (lit | shines), met.hits);
+        // What each direction meets first, as far as lights, the sky and triangles that emit are concerned.
+        LaneArray<F> seen(select(up, one, zero)), nearest(lights.distance);
+        LaneIntegers<F> triangle{UintOf<F>(no_triangle)};
+        const bool sky = has_sky(scene);
+        if (has_meshes(scene)) look_past_meshes(drawn, ray, seen, nearest, triangle);
+        const F distance = nearest.pack();
+        const auto met_one = distance < number<F>(Lights<F>::far);
+        // Nothing that is closer than 1e-5 of the distance to the camera hides the sky.
+        const F lo = select(met_one, distance, sqrt(dot(to_eye, to_eye))) * number<F>(1e-5);
+        F open = select(seen.pack() > zero, number<F>(sky ? 1 : 0), zero);
+        open = select((seen.pack() > zero) & met_one, one, open);
+        if (any(open > zero)) open = this->seen_past_bodies(ray, lo, distance * number<F>(1 - 1e-5), open);
+        const LaneArray<F> lit(open);
+        // A light of one radiance, unless a triangle is before it.
+        const auto of_lights = (distance == lights.distance) & met_one & !on_triangle(triangle);
+        x = this->add_light(lights.light, select(of_lights, open, zero), g, lobe, x);
+        const auto varies = (open > zero) & !of_lights;
+        x = select(varies, add(radiance(drawn, ray.d, lit, triangle, of_lights), select(varies, g, zero), lobe), x);
+        met.hits = plus_one_where(open > zero, met.hits);
         met.any = true;
         return x;
+    }
+
+    static MaskOf<F> on_triangle(const LaneIntegers<F>& triangle) {
+        LaneArray<F> on;
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l) on.at[l] = triangle.at[l] == no_triangle ? 0.0f : 1.0f;
+        return on.pack() > number<F>(0);
+    }
+
+    /// Sets seen to 0 where a triangle that does not emit is met first; `triangle` and `nearest` to one that emits.
+    template <class D, class Ray>
+    void look_past_meshes(const D& drawn, const Ray& ray, LaneArray<F>& seen, LaneArray<F>& nearest,
+        LaneIntegers<F>& triangle) const {
+        const LaneArray<F> ox(ray.o.x), oy(ray.o.y), oz(ray.o.z), dx(ray.d.x), dy(ray.d.y), dz(ray.d.z);
+        LaneIntegers<F> aimed{UintOf<F>(no_triangle)};
+        if constexpr (requires { drawn.triangle; }) aimed = LaneIntegers<F>(drawn.triangle);
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
+            if (!(seen.at[l] > 0)) continue;
+            const MeshesBefore before = meshes_before(*shading_points.around, {ox.at[l], oy.at[l], oz.at[l]},
+                {dx.at[l], dy.at[l], dz.at[l]}, nearest.at[l], aimed.at[l]);
+            if (before.hidden) seen.at[l] = 0;
+            if (before.triangle != no_triangle) triangle.at[l] = before.triangle, nearest.at[l] = before.distance;
+        }
     }
 
     /// Adds the sums of light L, and returns its X.
@@ -137,16 +173,19 @@ private:
         return g * worth;
     }
 
-    /// The sky's radiance in the world's direction d where `open`, else 0.
-    template <class D> [[gnu::always_inline]] Vec3<F> radiance(const D& drawn, Vec3<F> d, MaskOf<F> open) const {
-        const LaneArray<F> wanted(select(open, number<F>(1), number<F>(0))), dx(d.x), dy(d.y), dz(d.z);
-        LaneIntegers<F> known{UintOf<F>(no_texel)};
-        if constexpr (requires { drawn.texel; }) known = LaneIntegers<F>(drawn.texel);
+    /// The radiance of the triangle, or of the sky in the world's direction d, where `lit`, and no light is met; else 0.
+    template <class D> Vec3<F> radiance(const D& drawn, Vec3<F> d, const LaneArray<F>& lit,
+        const LaneIntegers<F>& triangle, MaskOf<F> of_lights) const {
+        const LaneArray<F> dx(d.x), dy(d.y), dz(d.z), other(select(of_lights, number<F>(1), number<F>(0)));
+        LaneIntegers<F> texel{UintOf<F>(no_texel)};
+        if constexpr (requires { drawn.texel; }) texel = LaneIntegers<F>(drawn.texel);
         LaneArray<F> r, g, b;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
             float rgb[3] = {0, 0, 0};
-            if (wanted.at[l] > 0)
-                sky_radiance(*shading_points.around, known.at[l], {dx.at[l], dy.at[l], dz.at[l]}, rgb);
+            if (lit.at[l] > 0 && !(other.at[l] > 0)) {
+                if (triangle.at[l] != no_triangle) triangle_radiance(*shading_points.around, triangle.at[l], rgb);
+                else sky_radiance(*shading_points.around, texel.at[l], {dx.at[l], dy.at[l], dz.at[l]}, rgb);
+            }
             r.at[l] = rgb[0], g.at[l] = rgb[1], b.at[l] = rgb[2];
         }
         return {r.pack(), g.pack(), b.pack()};

@@ -17,16 +17,16 @@ template <class A, class L, class E> void estimate_point(const KernelCall& call,
 }
 
 /// [lobe + 1]
-template <class A, class E, template <class> class... L>
+template <class A, template <class> class... L>
 constexpr std::array<PointKernel<A>, sizeof...(L) + 1> point_kernels(LobeList<L...>) {
+    using E = scalar::Lights<float>;
     return {estimate_point<A, NoLobe<float>, E>, estimate_point<A, L<float>, E>...};
 }
 
 /// The kernel for the lobe and the surroundings of these points.
 template <class A> PointKernel<A> point_kernel(const ShadingPoints& points) {
-    const auto lobe = static_cast<std::size_t>(points.lobe + 1);
-    return points.around ? point_kernels<A, scalar::Surrounded<float>>(Lobes{})[lobe]
-                         : point_kernels<A, scalar::Lights<float>>(Lobes{})[lobe];
+    if (points.around) return estimate_point<A, scalar::AnyLobe<float>, scalar::Surrounded<float>>;
+    return point_kernels<A>(Lobes{})[static_cast<std::size_t>(points.lobe + 1)];
 }
 
 }  // namespace crescent::inline render

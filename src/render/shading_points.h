@@ -72,9 +72,13 @@ struct ShadingPoints {
     std::vector<std::uint32_t> pixel, shape;  // index in the image, index of the shape
     std::vector<float> wox, woy, woz;
     std::vector<float> s, alpha, diffuse, rho_s;  // diffuse: Y(rho_d)
-    std::vector<float> px, py, pz;                // the surface point from the scene's origin, along the world's axes
+    std::vector<float> px, py, pz;                // where rays from the surface begin (Scene::ray_start), world axes
     std::vector<float> tx, ty, tz, bx, by, bz, nx, ny, nz;  // the local frame, world
-    std::vector<float> fill_d, fill_s;                      // like DiskArrays::d, s, for the fill
+    // Normal of the triangle in the local frame, (0, 0, 1) on a shape; empty in a scene without meshes. A direction
+    // below it carries nothing.
+    bool has_faces = false;
+    std::vector<float> face_x, face_y, face_z;
+    std::vector<float> fill_d, fill_s;  // like DiskArrays::d, s, for the fill
     std::vector<DiskArrays> disks;
     std::vector<LightArrays> others;  // lights other than disks
     std::size_t light_count() const { return disks.size() + others.size(); }

@@ -32,6 +32,8 @@ public:
                 const auto d = arm.sample(run.wo, {as_float(u[2 * row]), as_float(u[2 * row + 1])});
                 out[row] = {d.wi, static_cast<double>(d.pdf.v)};
                 if constexpr (requires { d.met; }) out[row].light = d.disk, out[row].met = d.met;
+                if constexpr (requires { d.texel; }) out[row].texel = d.texel;
+                if constexpr (requires { d.triangle; }) out[row].triangle = d.triangle;
             }
         });
     }

@@ -20,7 +20,7 @@ struct CaseSurface {
     std::string_view lobe = "";       // a word of lobes/; "": none
     double sharpness = 32;            // that lobe's s or alpha
     bool lambert = false;             // with rho_d = 0.5 in addition
-    std::string_view light = "fill";  // "fill", "disk", "overhead disk", "two disks", "sky", or fill + one of these
+    std::string_view light = "fill";  // "fill", "disk", "overhead disk", "two disks", "sky", "triangles", or fill + these
 };
 
 /// The surface and light of one case, the input of a sampler's theory.
@@ -48,7 +48,7 @@ std::string power_underflows(const CasePoint& at, double least);
 
 /// The light that a sampler finds.
 struct Reaches {
-    bool fill = true, lights = true, sky = true;
+    bool fill = true, lights = true, sky = true, triangles = true;
 };
 
 /// The allowed difference of a GL film from the CPU's: relative to Y, at one sample per pixel, on a software renderer.

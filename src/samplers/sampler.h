@@ -44,11 +44,16 @@ template <class F> struct DrawnToSky : Drawn<F> {
     UintOf<F> texel;  // no_texel: none was drawn
 };
 
-/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1, and
-/// `texel` that of one which aimed at the sky.
+/// A direction that was drawn on an emitting triangle, which it meets whatever the rounding of the direction.
+template <class F> struct DrawnToTriangle : Drawn<F> {
+    UintOf<F> triangle;  // no_triangle: none was drawn
+};
+
+/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1; `texel`
+/// and `triangle` those of samplers which aimed there.
 template <class F> struct DrawnByAny : DrawnToDisk<F> {
     static constexpr bool by_any = true;
-    UintOf<F> texel{no_texel};
+    UintOf<F> texel{no_texel}, triangle{no_triangle};
 };
 
 /// A disk light as seen from the surface, in the local frame.
@@ -83,7 +88,7 @@ template <class F> struct ShadingPoint {
     int disk_count = 0;
     const LocalLight<F>* others = nullptr;  // lights other than disks
     int other_count = 0;
-    const Surroundings* around = nullptr;  // the scene's sky; null: none, and the next two are not set
+    const Surroundings* around = nullptr;  // the scene's sky and meshes; null: none, and the next two are not set
     Vec3<F> position{};                    // of the point, from the scene's origin along the world's axes, m
     Frame<F> frame{};                      // of the point, in the world
 };

@@ -23,7 +23,7 @@ template <class F> struct Sky {
         .draw = R"(a texel by its mass $L_\omega\Delta\omega$, then even over its solid angle; $\Phi$ is the sum of all)",
         .axis = "the sky",
         .misses = light_arm_misses,
-        .reaches = {.fill = false, .lights = false},
+        .reaches = {.fill = false, .lights = false, .triangles = false},
         .check_cases = check_cases};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
 
@@ -40,7 +40,7 @@ template <class F> struct Sky {
         LaneArray<F> x, y, z, p;
         LaneIntegers<F> texel;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
-            const SkyDraw drawn = sample_sky(*around, static_cast<double>(ux.at[l]), static_cast<double>(uy.at[l]));
+            const SkyDraw drawn = sample_sky(*around, double(ux.at[l]), double(uy.at[l]));
             x.at[l] = static_cast<Scalar>(drawn.w.x), y.at[l] = static_cast<Scalar>(drawn.w.y);
             z.at[l] = static_cast<Scalar>(drawn.w.z), p.at[l] = static_cast<Scalar>(drawn.pdf);
             texel.at[l] = drawn.texel;
@@ -56,7 +56,7 @@ template <class F> struct Sky {
         LaneArray<F> p;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l)
             p.at[l] = static_cast<Scalar>(sky_pdf(*around,
-                {static_cast<double>(x.at[l]), static_cast<double>(y.at[l]), static_cast<double>(z.at[l])}));
+                {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
         return {p.pack()};
     }
 };
