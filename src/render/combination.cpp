@@ -332,6 +332,12 @@ template <class F> struct DirectionsOfSamples {
 }  // namespace
 
 void estimate_combination(const Combination& combination, const KernelCall& call) {
+    estimate_combination(combination, call, [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
+        return simd::draw(call.seed, pixel, sample, block);
+    });
+}
+
+void estimate_combination(const Combination& combination, const KernelCall& call, const PixelNumbers& numbers) {
     const ShadingPoints& points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
     const std::size_t count = combination.directions();
@@ -354,7 +360,7 @@ void estimate_combination(const Combination& combination, const KernelCall& call
             combination.sample(
                 {points, runs},
                 [&](std::size_t run, std::size_t row, std::uint32_t block) {
-                    return simd::draw(call.seed, points.pixel[runs[run].point], first + row, block);
+                    return numbers(points.pixel[runs[run].point], first + row, block);
                 },
                 part);
             for (std::size_t r = 0; r < runs.size(); ++r) {

@@ -295,6 +295,13 @@ constexpr const char* quadrature_prose = R"(
 from a table of its albedo, every light by quadrature. It has no seed, and states its own error.</p>
 )";
 
+constexpr const char* paired_prose = R"(
+<p>The reference is a pair of independent estimates <i>R</i><sub>1</sub> and <i>R</i><sub>2</sub> of every pixel, by
+{n} scrambled Sobol points for each way to draw a direction, on a seed of their own ({seed}). The squared error of a film
+is the mean of (<i>Y</i> − <i>R</i><sub>1</sub>)(<i>Y</i> − <i>R</i><sub>2</sub>), in which the errors of the reference
+cancel in the mean. Where this estimate is negative, the RMSE is below the reference’s error.</p>
+)";
+
 constexpr const char* both_prose = R"(
 <p>Two references are computed. The quadrature integrates each pixel to convergence and has no seed. The Monte Carlo one
 adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn from it, and each light by {disk} on
@@ -337,7 +344,7 @@ std::string table_of_both(const std::vector<ReferenceQuality>& all) {
     for (const ReferenceQuality& r : all)
         table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
             html::figure(figures(*r.rms_difference, 3)), html::figure(figures(*r.rms_standard_error, 3)),
-            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(*r.max_relative_rmse_change, 2))});
+            html::figure(figures(*r.quadrature_error, 2)), html::figure(percent(*r.max_relative_rmse_change, 2))});
     return table.str() + verdict(all);
 }
 
@@ -346,7 +353,8 @@ std::string table_of_one(const std::vector<ReferenceQuality>& all) {
         {words("Region"), {"<i>s</i>", true}, {"Its error", true}, {"Share of the smallest RMSE", true}});
     for (const ReferenceQuality& r : all)
         table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
-            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(r.error_share, 2))});
+            html::figure(figures(r.paired_error ? *r.paired_error : *r.quadrature_error, 2)),
+            html::figure(std::isfinite(r.error_share) ? percent(r.error_share, 2) : "above it")});
     return table.str();
 }
 
@@ -359,6 +367,8 @@ PageSection reference(Page& page) {
     if (all.empty() && plates.empty()) return {};
     const bool both = !all.empty() && all.front().max_relative_rmse_change.has_value();
     std::string out = quadrature_prose;
+    if (plan.kind == ReferenceKind::paired)
+        out = fmt::format(paired_prose, fmt::arg("n", plan.n), fmt::arg("seed", plan.seed));
     if (both)
         out = fmt::format(both_prose, fmt::arg("lobe", plural(plan.lobe_spp, "sample")),
             fmt::arg("disk", plural(plan.disk_spp, "sample")), fmt::arg("seed", plan.seed),

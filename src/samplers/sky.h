@@ -16,7 +16,7 @@ namespace crescent::inline samplers {
 template <class F> struct Sky {
     static constexpr std::string_view name = "sky";
     static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "sky"},
-        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "sky"}, {.lambert = true, .light = "fill + sky"}};
+        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "sky"}};
     static constexpr SamplerDoc manual = {.label = name,
         .summary = "a direction of the image sky, by the luminance of its texels",
         .formula = R"(\frac{L_\omega}{\Phi})",
