@@ -1,5 +1,6 @@
 // The scene as the experiment gives it: camera, shapes, lights. Lengths in scene units, radiance in W/(sr m^2).
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "experiment/queries.h"
@@ -75,6 +76,11 @@ std::string lights_table(const Experiment& e) {
     for (const auto& [path, light] : all_lights(e))
         table.row({html::heading(escape(light.name)),
             words(fmt::format("{}: {}", light.kind(), parameters_of(light.form))), words(rgb(light.radiance))});
+    if (e.sky)
+        table.row({html::heading("sky"),
+            words(fmt::format("the image {}, content {}, turned by {}°", html::code(e.sky->file),
+                html::code(e.sky->content.value_or("not read")), shortest(e.sky->rotation))),
+            words(fmt::format("that of its texels, times {}", shortest(e.sky->scale)))});
     table.row({html::heading("fill"), words("the whole hemisphere"), words(rgb(e.fill))});
     return table.str();
 }
@@ -148,7 +154,6 @@ PageSection densities(Page& page) {
     html::Table table("The densities, the maps that draw from them and the sample counts <i>N</i> of each arm",
         {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
     const auto& arms = page.in.experiment.arms;
-    const Rgb& fill = page.in.experiment.fill;
     for (const ArmPlan& arm : arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
@@ -310,6 +315,19 @@ difference of the two, the standard error that the random one states, and by how
 if the other one were used.</p>
 )";
 
+/// Returns the runs whose squared error is below 0, with its interval.
+std::string below_the_reference(const ReportInputs& in) {
+    html::Table table("Runs whose RMSE is below the reference’s error: their squared error, with its 95 % interval",
+        {words("Run"), words("Region"), {"Seed", true}, {"Squared error", true}, {"Interval", true}});
+    for (const RunMetrics& run : in.metrics.runs)
+        for (const RegionMetrics& region : run.regions)
+            if (region.is_paired() && region.mse < 0)
+                table.row({html::heading(run_html(run.key, in.experiment)), words(escape(region.region)),
+                    html::figure(std::to_string(run.key.seed)), html::figure(figures(region.mse, 2)),
+                    html::figure(figures(region.mse_low(), 2) + " … " + figures(region.mse_high(), 2))});
+    return table.empty() ? "" : table.str();
+}
+
 /// Returns where the reference's own error is too large a part of an RMSE.
 std::string not_good_enough(const std::vector<ReferenceQuality>& all) {
     std::string out;
@@ -374,7 +392,7 @@ PageSection reference(Page& page) {
             fmt::arg("disk", plural(plan.disk_spp, "sample")), fmt::arg("seed", plan.seed),
             fmt::arg("used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "Monte Carlo reference"));
     if (!all.empty()) out += (both ? table_of_both(all) : table_of_one(all)) + not_good_enough(all);
-    return {"reference", "The reference", out + plates};
+    return {"reference", "The reference", out + below_the_reference(page.in) + plates};
 }
 
 }  // namespace crescent::inline report

@@ -28,7 +28,7 @@ struct ArmList {
 };
 
 using Samplers = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
-    GgxVndf, GgxBoundedVndf, BeckmannD, Sky, LightTriangle>;
+    GgxVndf, GgxBoundedVndf, BeckmannD, SkyByTexel, LightTriangle>;
 
 /// Calls f.template operator()<A>() for every sampler A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_sampler(ArmList<A...>, Call&& f) {

@@ -13,7 +13,7 @@
 
 namespace crescent::inline samplers {
 
-template <class F> struct Sky {
+template <class F> struct SkyByTexel {
     static constexpr std::string_view name = "sky";
     static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "sky"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "sky"}};
@@ -30,7 +30,7 @@ template <class F> struct Sky {
     const Surroundings* around;
     Frame<F> frame;
 
-    explicit Sky(const ShadingPoint<F>& shading_point) : around(shading_point.around), frame(shading_point.frame) {}
+    explicit SkyByTexel(const ShadingPoint<F>& shading_point) : around(shading_point.around), frame(shading_point.frame) {}
 
     [[gnu::noinline]] DrawnToSky<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0);

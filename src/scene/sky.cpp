@@ -30,7 +30,7 @@ std::string why_no_sky(const SkyImage& image, double scale) {
     return light ? "" : "every texel is 0: expected a sky with light";
 }
 
-SkyMap::SkyMap(const SkyLight& light)
+SkyTable::SkyTable(const SkyLight& light)
     : image_(light.image), scale_(light.scale), turns_(light.rotation / 360) {
     ensure(image_ != nullptr, "the file of a sky is read before its scene is made");
     const int high = height();
@@ -52,26 +52,26 @@ SkyMap::SkyMap(const SkyLight& light)
     }
 }
 
-double SkyMap::pdf(std::uint32_t texel) const { return luminance(radiance(texel)) / total_; }
+double SkyTable::pdf(std::uint32_t texel) const { return luminance(radiance(texel)) / total_; }
 
-Rgb SkyMap::radiance(std::uint32_t texel) const {
+Rgb SkyTable::radiance(std::uint32_t texel) const {
     const float* at = &image_->rgb[3 * std::size_t{texel}];
     return {scale_ * double(at[0]), scale_ * double(at[1]), scale_ * double(at[2])};
 }
 
-SkyMap::RowEdges SkyMap::edges_of(int row) const {
+SkyTable::RowEdges SkyTable::edges_of(int row) const {
     const int high = height(), mirrored = high - 1 - row, upper = std::min(row, mirrored);
     const double polar = edge_[static_cast<std::size_t>(upper)];
     if (row == mirrored) return {polar, polar, true, false};
     return {polar, edge_[static_cast<std::size_t>(upper) + 1], false, row > mirrored};
 }
 
-double SkyMap::solid_angle(int row) const {
+double SkyTable::solid_angle(int row) const {
     const RowEdges at = edges_of(row);
     return 2 * pi / width() * (at.across ? 2 * (1 - at.polar) : at.equatorial - at.polar);
 }
 
-SkyDraw SkyMap::sample(double u, double v) const {
+SkyDraw SkyTable::sample(double u, double v) const {
     const auto found = std::upper_bound(rows_.begin(), rows_.end() - 1, u * total_);
     const auto row = static_cast<std::size_t>(found - rows_.begin());
     const auto inside = [](double x, double low, double high) {
@@ -93,7 +93,7 @@ SkyDraw SkyMap::sample(double u, double v) const {
     return {{across * phi.sin, y, -across * phi.cos}, texel, pdf(texel)};
 }
 
-std::uint32_t SkyMap::texel_at(Vec3d w) const {
+std::uint32_t SkyTable::texel_at(Vec3d w) const {
     const double across2 = w.x * w.x + w.z * w.z, size = std::sqrt(across2 + w.y * w.y);
     const double h = across2 / (size * (size + std::fabs(w.y)));
     const int last = (height() - 1) / 2;  // the last row that is not below the equator

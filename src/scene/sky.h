@@ -57,10 +57,10 @@ struct SkyDraw {
 };
 
 /// Radiance by direction, and directions by radiance. Immutable.
-class SkyMap {
+class SkyTable {
 public:
     /// The image must be one for which why_no_sky() is "".
-    explicit SkyMap(const SkyLight& light);
+    explicit SkyTable(const SkyLight& light);
 
     /// u and v in [0, 1). Rounding the direction may move it to a neighbouring texel: the result has the drawn one.
     SkyDraw sample(double u, double v) const;

@@ -15,7 +15,7 @@
 namespace crescent::inline scene {
 
 struct Surroundings {
-    std::optional<SkyMap> sky;
+    std::optional<SkyTable> sky;
     std::optional<TriangleLights> triangles;  // those that emit
     Rays rays;
     Vec3f eye{};  // the camera

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "math/simd/frame.h"
 #include "samplers/info.h"
 #include "scene/lights/all.h"
+#include "scene/surroundings.h"
 
 namespace crescent::inline sources {
 
