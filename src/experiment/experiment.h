@@ -197,13 +197,15 @@ struct Experiment : SceneData {
     std::vector<PlatePlan> plates;
     std::vector<AssertionPlan> assertions;
     std::optional<std::string> published;          // path of a JSON of published figures, resolved against `file`
-    std::optional<Published> figures;              // its content, once read: by load(), else by run()
+    std::optional<Published> figures;              // its content, once read: by load(), else by run(), like meshes
     std::map<std::string, SourceLocation> places;  // "camera.eye" -> place in the file
 
     /// Returns this experiment with another s: for the shape that s() is read from and all that inherit it.
     Experiment with_s(double s) const;
     /// Returns the default n of an arm: the experiment's own if `arm` has that sample count, else the arm's highest.
     std::uint64_t n_of(const ArmPlan& arm) const;
+    /// Returns "shapes.NAME" or "meshes.NAME".
+    std::string surface_path(std::size_t surface) const;
     const ArmPlan* find_arm(std::string_view name) const;
     const Region* find_region(std::string_view name) const;
     /// Returns where a key was written; for a missing key, the place of its table.
@@ -216,15 +218,16 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
 /// The same from text; `name` is the file's name in messages.
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
 
-/// Returns the experiment with its published values and its sky read, if it names some and has none yet.
+/// Returns the experiment with its files read: published values, meshes and its sky, where it names some and has none
+/// yet. Throws InputError.
 Experiment with_files(Experiment experiment);
 
 /// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
 /// layout.
 std::string canonical_text(const Experiment& experiment);
 /// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their paths, of
-/// the published figures and the sky, and of the contents of the files of samplers (sampler_files.h). Computed at each call, so
-/// that it is right for an experiment that was made or changed in code.
+/// the published figures, the meshes and the sky, and of the contents of the files of samplers (sampler_files.h).
+/// Computed at each call, so that it is right for an experiment that was made or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 
 /// Returns the keys with types, units, ranges and defaults, made from the table that parses them.

@@ -258,20 +258,21 @@ namespace {
 void resolve_s(ParseContext& context) {
     Experiment& e = context.e;
     if (e.exponent && context.is_valid("exponent.shape")) {
-        const Shape* shape = e.find_shape(e.exponent->shape);
-        if (shape && !shape->material.s && context.is_valid("shapes." + shape->name + ".s"))
+        const auto surface = e.find_surface(e.exponent->shape);
+        if (surface && !e.material(*surface).s && context.is_valid(e.surface_path(*surface) + ".s"))
             context.report("exponent.shape",
-                fmt::format(
-                    "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
+                fmt::format("exponent.shape: expected a shape with an s of its own, found '{}' without one",
+                    e.exponent->shape));
     }
     if (e.exponent) e.s_of = e.exponent->shape;
     const double s = e.s();
-    for (Shape& shape : e.shapes)
-        if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
-    if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
-            return !context.is_valid("shapes." + x.name + ".s");
-        }))
-        return;
+    bool valid = true;
+    for (std::size_t k = 0; k < e.surface_count(); ++k) {
+        Material& material = e.material(k);
+        if (!material.s && s > 0) material.s = s, material.inherits_s = true;
+        valid = valid && context.is_valid(e.surface_path(k) + ".s");
+    }
+    if (s > 0 || !valid) return;
     for (const ArmPlan& arm : e.arms)
         if (const SamplerInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
             context.report("arms." + arm.name,
@@ -358,17 +359,18 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
-/// The quadrature integrates lights of one radiance and bodies in closed form; it cannot integrate an image.
+/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or meshes.
 void resolve_reference(ParseContext& context) {
     Experiment& e = context.e;
     ReferencePlan& plan = e.reference;
     if (!context.is_valid("reference") || !context.is_valid("reference.kind")) return;
     const bool given = e.places.contains("reference.kind");
-    if (e.sky && !given) plan.kind = ReferenceKind::paired;
+    const bool only_paired = e.sky || !e.meshes.empty();
+    if (only_paired && !given) plan.kind = ReferenceKind::paired;
     const bool paired = plan.kind == ReferenceKind::paired;
-    if (e.sky && !paired)
+    if (only_paired && !paired)
         context.report("reference.kind",
-            "reference.kind: a scene with a [sky] has no such reference: expected \"paired\", or no 'kind'");
+            "reference.kind: a scene with a sky or meshes has no such reference: expected \"paired\", or no 'kind'");
     if (paired && plan.monte_carlo)
         context.report("reference.monte_carlo",
             "reference.monte_carlo: expected false with reference.kind = \"paired\", which takes its place");
@@ -452,6 +454,11 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
             load_sky(*context.e.sky);
         } catch (const InputError& error) { context.report("sky.file", fmt::format("sky.file: {}", error.what())); }
     }
+    if (context.diagnostics.empty()) {
+        try {
+            read_meshes(context.e);
+        } catch (const InputError& error) { context.diagnostics = error.diagnostics(); }
+    }
     throw_if_any(std::move(context.diagnostics));
     return std::move(context.e);
 }
@@ -459,6 +466,7 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
 Experiment with_files(Experiment experiment) {
     if (experiment.published && !experiment.figures) experiment.figures = load_published(*experiment.published);
     if (experiment.sky && !experiment.sky->image) load_sky(*experiment.sky);
+    read_meshes(experiment);
     return experiment;
 }
 

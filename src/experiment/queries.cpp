@@ -14,16 +14,16 @@ std::string film_file(std::string_view arm, double s, double own_s) {
     return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s);
 }
 
-// ---- Compares the largest channel of rho_d plus rho_s of each shape with 1 (reflectances have no unit), and finds
+// ---- Compares the largest channel of rho_d plus rho_s of each surface with 1 (reflectances have no unit), and finds
 // requested article checks that cannot be measured.
 
 std::vector<std::string> warnings_of(const Experiment& experiment) {
     std::vector<std::string> out;
-    for (const Shape& shape : experiment.shapes) {
-        const double albedo = std::ranges::max(shape.material.rho_d) + shape.material.rho_s;
+    for (std::size_t k = 0; k < experiment.surface_count(); ++k) {
+        const double albedo = std::ranges::max(experiment.material(k).rho_d) + experiment.material(k).rho_s;
         if (albedo > 1)
-            out.push_back(fmt::format(
-                "{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives", shape.name, albedo));
+            out.push_back(fmt::format("{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives",
+                experiment.surface_name(k), albedo));
     }
     if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
         out.push_back("note_evidence measures nothing: " + why);

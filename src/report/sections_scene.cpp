@@ -67,6 +67,16 @@ std::string shapes_table(const Page& page) {
             words(parameters_of(shape.form)), words(rgb(shape.material.rho_d)), words(lobe(shape.material)),
             words(shape.occludes ? "yes" : "no"), html::figure(known ? std::to_string(found->second) : "")});
     }
+    for (const MeshObject& mesh : page.in.experiment.meshes) {
+        const auto found = page.in.metrics.shape_pixels.find(mesh.name);
+        const bool known = found != page.in.metrics.shape_pixels.end();
+        std::string where = escape(mesh.file);
+        if (mesh.pack) where += fmt::format(", {} triangles", mesh.pack->mesh.triangles.size());
+        if (!mesh.instances.empty()) where += fmt::format(", {} instances", mesh.instances.size());
+        if (mesh.emits()) where += fmt::format(", emits {} W/(sr m²)", rgb(mesh.emission));
+        table.row({html::heading(escape(mesh.name)), words("mesh"), words(where), words(rgb(mesh.material.rho_d)),
+            words(lobe(mesh.material)), words("yes"), html::figure(known ? std::to_string(found->second) : "")});
+    }
     return table.empty() ? "" : table.str();
 }
 
@@ -239,10 +249,12 @@ std::string regions_sentence(const Experiment& e) {
 /// Returns the lobes of the scene's glossy surfaces, in the list's order.
 std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
     std::vector<const LobeInfo*> out;
-    for (const LobeInfo& lobe : lobe_infos())
-        if (std::ranges::any_of(
-                e.shapes, [&](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe.kind; }))
-            out.push_back(&lobe);
+    for (const LobeInfo& lobe : lobe_infos()) {
+        bool used = false;
+        for (std::size_t k = 0; k < e.surface_count(); ++k)
+            used = used || (e.material(k).rho_s > 0 && e.material(k).brdf == lobe.kind);
+        if (used) out.push_back(&lobe);
+    }
     return out;
 }
 

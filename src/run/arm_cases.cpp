@@ -281,7 +281,7 @@ private:
         const std::uint32_t pixel = point->pixel[0], width = static_cast<std::uint32_t>(image.width);
         const LobeInfo* lobe = point->lobe < 0 ? nullptr : &lobe_info(static_cast<LobeKind>(point->lobe));
         CheckCase t;
-        t.brdf = experiment_.shapes[point->shape[0]].name;
+        t.brdf = experiment_.surface_name(point->shape[0]);
         t.lighting = fmt::format("pixel {} {}", pixel % width, pixel / width);
         t.wo = wo;
         const auto rounded = [](double v) { return std::round(v * 1e4) / 1e4; };

@@ -95,7 +95,7 @@ void add_references_compared(Measured& out) {
 
 void add_view(Prepared& prepared, Measured& out) {
     for (std::size_t k = 0; k < prepared.shape_pixels.size(); ++k)
-        out.metrics.shape_pixels[out.experiment.shapes[k].name] = prepared.shape_pixels[k];
+        out.metrics.shape_pixels[out.experiment.surface_name(k)] = prepared.shape_pixels[k];
     out.metrics.geometry_pixels = prepared.geometry_pixels;
     out.shapes = std::move(prepared.shapes), out.outside = std::move(prepared.outside);
     out.quadrature = std::move(prepared.quadrature), out.monte_carlo = std::move(prepared.monte_carlo);

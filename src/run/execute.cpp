@@ -76,7 +76,7 @@ const TiledScene& view_at(const Prepared& prepared, double s) {
 }
 
 std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const ShapeMap& shapes) {
-    std::vector<std::uint64_t> out(experiment.shapes.size());
+    std::vector<std::uint64_t> out(experiment.surface_count());
     for (const std::int16_t shape : shapes.shape)
         if (shape >= 0) ++out[static_cast<std::size_t>(shape)];
     if (std::ranges::all_of(out, [](std::uint64_t pixels) { return pixels == 0; }))

@@ -134,7 +134,7 @@ struct Placement {
 /// A mesh with its material. Its triangles reflect from both sides.
 struct MeshObject {
     std::string name;
-    std::string file;                      // its .mesh file
+    std::string file;                      // its .mesh file, relative to the experiment's
     std::shared_ptr<const MeshPack> pack;  // its content, once read
     Placement placement;
     std::vector<Placement> instances;  // placed after `placement`; empty: once
