@@ -30,7 +30,7 @@ TEST(Sobol, FillsEveryElementaryIntervalOnceForAnySeed) {
             std::set<std::pair<int, int>> cells;
             for (std::uint32_t i = 0; i < 256; ++i) {
                 const Vec2<float> u = scrambled_sobol(i, scramble);
-                EXPECT_GT(u.x, 0), EXPECT_LT(u.x, 1), EXPECT_GT(u.y, 0), EXPECT_LT(u.y, 1);
+                EXPECT_TRUE(u.x > 0 && u.x < 1 && u.y > 0 && u.y < 1);
                 cells.emplace(static_cast<int>(u.x * static_cast<float>(columns)),
                     static_cast<int>(u.y * static_cast<float>(rows)));
             }

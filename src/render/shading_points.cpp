@@ -184,7 +184,7 @@ std::size_t ShadingPoints::bytes_of_one() {
 }
 
 void ShadingPoints::cull_occluders(const Scene& scene) {
-    if (around && around->sky) return;
+    if (around && (around->sky || around->triangles)) return;
     const auto range = [](const std::vector<float>& v) {
         const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
         return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));

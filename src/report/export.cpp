@@ -33,7 +33,7 @@ template <class Of> void add_metrics(Json& out, const Of& of) {
         of, [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
 }
 
-Json run_json(const RunMetrics& run) {
+Json run_json(const RunMetrics& run, bool paired) {
     Json regions = Json::object();
     for (const RegionMetrics& r : run.regions) {
         Json& at = regions[r.region] = Json::object();
@@ -49,7 +49,6 @@ Json run_json(const RunMetrics& run) {
     Json out = {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
         {"regions", std::move(regions)}};
     add_metrics(out, run);
-    const bool paired = std::ranges::any_of(run.regions, &RegionMetrics::is_paired);
     out["rmse_frame"] = number_or_null(run.rmse_frame, paired);
     return out;
 }
@@ -199,7 +198,7 @@ std::string metrics_json(const ReportInputs& in) {
     Json provenance = provenance_json(in.provenance);
     provenance["experiment"] = experiment_json(in);
     const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
-        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, run_json)},
+        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
         {"bands", list(m.bands, of_rmse)}, {"ladders", list(m.ladders, [&](const Ladder& l) { return ladder_json(l, paired); })},
         {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
         {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
