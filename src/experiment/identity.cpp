@@ -163,6 +163,7 @@ std::uint64_t hash(const Experiment& experiment) {
     Experiment counted = experiment;
     counted.seeds = 1;                                  // a longer series is more of the same experiment
     if (experiment.figures) counted.published.reset();  // their content counts, not their path
+    if (experiment.sky && experiment.sky->content) counted.sky->file.clear();
     for (MeshObject& mesh : counted.meshes)
         if (mesh.pack) mesh.file = fmt::format("{:016x}", mesh.pack->hash);
     std::string text = canonical_text(counted);

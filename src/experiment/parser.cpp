@@ -14,6 +14,7 @@
 #include "experiment/experiment.h"
 #include "experiment/queries.h"
 #include "experiment/sampler_files.h"
+#include "experiment/scene_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {
@@ -358,8 +359,30 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
+/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or meshes.
+void resolve_reference(ParseContext& context) {
+    Experiment& e = context.e;
+    ReferencePlan& plan = e.reference;
+    if (!context.is_valid("reference") || !context.is_valid("reference.kind")) return;
+    const bool given = e.places.contains("reference.kind");
+    const bool only_paired = e.sky || !e.meshes.empty();
+    if (only_paired && !given) plan.kind = ReferenceKind::paired;
+    const bool paired = plan.kind == ReferenceKind::paired;
+    if (only_paired && !paired)
+        context.report("reference.kind",
+            "reference.kind: a scene with a sky or meshes has no such reference: expected \"paired\", or no 'kind'");
+    if (paired && plan.monte_carlo)
+        context.report("reference.monte_carlo",
+            "reference.monte_carlo: expected false with reference.kind = \"paired\", which takes its place");
+    if (!paired && plan.n > 0)
+        context.report("reference.n",
+            "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
+    if (paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
+}
+
 void resolve_runs(ParseContext& context) {
     resolve_s(context);
+    resolve_reference(context);
     resolve_ladders(context);
     if (context.e.exponent) {
         ExponentControl& control = *context.e.exponent;
@@ -387,6 +410,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     Experiment& e = context.e;
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     if (e.published) e.published = (folder / *e.published).string();
+    if (e.sky && !e.sky->file.empty()) e.sky->file = (folder / e.sky->file).string();
     for (ArmPlan& arm : e.arms) {
         if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
         if (arm.python && !python_file(*arm.python).empty()) arm.python = (folder / *arm.python).string();
@@ -425,6 +449,11 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
             context.e.figures = load_published(*context.e.published);
         } catch (const InputError& error) { context.report("published", fmt::format("published: {}", error.what())); }
     }
+    if (context.e.sky && context.is_valid("sky.file")) {
+        try {
+            load_sky(*context.e.sky);
+        } catch (const InputError& error) { context.report("sky.file", fmt::format("sky.file: {}", error.what())); }
+    }
     if (context.diagnostics.empty()) {
         try {
             read_meshes(context.e);
@@ -436,6 +465,7 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
 
 Experiment with_files(Experiment experiment) {
     if (experiment.published && !experiment.figures) experiment.figures = load_published(*experiment.published);
+    if (experiment.sky && !experiment.sky->image) load_sky(*experiment.sky);
     read_meshes(experiment);
     return experiment;
 }

@@ -2,6 +2,7 @@
 #include "experiment/queries.h"
 
 #include <algorithm>
+#include <tuple>
 #include <fmt/format.h>
 #include <variant>
 
@@ -52,8 +53,7 @@ std::string why_no_evidence(const Experiment& experiment) {
 }
 
 // ---- Looks up SamplerInfo by the arm's sampler; a sampler that is not in the list draws one direction, reaches all
-// light and depends on s. An arm that cannot reach a light also cannot reach the fill; if the fill is black, no arm
-// misses light.
+// light and depends on s.
 
 int techniques_of(const ArmPlan& arm) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
@@ -62,8 +62,16 @@ int techniques_of(const ArmPlan& arm) {
 
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
-    const bool shines = experiment.fill[0] + experiment.fill[1] + experiment.fill[2] > 0;  // samplers miss only this
-    return info && shines ? std::string(info->misses) : "";
+    if (!info) return "";
+    const auto shines = [](const auto& light) { return light.radiance[0] + light.radiance[1] + light.radiance[2] > 0; };
+    const bool lights = std::ranges::any_of(experiment.disks, shines) || std::ranges::any_of(experiment.lights, shines);
+    const Rgb& fill = experiment.fill;
+    std::string out;
+    for (const auto& [there, reached, name] : {std::tuple(fill[0] + fill[1] + fill[2] > 0, info->reaches.fill, "the fill"),
+             {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"},
+             {std::ranges::any_of(experiment.meshes, &MeshObject::emits), info->reaches.triangles, "the triangles"}})
+        if (there && !reached) out += (out.empty() ? "" : " and ") + std::string(name);
+    return out;
 }
 
 bool tells_s(const std::string& arm, double s, const Experiment& experiment) {

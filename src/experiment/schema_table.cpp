@@ -163,6 +163,22 @@ Section fill() {
         {}};
 }
 
+Section sky() {
+    return {"sky", Multiplicity::one, optional,
+        "An image sky: light from infinitely far away where nothing hides it, see docs/conventions.md.",
+        in<&Experiment::sky, Experiment>,
+        {{"file", Type::text, none, "", required, "",
+             "A latitude-longitude image, OpenEXR, relative to this file; twice as wide as high, at most 8192 x 4096.",
+             to<&SkyLight::file>},
+            {"rotation", Type::number, {-360, 360}, "degrees", defaulted, "0",
+                "About the y axis, counterclockwise seen from above.", to<&SkyLight::rotation>},
+            {"scale", Type::number, {0, 1e9, true}, "", defaulted, "1", "Factor of the image's radiance.",
+                to<&SkyLight::scale>},
+            {"content", Type::text, none, "", optional, "not checked",
+                "Hash of the image, 16 hexadecimal digits; another image is refused.", to<&SkyLight::content>}},
+        {}};
+}
+
 /// The words of an enumeration, in its order; `last` is its last value. A value is read as the index of its word.
 template <auto last, std::size_t n> std::vector<std::string> words_to(const char* const (&words)[n]) {
     static_assert(n == static_cast<std::size_t>(last) + 1, "an enumeration has one word for each value");
@@ -240,8 +256,11 @@ Section regions() {
 Section reference() {
     return {"reference", Multiplicity::one, optional, "What the metrics compare with.", in<&Experiment::reference>,
         {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
-             "Converged integration, or the article's Monte Carlo.", to<&ReferencePlan::kind>,
-             words_to<ReferenceKind::note>({"quadrature", "note"})},
+             "Converged integration, the article's Monte Carlo, or two independent estimates, the default for a scene "
+             "with a sky or meshes.",
+             to<&ReferencePlan::kind>, words_to<ReferenceKind::paired>({"quadrature", "note", "paired"})},
+            {"n", Type::integer, count_range, "samples/pixel", optional, "256", "Of each of the two estimates of paired.",
+                to<&ReferencePlan::n>},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
                 "Whether the article's is computed in addition to the quadrature.", to<&ReferencePlan::monte_carlo>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "Of the Monte Carlo reference.",
@@ -334,7 +353,7 @@ const Section& schema() {
                 "Whether the article's explanations of the Phong arm are measured.", to<&Experiment::note_evidence>},
             {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
                 to<&Experiment::published>}},
-        {image(), camera(), shape_tables(), mesh_tables(), disks(), light_tables(), fill(), arms(), exponent(),
+        {image(), camera(), shape_tables(), mesh_tables(), disks(), light_tables(), sky(), fill(), arms(), exponent(),
             regions(), reference(), furnaces(), plates(), assertions()}};
     return root;
 }

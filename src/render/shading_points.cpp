@@ -64,6 +64,7 @@ std::vector<TileBox> tiles_of(int width, int height) {
 ShadingPoints empty_points(const Scene& scene, int lobe) {
     ShadingPoints shading_points;
     shading_points.lobe = lobe;
+    shading_points.around = scene.surroundings();
     shading_points.has_faces = scene.has_meshes();
     double total = 0;
     for (const Light& light : scene.lights()) total += light.power();
@@ -94,6 +95,10 @@ Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
     for (const Light& light : scene.lights()) {
         disk_d.push_back(worth(reflected(light.radiance, surface.rho_d) / pi));
         disk_s.push_back(worth(surface.tinted(light.radiance) * surface.rho_s));
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+        around_d[c] = worth(luminance_weights[c] * lambert[c]);
+        around_s[c] = worth(luminance_weights[c] * surface.tint[c] * surface.rho_s);
     }
 }
 
@@ -127,6 +132,8 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
         others[k].d[i] = shading.disk_d[light];
         others[k].s[i] = shading.disk_s[light];
     }
+    for (std::size_t c = 0; around && c < 3; ++c)
+        around_d[c][i] = shading.around_d[c], around_s[c][i] = shading.around_s[c];
     lambert[i] = shading.lambert;
     rho_s_exact[i] = shading.surface.rho_s;
     tint[i] = shading.surface.tint;
@@ -136,6 +143,7 @@ template <class Work> void ShadingPoints::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
     all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
         fill_s, lambert, rho_s_exact, tint);
+    for (std::size_t c = 0; around && c < 3; ++c) all(around_d[c], around_s[c]);
     if (has_faces) all(face_x, face_y, face_z);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
     for (LightArrays& k : others) {
@@ -176,6 +184,7 @@ std::size_t ShadingPoints::bytes_of_one() {
 }
 
 void ShadingPoints::cull_occluders(const Scene& scene) {
+    if (around && (around->sky || around->triangles)) return;
     const auto range = [](const std::vector<float>& v) {
         const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
         return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));

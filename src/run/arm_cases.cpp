@@ -201,6 +201,15 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
             out.area_lights.push_back({radiance, lights::Sphere{c, lights[k].radius}});
         }
     }
+    if (points.around) {
+        const auto at = [](const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+            return Vec3d{double(x[0]), double(y[0]), double(z[0])};
+        };
+        out.around = points.around;
+        out.position = at(points.px, points.py, points.pz);
+        out.frame = {at(points.tx, points.ty, points.tz), at(points.bx, points.by, points.bz),
+            at(points.nx, points.ny, points.nz)};
+    }
     return out;
 }
 

@@ -31,8 +31,7 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
     origin = c.eye;
     rays = Rays(instances(), origin);
     origin = nearest_seen();
-    if (rays.empty()) return;
-    rays = Rays(instances(), origin);
+    if (!rays.empty()) rays = Rays(instances(), origin);
     for (std::uint32_t k = 0; k < rays.instances().size(); ++k) {
         const MeshInstance& instance = rays.instances()[k];
         const MeshObject& mesh = data.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -43,6 +42,24 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
             if (mesh.two_sided) triangle_lights.push_back({{p, r, q}, k, t, instance.mesh});
         }
     }
+    around = surroundings();
+}
+
+std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
+    if (!data.sky && rays.empty()) return nullptr;
+    auto out = std::make_shared<Surroundings>();
+    if (data.sky) out->sky.emplace(*data.sky);
+    std::vector<EmittingTriangle> emitting;
+    for (const TriangleLight& light : triangle_lights) {
+        EmittingTriangle& to = emitting.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c) to.corner[c] = light.corner[c] - origin;
+        to.radiance = data.meshes[static_cast<std::size_t>(light.mesh)].emission;
+        to.instance = light.instance, to.triangle = light.triangle;
+    }
+    if (!emitting.empty()) out->triangles.emplace(std::move(emitting));
+    out->rays = rays;
+    out->eye = as<float>(data.camera.eye - origin);
+    return out;
 }
 
 Scene::Scene(SceneData data) : made_(std::make_shared<const Made>(std::move(data))), s_(made_->data.s()) {}

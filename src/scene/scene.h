@@ -9,6 +9,7 @@
 
 #include "math/simd/frame.h"
 #include "scene/scene_data.h"
+#include "scene/surroundings.h"
 
 namespace crescent::inline scene {
 
@@ -74,6 +75,8 @@ public:
     const std::vector<Light>& lights() const { return made_->lights; }
     std::size_t disk_count() const { return made_->disk_count; }
     const Rgb& fill() const { return made_->data.fill; }
+    /// Returns the sky; null if the scene has none.
+    const std::shared_ptr<const Surroundings>& surroundings() const { return made_->around; }
     /// Returns whether both come from one Scene by copies and with_s(), with the same exponent, so all their values are
     /// equal.
     bool is_same_as(const Scene& other) const { return made_ == other.made_ && s_ == other.s_; }
@@ -89,9 +92,11 @@ private:
         std::size_t disk_count = 0;
         Rays rays;
         std::vector<TriangleLight> triangle_lights;
-        std::ptrdiff_t s_shape = -1;  // the surface whose exponent is the scene's; -1: none
+        std::shared_ptr<const Surroundings> around;  // null: nothing but bodies and lights
+        std::ptrdiff_t s_shape = -1;                 // the surface whose exponent is the scene's; -1: none
 
         explicit Made(SceneData from);
+        std::shared_ptr<const Surroundings> surroundings() const;
         Vec3d towards(int i, int j) const;  // direction from the eye to pixel (i, j), unit
         std::optional<Hit> trace(int i, int j) const;
         Hit hit(int shape, Vec3d d, const Intersection& met) const;

@@ -15,6 +15,7 @@
 #include "scene/lobes/lobe.h"
 #include "scene/mesh/rays.h"
 #include "scene/shapes/all.h"
+#include "scene/sky.h"
 
 namespace crescent::inline scene {
 
@@ -257,6 +258,7 @@ struct SceneData {
     std::vector<MeshObject> meshes;
     std::vector<DiskLight> disks;  // lights too, before the others
     std::vector<Light> lights;
+    std::optional<SkyLight> sky;
     Rgb fill{};  // uniform over the hemisphere
     std::string
         s_of;  // the surface whose exponent is the scene's; empty: the first with a lobe, else the first with an s
