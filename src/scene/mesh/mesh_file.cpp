@@ -88,9 +88,10 @@ private:
         if (header.triangles >= std::uint32_t{1} << 30)
             fail(fmt::format("byte 20: expected fewer than 2^30 triangles, found {}", header.triangles));
         const std::uint64_t hash = XXH3_64bits(bytes_.data() + sizeof header, bytes_.size() - sizeof header);
-        if (hash != header.hash)
+        if (header.hash != 0 && hash != header.hash)
             fail(fmt::format("byte 32: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
                 hash, header.hash));
+        header.hash = hash;
         at_ = sizeof header;
         return header;
     }
