@@ -71,18 +71,18 @@ check() {
     [ "$failures" -eq "$broken" ] || failed_tests "$log" >&2
 }
 
-# fuzz PRESET TARGET SECONDS: no finding in that time counts as one test.
+# fuzz PRESET TARGET SECONDS CORPUS...: no finding in that time counts as one test. Corpora are folders of the repository.
 fuzz() {
     local target log found
     target="$(binary_dir "$1")/tests/fuzz/$2"
     log="$log_dir/$2.log"
     [ -x "$target" ] || { skipped=$((skipped + 1)) && say "  skipped: $2"; return; }
-    found="$(binary_dir "$1")/tests/fuzz/found"
+    found="$(binary_dir "$1")/tests/fuzz/found-$2"
     mkdir -p "$found"
     say "fuzzing $2 for $3 s"
     if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" \
         -dict="$root/tests/fuzz/experiment.dict" \
-        "$found" "$root/tests/fuzz/corpus" "$root/experiments" >"$log" 2>&1; then
+        "$found" "${@:4}" >"$log" 2>&1; then
         add 1 0
     else
         add 0 1

@@ -91,6 +91,30 @@ void add_schema(CLI::App& app, Work& work) {
     c->add_flag("--json", f->json, "as a JSON Schema");
 }
 
+void add_import(CLI::App& app, Work& work) {
+    std::shared_ptr<ImportFlags> f;
+    CLI::App* c = command(app, work, "import", "Make a .mesh file of a model of another program.", import, f);
+    c->add_option("FILE", f->file, "a model: .obj, .ply, .glb, .gltf or .stl")
+        ->type_name("")
+        ->required()
+        ->check(not_empty);
+    c->add_option("--out", f->out, "NAME.mesh, for the key `file` of [meshes.NAME]")
+        ->type_name("FILE")
+        ->required()
+        ->check(not_empty);
+    c->add_option("--material", f->material, "the triangles of one material of the model")
+        ->type_name("NAME")
+        ->check(not_empty);
+    c->add_option("--memory", f->memory_mib, "limit of the importer")
+        ->type_name("MIB")
+        ->check(whole_number(64, 1 << 20));
+    c->add_option("--timeout", f->timeout, "limit of the importer")->type_name("SECONDS")->check(number(0.01, 1e6));
+    c->footer(R"(Prints what was found, and the tables [camera] and [meshes.NAME] of an experiment
+in which the whole model is seen. The importer is a process of its own; a model
+that it cannot read, or dies of, is an error of the input (exit code 2). Exit code
+3: this build has no importer.)");
+}
+
 void add_version(CLI::App& app, Work& work) {
     std::shared_ptr<VersionFlags> f;
     command(app, work, "version", "Version, commit and compiler.", version, f);
@@ -170,6 +194,7 @@ std::function<int()> parse(int argc, char** argv) {
     add_schema(app, work);
     add_check(app, work);
     add_compare(app, work);
+    add_import(app, work);
     app.add_subcommand("sweep", "Run an experiment over a grid, on one machine or many (Python package).");
     add_version(app, work);
     if (argc > 1 && std::string_view(argv[1]) == "sweep") return [argv] { return sweep(argv); };

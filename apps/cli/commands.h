@@ -104,6 +104,13 @@ int compare(const CompareFlags& flags);
 /// `crescent compare SUITE.toml`, and --baseline DIR --candidate DIR.
 int compare_suite(const CompareFlags& flags);
 
+struct ImportFlags {
+    std::string file, out, material;  // "": all materials
+    double timeout = 300;             // s
+    int memory_mib = 4096;
+};
+int import(const ImportFlags& flags);
+
 struct VersionFlags {};
 int version(const VersionFlags& flags);
 

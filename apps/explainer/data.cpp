@@ -93,8 +93,10 @@ Data collect(const Experiment& experiment, const RunOptions& options, ProgressMo
     data.provenance = std::move(measured.provenance);
     data.shapes = std::move(measured.shapes);
     data.films = std::move(measured.films);
-    const bool quadrature = data.experiment.reference.kind == ReferenceKind::quadrature;
-    data.references = std::move(quadrature ? measured.quadrature : measured.monte_carlo);
+    const ReferenceKind kind = data.experiment.reference.kind;
+    data.references = std::move(kind == ReferenceKind::quadrature ? measured.quadrature
+            : kind == ReferenceKind::paired                       ? measured.paired
+                                                                  : measured.monte_carlo);
     data.opening = opening_of(data.experiment, data.cast, options.isa, monitor);
     data.measures = std::make_shared<const Measures>(take_measures(data, options.isa, monitor));
     return data;

@@ -57,7 +57,7 @@ struct OpenPixelReply {
         const auto most = std::ranges::max_element(all, {}, &PixelSample::x);
         if (most != all.end() && most->x > 0) largest = &*most;
         const auto shape = static_cast<std::size_t>(open->shape());
-        out = {{"shape", bench().experiment.shapes.at(shape).name}, {"mirror", view.place(open->mirror())},
+        out = {{"shape", bench().experiment.surface_name(shape)}, {"mirror", view.place(open->mirror())},
             {"draws", ordered_json::array()}};
     }
     void describe_draws() {

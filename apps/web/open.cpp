@@ -123,6 +123,7 @@ CRESCENT_EXPORT(open)()->void {
     const ordered_json query = request();
     Experiment e = parse(query.at("text").get<std::string>(), query.at("file").get<std::string>(),
         query.at("set").get<std::vector<std::string>>());
+    if (e.sky) throw InputError(e.sky->at, "a page cannot read the image of a sky");
     for (const ArmPlan& arm : e.arms)
         if (!find_arm_info(arm.sampler) && arm.exec != exec_of_page)
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");

@@ -166,7 +166,7 @@ CRESCENT_EXPORT(pixel_values)()->void {
     const std::size_t at = query.at("j").get<std::size_t>() * b.width() + query.at("i").get<std::size_t>();
     const bool known = query.at("reference").get<bool>() && at < b.reference.size();
     const int shape = at < b.shapes.shape.size() ? b.shapes.shape[at] : -1;
-    ordered_json out = {{"shape", shape < 0 ? "" : b.experiment.shapes.at(static_cast<std::size_t>(shape)).name},
+    ordered_json out = {{"shape", shape < 0 ? "" : b.experiment.surface_name(static_cast<std::size_t>(shape))},
         {"films", ordered_json::array()}};
     if (known) out["reference"] = figures(double(b.reference.y[at]));
     for (int k = 0; k < query.at("count").get<int>(); ++k) {

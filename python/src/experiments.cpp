@@ -25,7 +25,8 @@ RunResult result_of(Measured&& m) {
     for (const Region& r : m.experiment.regions) out.boxes.emplace_back(r.name, r.box.x0, r.box.y0, r.box.x1, r.box.y1);
     for (const ArmTiming& t : m.timing.arms) out.times.emplace_back(t.arm, t.n, t.s, t.samples, t.seconds);
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
-    for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
+    for (auto* films : {&m.quadrature, &m.paired})
+        for (ReferenceFilm& film : *films) out.references.push_back(std::move(film));
     return out;
 }
 
@@ -205,7 +206,7 @@ Experiment settled_paths(Experiment e) {
     const auto absolute = [](std::optional<std::string>& path) {
         if (path) path = std::filesystem::absolute(*path).lexically_normal().string();
     };
-    e = with_figures(std::move(e));
+    e = with_files(std::move(e));
     absolute(e.published);
     for (ArmPlan& arm : e.arms) {
         absolute(arm.plugin);

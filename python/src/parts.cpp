@@ -16,7 +16,7 @@ using Names = std::vector<std::string>;
 
 /// The references of an experiment, one for each exponent.
 struct References {
-    std::vector<ReferenceFilm> quadrature, monte_carlo;
+    std::vector<ReferenceFilm> quadrature, monte_carlo, paired;
 };
 
 References references(const Experiment& experiment, int threads, const std::string& isa, const nb::object& progress) {
@@ -28,7 +28,7 @@ References references(const Experiment& experiment, int threads, const std::stri
         what.experiment.arms.clear(), what.experiment.exponent.reset();  // opens no sampler
         Prepared prepared = prepare(what, settled({.threads = threads, .isa = isa}), monitor);
         monitor.check();
-        out = {std::move(prepared.quadrature), std::move(prepared.monte_carlo)};
+        out = {std::move(prepared.quadrature), std::move(prepared.monte_carlo), std::move(prepared.paired)};
     });
     return out;
 }
@@ -78,6 +78,7 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Prepared prepared = look(what, engine);
         prepared.quadrature = given.quadrature, prepared.monte_carlo = given.monte_carlo;
+        prepared.paired = given.paired;
         const Scene scene = prepared.scene;
         std::vector<Job> jobs;
         std::vector<JobResult> results;

@@ -242,7 +242,7 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
         case QuantityOf::compared: return "";
         case QuantityOf::run: return resolve_run(q, e);
         case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.adapter);
-        case QuantityOf::shape: return missing(e.shapes, "shape", q.adapter);
+        case QuantityOf::shape: return e.find_surface(q.adapter) ? "" : missing(e.shapes, "shape", q.adapter);
         case QuantityOf::region: return missing(e.regions, "region", q.adapter);
         case QuantityOf::plate: return missing(e.plates, "plate", q.adapter);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "experiment/parser.h"
@@ -19,6 +20,11 @@ namespace {
 constexpr double parallel = 1e-6;  // sine of the angle under which two directions count as one
 
 double length(Vec3d v) { return std::sqrt(dot(v, v)); }
+
+/// Whether a relative path has a part "..".
+bool leaves_folder(const std::filesystem::path& path) {
+    return std::ranges::any_of(path, [](const std::filesystem::path& part) { return part == ".."; });
+}
 
 template <class T> std::vector<std::string> names_of(const std::vector<T>& all) {
     std::vector<std::string> names;
@@ -65,9 +71,9 @@ template <class Any> void check_form(ParseContext& context, const std::string& p
         any);
 }
 
-void check_material(ParseContext& context, const Shape& shape) {
-    const std::string path = "shapes." + shape.name;
-    const Material& m = shape.material;
+void check_material(ParseContext& context, std::size_t surface) {
+    const std::string path = context.e.surface_path(surface);
+    const Material& m = context.e.material(surface);
     if (!context.is_valid(path + ".brdf") || !(m.rho_s > 0)) return;
     const LobeInfo& lobe = lobe_info(m.brdf);
     const bool by_alpha = lobe.parameter == LobeParameter::alpha;
@@ -88,16 +94,25 @@ void check_light(ParseContext& context) {
         context.report(disks.size() > most_lights ? "disks." + disks[most_lights].name
                                                   : "lights." + lights[most_lights - disks.size()].name,
             fmt::format("disks and lights: expected at most {}, found {}", most_lights, all));
+    if (const auto& sky = context.e.sky; sky && context.is_valid("sky.file") && sky->file.empty())
+        context.report("sky.file", "sky.file: expected the name of a file, found an empty text");
+    const auto is_hexadecimal = [](std::string_view text) {
+        return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    };
+    if (const auto& sky = context.e.sky; sky && context.is_valid("sky.content") && sky->content && !is_hexadecimal(*sky->content))
+        context.report("sky.content",
+            fmt::format("sky.content: expected 16 hexadecimal digits in lower case, found \"{}\"", sky->content->substr(0, 64)));
     for (const Light& light : lights) check_form(context, "lights." + light.name, light.form);
     const Rgb& fill = context.e.fill;
     const auto is_dark = [](const auto& light) {
         return light.radiance[0] + light.radiance[1] + light.radiance[2] <= 0;
     };
-    const bool dark =
-        std::all_of(disks.begin(), disks.end(), is_dark) && std::all_of(lights.begin(), lights.end(), is_dark);
-    if (dark && context.is_valid("disks") && context.is_valid("lights") && context.is_valid("fill") &&
-        context.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
-        context.report("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
+    const bool dark = std::all_of(disks.begin(), disks.end(), is_dark) &&
+        std::all_of(lights.begin(), lights.end(), is_dark) &&
+        std::ranges::none_of(context.e.meshes, [](const MeshObject& mesh) { return mesh.emits(); });
+    if (dark && !context.e.sky && context.is_valid("meshes") && context.is_valid("disks") && context.is_valid("lights") &&
+        context.is_valid("fill") && context.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
+        context.report("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0, or a sky");
 }
 
 void check_external_arms(ParseContext& context) {
@@ -117,6 +132,35 @@ void check_external_arms(ParseContext& context) {
         for (const auto& [key, text] : keys)
             if (text && text->empty())
                 context.report(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
+    }
+}
+
+void check_meshes(ParseContext& context) {
+    const Experiment& e = context.e;
+    if (e.shapes.empty() && e.meshes.empty() && context.is_valid("shapes") && context.is_valid("meshes"))
+        context.report("shapes", "missing tables [shapes.NAME] or [meshes.NAME]: expected what the camera sees");
+    for (const MeshObject& mesh : e.meshes) {
+        const std::string path = "meshes." + mesh.name;
+        const auto check = [&](const Placement& placement, const std::string& of) {
+            for (const char* key : {".scale", ".rotate", ".translate", ".matrix"})
+                if (!context.is_valid(of + key)) return;
+            for (const char* key : {".scale", ".rotate", ".translate"})
+                if (placement.matrix && e.places.contains(of + key))
+                    context.report(of + key,
+                        fmt::format("{}{}: expected a matrix, or scale, rotate and translate; found both", of, key));
+            if (const double volume = placement.transform().det(); !(std::fabs(volume) > 1e-18))
+                context.report(of + (placement.matrix ? ".matrix" : ".scale"),
+                    fmt::format(
+                        "{}: expected a transform that keeps a volume, found a determinant of {:.3g}", of, volume));
+        };
+        check(mesh.placement, path);
+        for (std::size_t i = 0; i < mesh.instances.size(); ++i)
+            check(mesh.instances[i], fmt::format("{}.instances.{}", path, i));
+        const std::filesystem::path file = mesh.file;
+        if (context.is_valid(path + ".file") && (file.empty() || file.is_absolute() || leaves_folder(file)))
+            context.report(path + ".file",
+                fmt::format("{}.file: expected a file in the folder of the experiment or below it, found '{}'", path,
+                    mesh.file));
     }
 }
 
@@ -146,8 +190,9 @@ void check_film_files(ParseContext& context) {
 
 void check_geometry(ParseContext& context) {
     check_camera(context);
-    for (const Shape& shape : context.e.shapes)
-        check_form(context, "shapes." + shape.name, shape.form), check_material(context, shape);
+    for (const Shape& shape : context.e.shapes) check_form(context, "shapes." + shape.name, shape.form);
+    for (std::size_t k = 0; k < context.e.surface_count(); ++k) check_material(context, k);
+    check_meshes(context);
     for (const Region& region : context.e.regions)
         check_box_on_image(context, "regions." + region.name + ".box", region.box);
     for (const PlatePlan& plate : context.e.plates)
@@ -156,7 +201,7 @@ void check_geometry(ParseContext& context) {
 }
 
 void check_names(ParseContext& context) {
-    const std::vector<std::string> arms = names_of(context.e.arms), shapes = names_of(context.e.shapes);
+    const std::vector<std::string> arms = names_of(context.e.arms), shapes = context.e.surface_names();
     for (const Reference& r : context.references) {
         const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
         if (sampler && is_unfinished_combination(context, r.path)) continue;
@@ -174,7 +219,13 @@ void check_names(ParseContext& context) {
             context.report(path + name,
                 fmt::format("duplicate name '{}': expected a {} with another name than the shape at {}", name, what,
                     to_string(shape->at)));
+        for (const MeshObject& mesh : context.e.meshes)
+            if (mesh.name == name && path != "meshes.")
+                context.report(path + name,
+                    fmt::format("duplicate name '{}': expected a {} with another name than the mesh at {}", name, what,
+                        to_string(mesh.at)));
     };
+    for (const MeshObject& mesh : context.e.meshes) unlike_shapes("mesh", "meshes.", mesh.name);
     for (const DiskLight& disk : context.e.disks) unlike_shapes("disk", "disks.", disk.name);
     for (const Light& light : context.e.lights) {
         unlike_shapes("light", "lights.", light.name);

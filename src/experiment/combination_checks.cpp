@@ -180,14 +180,16 @@ private:
             if (texts.empty()) return;
             const WeightList weights(texts, c.of.size(), of_direction, {});
             std::vector<double> out(c.of.size()), p(c.of.size());
-            for (const Shape& shape : context_.e.shapes)
+            const Experiment& e = context_.e;
+            for (std::size_t surface = 0; surface < e.surface_count(); ++surface)
                 for (std::uint32_t k = 0; k < probes; ++k) {
-                    const FormulaInputs in = probe(shape, k, p);
+                    const FormulaInputs in = probe(e.material(surface), k, p);
                     try {
                         weights.evaluate(in, out);
                     } catch (const InputError& error) {
                         return report(path + "." + key,
-                            fmt::format("{} (on the shape '{}')", error.diagnostics().front().message, shape.name));
+                            fmt::format("{} (on the surface '{}')", error.diagnostics().front().message,
+                                e.surface_name(surface)));
                     }
                 }
         };
@@ -195,8 +197,8 @@ private:
         test("probabilities", c.probabilities, false);
     }
 
-    static FormulaInputs probe(const Shape& shape, std::uint32_t k, std::vector<double>& p) {
-        const Surface m = surface_of(shape.material, shape.material.s.value_or(1));
+    static FormulaInputs probe(const Material& material, std::uint32_t k, std::vector<double>& p) {
+        const Surface m = surface_of(material, material.s.value_or(1));
         const auto unit = [&](std::uint32_t i) { return static_cast<double>(simd::draw(1, k, 0, i).x); };
         for (std::size_t i = 0; i < p.size(); ++i) p[i] = 10 * unit(static_cast<std::uint32_t>(i) + 2);
         FormulaInputs in;

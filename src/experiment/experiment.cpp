@@ -16,15 +16,19 @@ template <class T> const T* find_named(const std::vector<T>& all, std::string_vi
 
 Experiment Experiment::with_s(double other) const {
     Experiment e = *this;
-    if (const Shape* own = shape_of_s()) e.shapes[static_cast<std::size_t>(own - shapes.data())].material.s = other;
-    for (Shape& shape : e.shapes)
-        if (shape.material.inherits_s) shape.material.s = other;
+    if (const auto own = surface_of_s()) e.material(*own).s = other;
+    for (std::size_t k = 0; k < e.surface_count(); ++k)
+        if (e.material(k).inherits_s) e.material(k).s = other;
     return e;
 }
 
 std::uint64_t Experiment::n_of(const ArmPlan& arm) const {
     if (std::find(arm.n.begin(), arm.n.end(), n) != arm.n.end()) return n;
     return arm.n.empty() ? n : arm.n.back();
+}
+
+std::string Experiment::surface_path(std::size_t surface) const {
+    return (surface < shapes.size() ? "shapes." : "meshes.") + surface_name(surface);
 }
 
 const ArmPlan* Experiment::find_arm(std::string_view name) const { return find_named(arms, name); }

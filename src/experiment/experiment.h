@@ -125,17 +125,20 @@ struct Region {
     SourceLocation at;
 };
 
-/// The deterministic quadrature, or the article's Monte Carlo estimate.
-enum class ReferenceKind { quadrature, note };
+/// The deterministic quadrature, the article's Monte Carlo estimate, or two independent estimates.
+enum class ReferenceKind { quadrature, note, paired };
 
-/// The reference of the metrics. The quadrature is always computed.
+/// The reference of the metrics. The quadrature is always computed, except if the kind is `paired`.
 struct ReferencePlan {
     ReferenceKind kind = ReferenceKind::quadrature;  // the one that the metrics use
+    std::uint64_t n = 0;          // samples per pixel of each estimate of `paired`; 0: paired_samples
     bool monte_carlo = false;     // whether the article's is computed too if the metrics do not use it
-    std::uint32_t seed = 0;       // of the article's Monte Carlo reference
+    std::uint32_t seed = 0;       // of the references that are sampled
     std::uint64_t lobe_spp = 32;  // Phong-sampled lobe x fill
     std::uint64_t disk_spp = 96;  // samples on each light
 };
+
+inline constexpr std::uint64_t paired_samples = 256;
 
 /// The whole BRDF, or its lobe without the Lambert part.
 enum class FurnacePart { combined, lobe };
@@ -194,13 +197,15 @@ struct Experiment : SceneData {
     std::vector<PlatePlan> plates;
     std::vector<AssertionPlan> assertions;
     std::optional<std::string> published;          // path of a JSON of published figures, resolved against `file`
-    std::optional<Published> figures;              // its content, once read: by load(), else by run()
+    std::optional<Published> figures;              // its content, once read: by load(), else by run(), like meshes
     std::map<std::string, SourceLocation> places;  // "camera.eye" -> place in the file
 
     /// Returns this experiment with another s: for the shape that s() is read from and all that inherit it.
     Experiment with_s(double s) const;
     /// Returns the default n of an arm: the experiment's own if `arm` has that sample count, else the arm's highest.
     std::uint64_t n_of(const ArmPlan& arm) const;
+    /// Returns "shapes.NAME" or "meshes.NAME".
+    std::string surface_path(std::size_t surface) const;
     const ArmPlan* find_arm(std::string_view name) const;
     const Region* find_region(std::string_view name) const;
     /// Returns where a key was written; for a missing key, the place of its table.
@@ -213,15 +218,16 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
 /// The same from text; `name` is the file's name in messages.
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
 
-/// Returns the experiment with its published values read, if it names some and has none yet.
-Experiment with_figures(Experiment experiment);
+/// Returns the experiment with its files read: published values, meshes and its sky, where it names some and has none
+/// yet. Throws InputError.
+Experiment with_files(Experiment experiment);
 
 /// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
 /// layout.
 std::string canonical_text(const Experiment& experiment);
-/// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their path, of
-/// the published figures, and of the contents of the files of samplers (sampler_files.h). Computed at each call, so
-/// that it is right for an experiment that was made or changed in code.
+/// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their paths, of
+/// the published figures, the meshes and the sky, and of the contents of the files of samplers (sampler_files.h).
+/// Computed at each call, so that it is right for an experiment that was made or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 
 /// Returns the keys with types, units, ranges and defaults, made from the table that parses them.

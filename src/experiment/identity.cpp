@@ -59,6 +59,7 @@ std::string toml(const Key& key, const Value& value) {
             for (const std::string& text : value.texts) out += (out.empty() ? "" : ", ") + toml_text(text);
             return "[" + out + "]";
         }
+        case Type::factors:
         case Type::gray: return value.numbers.size() == 1 ? number(value.numbers[0]) : list(value.numbers);
         default: return list(value.numbers);
     }
@@ -99,9 +100,10 @@ private:
         return key && key->slot.load(object, value) ? key->words[static_cast<std::size_t>(value.word)] : "";
     }
 
-    /// An s that a shape inherits is written as a comment: the shape is read without one and inherits it again.
+    /// An s that a surface inherits is written as a comment: it is read without one and inherits it again.
     static bool is_inherited(const Section& section, const void* object) {
-        return section.name == "shapes" && static_cast<const Shape*>(object)->material.inherits_s;
+        if (section.name == "shapes") return static_cast<const Shape*>(object)->material.inherits_s;
+        return section.name == "meshes" && static_cast<const MeshObject*>(object)->material.inherits_s;
     }
 
     void table(const Section& section, const void* object, const std::string& path) {
@@ -161,6 +163,9 @@ std::uint64_t hash(const Experiment& experiment) {
     Experiment counted = experiment;
     counted.seeds = 1;                                  // a longer series is more of the same experiment
     if (experiment.figures) counted.published.reset();  // their content counts, not their path
+    if (experiment.sky && experiment.sky->content) counted.sky->file.clear();
+    for (MeshObject& mesh : counted.meshes)
+        if (mesh.pack) mesh.file = fmt::format("{:016x}", mesh.pack->hash);
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);
     text += sampler_file_hashes(experiment);

@@ -52,7 +52,9 @@ Json type_of(const Key& key) {
         case Type::point:
         case Type::direction:
         case Type::color: return list(number(key, false), 3);
+        case Type::factors:
         case Type::gray: return {{"anyOf", {number(key, false), list(number(key, false), 3)}}};
+        case Type::matrix: return list(number(key, false), 12);
         case Type::box: return list(number(key, true), 4);
         case Type::numbers: return one_or_more(number(key, false));
         case Type::integers: return one_or_more(number(key, true));

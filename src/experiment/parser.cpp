@@ -14,6 +14,7 @@
 #include "experiment/experiment.h"
 #include "experiment/queries.h"
 #include "experiment/sampler_files.h"
+#include "experiment/scene_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {
@@ -257,20 +258,21 @@ namespace {
 void resolve_s(ParseContext& context) {
     Experiment& e = context.e;
     if (e.exponent && context.is_valid("exponent.shape")) {
-        const Shape* shape = e.find_shape(e.exponent->shape);
-        if (shape && !shape->material.s && context.is_valid("shapes." + shape->name + ".s"))
+        const auto surface = e.find_surface(e.exponent->shape);
+        if (surface && !e.material(*surface).s && context.is_valid(e.surface_path(*surface) + ".s"))
             context.report("exponent.shape",
-                fmt::format(
-                    "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
+                fmt::format("exponent.shape: expected a shape with an s of its own, found '{}' without one",
+                    e.exponent->shape));
     }
     if (e.exponent) e.s_of = e.exponent->shape;
     const double s = e.s();
-    for (Shape& shape : e.shapes)
-        if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
-    if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
-            return !context.is_valid("shapes." + x.name + ".s");
-        }))
-        return;
+    bool valid = true;
+    for (std::size_t k = 0; k < e.surface_count(); ++k) {
+        Material& material = e.material(k);
+        if (!material.s && s > 0) material.s = s, material.inherits_s = true;
+        valid = valid && context.is_valid(e.surface_path(k) + ".s");
+    }
+    if (s > 0 || !valid) return;
     for (const ArmPlan& arm : e.arms)
         if (const SamplerInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
             context.report("arms." + arm.name,
@@ -357,8 +359,30 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
+/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or meshes.
+void resolve_reference(ParseContext& context) {
+    Experiment& e = context.e;
+    ReferencePlan& plan = e.reference;
+    if (!context.is_valid("reference") || !context.is_valid("reference.kind")) return;
+    const bool given = e.places.contains("reference.kind");
+    const bool only_paired = e.sky || !e.meshes.empty();
+    if (only_paired && !given) plan.kind = ReferenceKind::paired;
+    const bool paired = plan.kind == ReferenceKind::paired;
+    if (only_paired && !paired)
+        context.report("reference.kind",
+            "reference.kind: a scene with a sky or meshes has no such reference: expected \"paired\", or no 'kind'");
+    if (paired && plan.monte_carlo)
+        context.report("reference.monte_carlo",
+            "reference.monte_carlo: expected false with reference.kind = \"paired\", which takes its place");
+    if (!paired && plan.n > 0)
+        context.report("reference.n",
+            "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
+    if (paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
+}
+
 void resolve_runs(ParseContext& context) {
     resolve_s(context);
+    resolve_reference(context);
     resolve_ladders(context);
     if (context.e.exponent) {
         ExponentControl& control = *context.e.exponent;
@@ -386,6 +410,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     Experiment& e = context.e;
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     if (e.published) e.published = (folder / *e.published).string();
+    if (e.sky && !e.sky->file.empty()) e.sky->file = (folder / e.sky->file).string();
     for (ArmPlan& arm : e.arms) {
         if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
         if (arm.python && !python_file(*arm.python).empty()) arm.python = (folder / *arm.python).string();
@@ -424,12 +449,24 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
             context.e.figures = load_published(*context.e.published);
         } catch (const InputError& error) { context.report("published", fmt::format("published: {}", error.what())); }
     }
+    if (context.e.sky && context.is_valid("sky.file")) {
+        try {
+            load_sky(*context.e.sky);
+        } catch (const InputError& error) { context.report("sky.file", fmt::format("sky.file: {}", error.what())); }
+    }
+    if (context.diagnostics.empty()) {
+        try {
+            read_meshes(context.e);
+        } catch (const InputError& error) { context.diagnostics = error.diagnostics(); }
+    }
     throw_if_any(std::move(context.diagnostics));
     return std::move(context.e);
 }
 
-Experiment with_figures(Experiment experiment) {
+Experiment with_files(Experiment experiment) {
     if (experiment.published && !experiment.figures) experiment.figures = load_published(*experiment.published);
+    if (experiment.sky && !experiment.sky->image) load_sky(*experiment.sky);
+    read_meshes(experiment);
     return experiment;
 }
 

@@ -2,6 +2,7 @@
 #include "experiment/queries.h"
 
 #include <algorithm>
+#include <tuple>
 #include <fmt/format.h>
 #include <variant>
 
@@ -13,16 +14,16 @@ std::string film_file(std::string_view arm, double s, double own_s) {
     return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s);
 }
 
-// ---- Compares the largest channel of rho_d plus rho_s of each shape with 1 (reflectances have no unit), and finds
+// ---- Compares the largest channel of rho_d plus rho_s of each surface with 1 (reflectances have no unit), and finds
 // requested article checks that cannot be measured.
 
 std::vector<std::string> warnings_of(const Experiment& experiment) {
     std::vector<std::string> out;
-    for (const Shape& shape : experiment.shapes) {
-        const double albedo = std::ranges::max(shape.material.rho_d) + shape.material.rho_s;
+    for (std::size_t k = 0; k < experiment.surface_count(); ++k) {
+        const double albedo = std::ranges::max(experiment.material(k).rho_d) + experiment.material(k).rho_s;
         if (albedo > 1)
-            out.push_back(fmt::format(
-                "{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives", shape.name, albedo));
+            out.push_back(fmt::format("{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives",
+                experiment.surface_name(k), albedo));
     }
     if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
         out.push_back("note_evidence measures nothing: " + why);
@@ -52,8 +53,7 @@ std::string why_no_evidence(const Experiment& experiment) {
 }
 
 // ---- Looks up SamplerInfo by the arm's sampler; a sampler that is not in the list draws one direction, reaches all
-// light and depends on s. An arm that cannot reach a light also cannot reach the fill; if the fill is black, no arm
-// misses light.
+// light and depends on s.
 
 int techniques_of(const ArmPlan& arm) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
@@ -89,8 +89,16 @@ std::string source_of(const ArmPlan& arm) {
 
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
-    const bool shines = experiment.fill[0] + experiment.fill[1] + experiment.fill[2] > 0;  // samplers miss only this
-    return info && shines ? std::string(info->misses) : "";
+    if (!info) return "";
+    const auto shines = [](const auto& light) { return light.radiance[0] + light.radiance[1] + light.radiance[2] > 0; };
+    const bool lights = std::ranges::any_of(experiment.disks, shines) || std::ranges::any_of(experiment.lights, shines);
+    const Rgb& fill = experiment.fill;
+    std::string out;
+    for (const auto& [there, reached, name] : {std::tuple(fill[0] + fill[1] + fill[2] > 0, info->reaches.fill, "the fill"),
+             {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"},
+             {std::ranges::any_of(experiment.meshes, &MeshObject::emits), info->reaches.triangles, "the triangles"}})
+        if (there && !reached) out += (out.empty() ? "" : " and ") + std::string(name);
+    return out;
 }
 
 bool tells_s(const std::string& arm, double s, const Experiment& experiment) {

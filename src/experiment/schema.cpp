@@ -17,6 +17,8 @@ std::string bounds(const Key& key) {
         case Type::integer:
         case Type::number:
         case Type::point:
+        case Type::factors:
+        case Type::matrix:
         case Type::color:
         case Type::gray:
         case Type::numbers:
@@ -36,6 +38,8 @@ std::string noun(const Key& key) {
         case Type::integer: return "an integer";
         case Type::number: return "a number";
         case Type::point: return "3 numbers [x, y, z]";
+        case Type::factors: return "a number, or 3 numbers [x, y, z],";
+        case Type::matrix: return "12 numbers, 3 rows of 4,";
         case Type::direction: return "a unit vector [x, y, z]";
         case Type::color: return "3 numbers [r, g, b]";
         case Type::gray: return "a number, or 3 numbers [r, g, b],";
@@ -46,7 +50,7 @@ std::string noun(const Key& key) {
         case Type::box: return "4 integers [x0, y0, x1, y1]";
         case Type::sampler: return "the name of a sampler";
         case Type::arm: return "the name of an arm";
-        case Type::shape: return "the name of a shape";
+        case Type::shape: return "the name of a shape or mesh";
     }
     return "";
 }

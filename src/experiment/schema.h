@@ -2,6 +2,7 @@
 // stored. The parser, `crescent schema`, the overrides and the nearest-word hints all use this table.
 #pragma once
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <limits>
 #include <span>
@@ -26,6 +27,8 @@ enum class Type {
     integer,
     number,
     point,      // 3 numbers x, y, z
+    factors,    // a number, or 3 for x, y, z
+    matrix,     // 12 numbers: 3 rows of 4
     direction,  // a unit vector
     color,      // 3 numbers r, g, b, linear Rec.709
     gray,       // a number, or 3 of a colour
@@ -150,6 +153,7 @@ inline void assign(std::string& to, const Value& v) { to = v.text; }
 inline void assign(std::vector<std::string>& to, const Value& v) { to = v.texts; }
 inline void assign(Vec3d& to, const Value& v) { to = {v.numbers[0], v.numbers[1], v.numbers[2]}; }
 inline void assign(Rgb& to, const Value& v) { to = {v.numbers[0], v.numbers[1], v.numbers[2]}; }
+inline void assign(std::array<double, 12>& to, const Value& v) { std::copy_n(v.numbers.begin(), 12, to.begin()); }
 inline void assign(std::vector<double>& to, const Value& v) { to = v.numbers; }
 inline void assign(std::vector<std::uint64_t>& to, const Value& v) {
     to.clear();
@@ -179,6 +183,9 @@ inline bool fetch(const std::string& from, Value& v) { return v.text = from, tru
 inline bool fetch(const std::vector<std::string>& from, Value& v) { return v.texts = from, true; }
 inline bool fetch(const Vec3d& from, Value& v) { return v.numbers = {from.x, from.y, from.z}, true; }
 inline bool fetch(const Rgb& from, Value& v) { return v.numbers.assign(from.begin(), from.end()), true; }
+inline bool fetch(const std::array<double, 12>& from, Value& v) {
+    return v.numbers.assign(from.begin(), from.end()), true;
+}
 inline bool fetch(const std::vector<double>& from, Value& v) { return v.numbers = from, true; }
 inline bool fetch(const std::vector<std::uint64_t>& from, Value& v) {
     return v.numbers.assign(from.begin(), from.end()), true;

@@ -7,6 +7,7 @@ namespace {
 
 constexpr Range free_range{-1e6, 1e6};  // coordinates: float kernels resolve steps below a millimetre in this range
 constexpr Range length_range{1e-6, 1e6};
+constexpr Range factor_range{-1e6, 1e6};
 constexpr Range unit_range{0, 1};  // albedos
 constexpr Range exponent_range{0, 1e6, true};
 constexpr Range radiance_range{0, 1e9};       // its square times a weight of a thousand fits a float
@@ -39,40 +40,97 @@ Section camera() {
         {}};
 }
 
-/// One number if the lobe has no colour.
-constexpr Slot specular = {[](void* object, const Value& value) {
-                               const std::vector<double>& n = value.numbers;
-                               const bool grey = n.size() == 1;
-                               static_cast<Shape*>(object)->material.set_specular(
-                                   grey ? Rgb{n[0], n[0], n[0]} : Rgb{n[0], n[1], n[2]});
-                           },
+/// A vector that is stored only where it was given: the default is not written.
+template <class Owner, auto Member, auto... Path> constexpr Slot placement_slot = {
+    [](void* object, const Value& value) { assign(member_of<Path..., Member>(*static_cast<Owner*>(object)), value); },
     [](const void* object, Value& value) {
-        const Material& m = static_cast<const Shape*>(object)->material;
+        const Vec3d v = member_of<Path..., Member>(*static_cast<const Owner*>(object));
+        return (v.x != 0 || v.y != 0 || v.z != 0) && fetch(v, value);
+    }};
+template <class Owner, auto... Path>
+constexpr Slot scale_slot = {[](void* object, const Value& value) {
+                                 const std::vector<double>& n = value.numbers;
+                                 Vec3d& scale = member_of<Path..., &Placement::scale>(*static_cast<Owner*>(object));
+                                 scale = n.size() == 1 ? Vec3d{n[0], n[0], n[0]} : Vec3d{n[0], n[1], n[2]};
+                             },
+    [](const void* object, Value& value) {
+        const Vec3d v = member_of<Path..., &Placement::scale>(*static_cast<const Owner*>(object));
+        if (v.x == 1 && v.y == 1 && v.z == 1) return false;
+        if (v.x == v.y && v.y == v.z) value.numbers = {v.x};
+        else value.numbers = {v.x, v.y, v.z};
+        return true;
+    }};
+
+/// One number if the lobe has no colour.
+template <class Owner> constexpr Slot specular = {[](void* object, const Value& value) {
+                                                      const std::vector<double>& n = value.numbers;
+                                                      const bool grey = n.size() == 1;
+                                                      static_cast<Owner*>(object)->material.set_specular(
+                                                          grey ? Rgb{n[0], n[0], n[0]} : Rgb{n[0], n[1], n[2]});
+                                                  },
+    [](const void* object, Value& value) {
+        const Material& m = static_cast<const Owner*>(object)->material;
         if (m.specular) value.numbers.assign(m.specular->begin(), m.specular->end());
         else value.numbers = {m.rho_s};
         return true;
     }};
 
+/// The keys of a shape's or mesh's material.
+template <class Owner> std::vector<Key> material_keys() {
+    return {{"rho_d", Type::color, unit_range, "", required, "", "Diffuse albedo: f = rho_d/pi + rho_s lobe.",
+                to<&Owner::material, &Material::rho_d>},
+        {"rho_s", Type::gray, unit_range, "", defaulted, "0", "Albedo of the lobe; 0: a Lambert surface.",
+            specular<Owner>},
+        {"s", Type::number, exponent_range, "", optional, "the experiment's s; needed where rho_s > 0",
+            "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Owner::material, &Material::s>},
+        {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Owner::material, &Material::brdf>,
+            lobe_names()},
+        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a lobe of microfacets",
+            "Roughness of a lobe of microfacets, not remapped.", to<&Owner::material, &Material::alpha>}};
+}
+
 Section shape_tables() {
     std::vector<Key> keys = {kind_key<Shapes, &Shape::form>()}, colors;
     for (Key& key : parameter_keys<Shapes, &Shape::form>())
         (key.type == Type::color ? colors : keys).push_back(std::move(key));
-    const std::vector<Key> material = {
-        {"rho_d", Type::color, unit_range, "", required, "", "Diffuse albedo: f = rho_d/pi + rho_s lobe.",
-            to<&Shape::material, &Material::rho_d>},
-        {"rho_s", Type::gray, unit_range, "", defaulted, "0", "Albedo of the lobe; 0: a Lambert surface.", specular},
-        {"s", Type::number, exponent_range, "", optional, "the experiment's s; needed where rho_s > 0",
-            "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
-        {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Shape::material, &Material::brdf>,
-            lobe_names()},
-        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a lobe of microfacets",
-            "Roughness of a lobe of microfacets, not remapped.", to<&Shape::material, &Material::alpha>}};
-    keys.insert(keys.end(), material.begin(), material.end());
+    for (Key& key : material_keys<Shape>()) keys.push_back(std::move(key));
     keys.insert(keys.end(), colors.begin(), colors.end());
     keys.push_back(
         {"occludes", Type::flag, none, "", defaulted, "false", "Whether it hides the lights.", to<&Shape::occludes>});
-    return {"shapes", Multiplicity::named, required, "What the camera sees.", in<&Experiment::shapes, Experiment>,
-        std::move(keys), {}};
+    return {"shapes", Multiplicity::named, optional, "What the camera sees; needed where there is no mesh.",
+        in<&Experiment::shapes, Experiment>, std::move(keys), {}};
+}
+
+/// The members that place an object: its own, or those of its placement.
+template <class Owner, auto... Path> std::vector<Key> placement_keys() {
+    return {{"scale", Type::factors, factor_range, "", optional, "1", "Scaling, along each axis or of all.",
+                scale_slot<Owner, Path...>},
+        {"rotate", Type::point, {-1e6, 1e6}, "degrees", optional, "[0, 0, 0]",
+            "Rotation after the scaling: about the x, then the y, then the z axis, counterclockwise.",
+            placement_slot<Owner, &Placement::rotate, Path...>},
+        {"translate", Type::point, free_range, "m", optional, "[0, 0, 0]", "Translation after the rotation.",
+            placement_slot<Owner, &Placement::translate, Path...>},
+        {"matrix", Type::matrix, {-1e6, 1e6}, "", optional, "none",
+            "In place of these three: 3 rows of 4 numbers, the last of each the translation (m).",
+            to_owner<Owner, Path..., &Placement::matrix>}};
+}
+
+Section mesh_tables() {
+    std::vector<Key> keys = {{"file", Type::text, none, "", required, "",
+        "A .mesh file next to this file or in a folder there; `crescent import` makes one of a model.",
+        to<&MeshObject::file>}};
+    for (Key& key : placement_keys<MeshObject, &MeshObject::placement>()) keys.push_back(std::move(key));
+    for (Key& key : material_keys<MeshObject>()) keys.push_back(std::move(key));
+    keys.push_back({"emission", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]",
+        "Radiance of its front sides: its triangles are area lights.", to<&MeshObject::emission>});
+    keys.push_back({"two_sided", Type::flag, none, "", defaulted, "false", "Emits from the back too.",
+        to<&MeshObject::two_sided>});
+    const Section instances = {"instances", Multiplicity::list, optional,
+        "Where copies of the mesh are, each placed after the mesh's own placement; none: the mesh is there once.",
+        in<&MeshObject::instances>, placement_keys<Placement>(), {}};
+    return {"meshes", Multiplicity::named, optional,
+        "Triangle meshes from files. They hide all lights, and each other.", in<&Experiment::meshes, Experiment>,
+        std::move(keys), {instances}};
 }
 
 Section disks() {
@@ -102,6 +160,22 @@ Section fill() {
     return {"fill", Multiplicity::one, optional, "Light from every direction in which no other light is met.", {},
         {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
             to_owner<Experiment, &Experiment::fill>}},
+        {}};
+}
+
+Section sky() {
+    return {"sky", Multiplicity::one, optional,
+        "An image sky: light from infinitely far away where nothing hides it, see docs/conventions.md.",
+        in<&Experiment::sky, Experiment>,
+        {{"file", Type::text, none, "", required, "",
+             "A latitude-longitude image, OpenEXR, relative to this file; twice as wide as high, at most 8192 x 4096.",
+             to<&SkyLight::file>},
+            {"rotation", Type::number, {-360, 360}, "degrees", defaulted, "0",
+                "About the y axis, counterclockwise seen from above.", to<&SkyLight::rotation>},
+            {"scale", Type::number, {0, 1e9, true}, "", defaulted, "1", "Factor of the image's radiance.",
+                to<&SkyLight::scale>},
+            {"content", Type::text, none, "", optional, "not checked",
+                "Hash of the image, 16 hexadecimal digits; another image is refused.", to<&SkyLight::content>}},
         {}};
 }
 
@@ -182,8 +256,11 @@ Section regions() {
 Section reference() {
     return {"reference", Multiplicity::one, optional, "What the metrics compare with.", in<&Experiment::reference>,
         {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
-             "Converged integration, or the article's Monte Carlo.", to<&ReferencePlan::kind>,
-             words_to<ReferenceKind::note>({"quadrature", "note"})},
+             "Converged integration, the article's Monte Carlo, or two independent estimates, the default for a scene "
+             "with a sky or meshes.",
+             to<&ReferencePlan::kind>, words_to<ReferenceKind::paired>({"quadrature", "note", "paired"})},
+            {"n", Type::integer, count_range, "samples/pixel", optional, "256", "Of each of the two estimates of paired.",
+                to<&ReferencePlan::n>},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
                 "Whether the article's is computed in addition to the quadrature.", to<&ReferencePlan::monte_carlo>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "Of the Monte Carlo reference.",
@@ -276,8 +353,8 @@ const Section& schema() {
                 "Whether the article's explanations of the Phong arm are measured.", to<&Experiment::note_evidence>},
             {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
                 to<&Experiment::published>}},
-        {image(), camera(), shape_tables(), disks(), light_tables(), fill(), arms(), exponent(), regions(), reference(),
-            furnaces(), plates(), assertions()}};
+        {image(), camera(), shape_tables(), mesh_tables(), disks(), light_tables(), sky(), fill(), arms(), exponent(),
+            regions(), reference(), furnaces(), plates(), assertions()}};
     return root;
 }
 

@@ -23,6 +23,7 @@ bool is_number(const Node& node) { return node.kind == Node::Kind::number || nod
 /// Returns how many numbers the type has; 0: a list of any length.
 std::size_t count_of(Type type) {
     if (type == Type::box) return 4;
+    if (type == Type::matrix) return 12;
     return type == Type::numbers || type == Type::integers || type == Type::counts ? 0 : 3;
 }
 
@@ -50,6 +51,8 @@ public:
             case Type::integers: return list(node) && ascending(node);
             case Type::counts: return list(node);
             case Type::point:
+            case Type::factors:
+            case Type::matrix:
             case Type::color:
             case Type::gray: return list(node);
         }
@@ -129,7 +132,7 @@ private:
 
     bool list(const Node& node) {
         const std::size_t count = count_of(key_.type);
-        if ((count == 0 || key_.type == Type::gray) && is_number(node)) {
+        if ((count == 0 || key_.type == Type::gray || key_.type == Type::factors) && is_number(node)) {
             value_.numbers.resize(1);
             return scalar(node, value_.numbers[0]);
         }

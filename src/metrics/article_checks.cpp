@@ -160,7 +160,7 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     Evidence out;
     if (!experiment.note_evidence || !why_no_evidence(experiment).empty()) return out;
     FurnaceCase adapter;
-    adapter.surface = furnace_surface(experiment, *evidence_shape(experiment), false);
+    adapter.surface = furnace_surface(experiment, evidence_shape(experiment)->material, false);
     adapter.s = out.s = adapter.surface.s;
     adapter.rho_d = out.rho_d = luminance(adapter.surface.rho_d);
     adapter.rho_s = out.rho_s = adapter.surface.rho_s;

@@ -68,10 +68,18 @@ template <class Find> double value_of(const ParsedQuantity& q, const Metrics& me
 bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, const Experiment& experiment) {
     if (q.word != "rmse") return true;
     const double s = q.s > 0 ? q.s : experiment.s();
+    if (experiment.reference.kind == ReferenceKind::paired) {
+        const double part = most_error_share * most_error_share;
+        return std::ranges::all_of(metrics.runs, [&](const RunMetrics& run) {
+            const RegionMetrics* region = run.region(q.region);
+            const bool same = run.key.arm == q.adapter && run.key.n == q.n && run.key.s == s && region;
+            return !same || 1.96 * region->mse_error <= part * value * value;
+        });
+    }
     const bool quadrature = experiment.reference.kind == ReferenceKind::quadrature;
     for (const ReferenceQuality& r : metrics.references)
         if (r.s == s && r.region == q.region &&
-            (quadrature ? r.quadrature_error : r.rms_standard_error.value_or(0)) > most_error_share * value)
+            (quadrature ? r.quadrature_error : r.rms_standard_error).value_or(0) > most_error_share * value)
             return false;
     return true;
 }

@@ -41,10 +41,27 @@ struct FrameReaders {
 };
 #undef CRESCENT_READER
 
-FilmPixel pixel_at(const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, std::size_t at) {
+FilmPixel pixel_at(
+    const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, bool paired, std::size_t at) {
     return {static_cast<double>(film.y[at]), static_cast<double>(reference.y[at]), static_cast<double>(film.var[at]),
-        static_cast<double>(film.largest[at]), static_cast<double>(film.horizon[at]), shapes.shape[at] >= 0};
+        static_cast<double>(film.largest[at]), static_cast<double>(film.horizon[at]), shapes.shape[at] >= 0,
+        paired ? static_cast<double>(reference.error[at]) : 0};
 }
+
+/// The squared error of a region against a paired reference. With d = Y - R and e = (R1 - R2)/2, whose square estimates
+/// the variance of R, the variance of d^2 - e^2 over references is 4 d^2 e^2 in the mean, for errors of R1 and R2 that are
+/// independent and symmetric.
+struct PairedError {
+    double squares = 0, variance = 0, own = 0;
+    void add(const FilmPixel& p) {
+        const double e2 = p.pair_error * p.pair_error;
+        squares += p.squared_error(), variance += 4 * p.difference() * p.difference() * e2, own += e2;
+    }
+    void write(RegionMetrics& m) const {
+        const double pixels = static_cast<double>(m.pixels);
+        m.mse = squares / pixels, m.mse_error = std::sqrt(variance) / pixels, m.reference_error = std::sqrt(own / pixels);
+    }
+};
 
 }  // namespace
 
@@ -52,6 +69,7 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
     const ShapeMap& shapes) {
     RunMetrics run;
     run.key = key;
+    const bool paired = experiment.reference.kind == ReferenceKind::paired;
     FilmFacts facts{0, film.n, film.directions, film.evaluations, film.invalid, experiment.firefly_k};
     for (const Region& region : experiment.regions) {
         RegionMetrics m;
@@ -59,21 +77,24 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
         m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
         facts.pixels = static_cast<double>(m.pixels);
         RegionReaders readers;
+        PairedError error;
         for (int j = region.box.y0; j <= region.box.y1; ++j)
             for (int i = region.box.x0; i <= region.box.x1; ++i) {
-                const FilmPixel p = pixel_at(film, reference, shapes, index_of(i, j, film.width));
+                const FilmPixel p = pixel_at(film, reference, shapes, paired, index_of(i, j, film.width));
+                error.add(p);
 #define CRESCENT_ADD(name, Type) readers.name.add(p, facts);
                 CRESCENT_REGION_METRICS(CRESCENT_ADD)
             }
 #define CRESCENT_VALUE(name, Type) m.name = readers.name.value(facts);
         CRESCENT_REGION_METRICS(CRESCENT_VALUE)
 #undef CRESCENT_VALUE
+        if (paired) error.write(m);
         run.regions.push_back(m);
     }
     facts.pixels = static_cast<double>(film.size());
     FrameReaders readers;
     for (std::size_t at = 0; at < film.size(); ++at) {
-        const FilmPixel p = pixel_at(film, reference, shapes, at);
+        const FilmPixel p = pixel_at(film, reference, shapes, paired, at);
         CRESCENT_FRAME_METRICS(CRESCENT_ADD)
 #undef CRESCENT_ADD
     }
@@ -102,6 +123,7 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
         m.rms_standard_error = rms(note->error, q.width, region.box);
         m.max_relative_rmse_change = 0;
     }
+    ensure(used != ReferenceKind::paired, "a paired reference is compared with no other");
     const bool quadrature = used == ReferenceKind::quadrature;
     ensure(quadrature || note, "the reference that the metrics use was computed");
     for (const auto& [key, film] : films) {
@@ -109,10 +131,30 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
         const double a = rms_difference(film.y, q.y, q.width, region.box);
         const double b = note ? rms_difference(film.y, note->y, q.width, region.box) : a;
         if (note && a > 0) m.max_relative_rmse_change = std::max(*m.max_relative_rmse_change, std::fabs(b - a) / a);
-        const double error = quadrature ? m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
+        const double error = quadrature ? *m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
         if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
     }
     return m;
+}
+
+std::vector<ReferenceQuality> paired_quality(
+    const std::vector<ReferenceFilm>& references, const Experiment& experiment, const std::vector<RunMetrics>& runs) {
+    std::vector<ReferenceQuality> out;
+    for (const ReferenceFilm& film : references)
+        for (const Region& region : experiment.regions) {
+            ReferenceQuality& m = out.emplace_back();
+            m.s = film.s, m.region = region.name;
+            m.paired_error = rms(film.error, film.width, region.box);
+            for (const RunMetrics& run : runs)
+                if (const RegionMetrics* at = run.region(region.name); at && run.key.s == film.s)
+                    m.error_share = std::max(m.error_share, share_of_reference(*at));
+        }
+    return out;
+}
+
+double share_of_reference(const RegionMetrics& region) {
+    if (!(region.mse_error > 0)) return 0;
+    return region.mse > 0 ? std::sqrt(1.96 * region.mse_error / region.mse) : std::numeric_limits<double>::infinity();
 }
 
 std::vector<MetricName> metric_names(const Experiment& experiment) {
@@ -163,11 +205,20 @@ bool heavy(const RunMetrics& run, const std::string& metric) {
 std::vector<SeedSpread> bands(
     const Experiment& experiment, const std::vector<RunMetrics>& runs, const Published* published) {
     std::vector<SeedSpread> out;
+    const bool paired = experiment.reference.kind == ReferenceKind::paired;
     for (const RunMetrics& run : runs) {
         if (run.key.seed != experiment.seed) continue;
         for (const auto& [metric, info] : metric_names(experiment)) {
             if (run.key.n < 2 && info->from_two_samples) continue;
-            const std::vector<double> values = over_seeds(runs, run.key, metric);
+            std::vector<double> values = over_seeds(runs, run.key, metric);
+            // An RMSE below the error of a paired reference is the smallest of all; a quantile among such is not known.
+            const bool below = paired && metric.starts_with("rmse");
+            for (double& v : values)
+                if (below && std::isnan(v)) v = -1;
+            const auto quantile = [&](const std::vector<double>& of, double q) {
+                const double value = crescent::quantile(of, q);
+                return below && value < 0 ? not_paired : value;
+            };
             SeedSpread b;
             b.key = run.key;
             b.metric = metric;
@@ -211,21 +262,33 @@ Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y
     return line;
 }
 
+/// The same without the sample counts whose RMSE is below the error of a paired reference.
+Line fit_known(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse, bool paired) {
+    if (!paired) return fit_power(n, rmse);
+    std::vector<std::uint64_t> known_n;
+    std::vector<double> known;
+    for (std::size_t i = 0; i < n.size(); ++i)
+        if (!std::isnan(rmse[i])) known_n.push_back(n[i]), known.push_back(rmse[i]);
+    return known.size() < 2 ? Line{std::nan(""), std::nan("")} : fit_power(known_n, known);
+}
+
 Ladder ladder(
     const std::vector<RunMetrics>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
     Ladder out{arm.name, region, s, arm.n, {}, 0, 0, 0, false};
     std::map<std::uint32_t, std::vector<double>> by_seed;
+    bool paired = false;
     for (const RunMetrics& run : runs) {
         if (run.key.arm != arm.name || run.key.s != s ||
             std::find(arm.n.begin(), arm.n.end(), run.key.n) == arm.n.end())
             continue;
         by_seed[run.key.seed].push_back(run.region(region)->rmse);
+        paired = run.region(region)->is_paired();
         if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
     }
     out.rmse = by_seed[seed];
-    const Line own = fit_power(out.n, out.rmse);
+    const Line own = fit_known(out.n, out.rmse, paired);
     std::vector<double> slopes;
-    for (const auto& [_, values] : by_seed) slopes.push_back(fit_power(out.n, values).slope);
+    for (const auto& [_, values] : by_seed) slopes.push_back(fit_known(out.n, values, paired).slope);
     const bool many = slopes.size() > 1;
     out.slope = own.slope;
     out.low = many ? quantile(slopes, 0.05) : own.slope - own.half_width;

@@ -23,6 +23,12 @@ double rms(const std::vector<float>& a, int width, const Box& box);
 ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
 
+/// Returns the quality of a paired reference in every region at every exponent, one film for each.
+std::vector<ReferenceQuality> paired_quality(
+    const std::vector<ReferenceFilm>& references, const Experiment& experiment, const std::vector<RunMetrics>& runs);
+/// Returns the part that the reference's error may have in the RMSE of a region, see ReferenceQuality::error_share.
+double share_of_reference(const RegionMetrics& region);
+
 /// The name of a metric of the list in a band: rmse.<region>, ..., fireflies, ...
 struct MetricName {
     std::string name;

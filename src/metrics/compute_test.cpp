@@ -67,6 +67,38 @@ TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
     EXPECT_EQ(tail_length(10000), 300u);
 }
 
+/// Two estimates of 8 pixels around 1, and a film: what is known of its squared error.
+TEST(PairedMetrics, AreThoseOfTheProductOfTwoErrors) {
+    Experiment experiment;
+    experiment.regions = {{"all", {0, 0, 3, 1}, {}}};
+    experiment.reference.kind = ReferenceKind::paired;
+    const ShapeMap shapes{4, 2, std::vector<std::int16_t>(8)};
+    Film film(4, 2, 10);
+    ReferenceFilm reference(4, 2, 32);
+    double products = 0, own = 0, variance = 0;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const double first = 1 + 0.125 * double(k % 3), second = 1 - 0.25 * double(k % 2), y = 1 + 0.5 * double(k % 4);
+        film.y[k] = static_cast<float>(y);
+        reference.y[k] = static_cast<float>(0.5 * (first + second));
+        reference.error[k] = static_cast<float>(0.5 * std::fabs(first - second));
+        products += (y - first) * (y - second), own += sqr(0.5 * (first - second));
+        variance += sqr(y - 0.5 * (first + second)) * sqr(first - second);
+    }
+    const RegionMetrics far = measure(experiment, {"a", 10, 32, 1}, film, reference, shapes).regions[0];
+    EXPECT_TRUE(far.is_paired());
+    EXPECT_NEAR(far.mse, products / 8, 1e-7);
+    EXPECT_NEAR(far.rmse, std::sqrt(products / 8), 1e-7);
+    EXPECT_NEAR(far.reference_error, std::sqrt(own / 8), 1e-7);
+    EXPECT_NEAR(far.mse_error, std::sqrt(variance) / 8, 1e-7);
+    film.y = reference.y;  // as near as the reference's own mean: the estimate of its squared error is negative
+    const RegionMetrics near = measure(experiment, {"a", 10, 32, 1}, film, reference, shapes).regions[0];
+    EXPECT_NEAR(near.mse, -own / 8, 1e-7);
+    EXPECT_TRUE(std::isnan(near.rmse));
+    EXPECT_TRUE(std::isinf(share_of_reference(near)));
+    experiment.reference.kind = ReferenceKind::quadrature;
+    EXPECT_FALSE(measure(experiment, {"a", 10, 32, 1}, film, reference, shapes).regions[0].is_paired());
+}
+
 /// A film of 4 x 2 pixels, one of them without geometry, with known numbers.
 struct Known {
     Film film{4, 2, 10};

@@ -31,10 +31,10 @@ FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan,
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
-    const Shape* shape = experiment.find_shape(plan.shape);
-    ensure(shape != nullptr, "a furnace's shape is known");
+    const auto of = experiment.find_surface(plan.shape);
+    ensure(of.has_value(), "a furnace's shape is known");
     const bool lobe_only = plan.part == FurnacePart::lobe;
-    const Surface surface = furnace_surface(experiment, *shape, lobe_only);
+    const Surface surface = furnace_surface(experiment, experiment.material(*of), lobe_only);
     const ShadingPoints shading_points = furnace_points(surface, 1);
     FurnaceDraws out;
     out.samples.resize(plan.n);
@@ -71,8 +71,8 @@ std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Publishe
 // ---- Shading points at the origin with the world's axes as frame, under a fill of radiance 1 and no other light; each
 // has its own pixel index, so its own random numbers.
 
-Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only) {
-    Surface surface = surface_of(shape.material, scene.s());
+Surface furnace_surface(const SceneData& scene, const Material& material, bool lobe_only) {
+    Surface surface = surface_of(material, scene.s());
     if (lobe_only) surface.rho_d = {};
     return surface;
 }

@@ -36,7 +36,7 @@ std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Publishe
 // above.
 
 /// Returns the material of a shape, with the scene's own s if it has none; lobe_only drops rho_d.
-Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only);
+Surface furnace_surface(const SceneData& scene, const Material& material, bool lobe_only);
 
 /// Returns `count` equal shading points, each with its own random numbers. X = (cos/p) f.
 ShadingPoints furnace_points(const Surface& surface, std::size_t count, double cos_o = 1);

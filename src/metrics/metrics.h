@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,6 +15,8 @@
 
 namespace crescent::inline metrics {
 
+inline constexpr double not_paired = std::numeric_limits<double>::quiet_NaN();
+
 #define CRESCENT_FIELD(name, Type) MetricOf<Type> name{};
 /// The metrics of one film in one region: a field for each metric of the list.
 struct RegionMetrics {
@@ -21,6 +24,13 @@ struct RegionMetrics {
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
     std::uint64_t pixels = 0;    // geometry pixels in the box count the same as misses: |box|
     std::optional<Tail> tail{};  // of the samples X of the region; published seed only
+    // Against a paired reference, else NaN: the estimate of the squared error of Y, which may be negative, and its
+    // standard error, from that of the reference; the reference's own root mean square error.
+    double mse = not_paired, mse_error = not_paired, reference_error = not_paired;
+    bool is_paired() const { return mse == mse; }
+    /// The 95 % interval of the squared error.
+    double mse_low() const { return mse - 1.96 * mse_error; }
+    double mse_high() const { return mse + 1.96 * mse_error; }
 };
 
 /// The metrics of one film; for the whole frame a field for each metric of the list.
@@ -103,10 +113,14 @@ struct ReferenceQuality {
     std::string region;
     std::optional<double> rms_difference;      // of Y; here and below: none if the article's was not computed
     std::optional<double> rms_standard_error;  // stated by the article's reference
-    double quadrature_error = 0;               // rms of the quadrature's own stated error
+    std::optional<double> quadrature_error;    // rms of the quadrature's own stated error; none if it was not computed
     std::optional<double>
         max_relative_rmse_change;  // largest relative change of any arm's RMSE if the article's reference is used
-    double error_share = 0;        // of the reference that the metrics use: its own error over the smallest RMSE here
+    // Of the reference that the metrics use: its own error over the smallest RMSE here. Of a paired one, whose error does
+    // not add to an RMSE: the root of the half width of the interval of the squared error over it. In squares, both are
+    // the part of the mean squared error that may be the reference's.
+    double error_share = 0;
+    std::optional<double> paired_error{};  // rms of a paired reference's own error
 };
 
 /// The largest share of an RMSE that the reference's own error may have: at a quarter the RMSE is up to 3 % too large,

@@ -49,6 +49,10 @@ std::string figures_of(std::string_view metric, double x) {
     return figures(x);
 }
 
+std::string figures_of(std::string_view metric, double x, bool paired) {
+    return paired && std::isnan(x) && metric.starts_with("rmse") ? "below ref." : figures_of(metric, x);
+}
+
 std::string percent(double fraction, int digits) {
     if (!std::isfinite(fraction)) return shortest(fraction);
     return fmt::format("{:.{}g} %", 100 * fraction, digits);

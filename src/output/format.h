@@ -21,6 +21,8 @@ std::string compact(double x);
 
 /// Like figures(), but a metric that counts (fireflies) stays an integer, or ends in a half for a median between two.
 std::string figures_of(std::string_view metric, double x);
+/// The same; an RMSE that is NaN is "below ref." if the reference is paired.
+std::string figures_of(std::string_view metric, double x, bool paired);
 
 /// A ratio or share in percent, "6.7 %"; at most `digits` significant figures.
 std::string percent(double fraction, int digits = 3);

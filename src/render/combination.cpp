@@ -46,6 +46,7 @@ WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight
     out.drawn.wi = drawn.wi;
     out.drawn.pdf.v = static_cast<float>(pdf);
     out.drawn.disk = drawn.light, out.drawn.met = drawn.met;
+    out.drawn.texel = drawn.texel, out.drawn.triangle = drawn.triangle;
     out.weight = static_cast<float>(weight);
     return out;
 }
@@ -56,7 +57,7 @@ public:
     Products(const ShadingPoints& points, bool with_light)
         : points_(points),
           with_light_(with_light),
-          memory_(memory_of_light * points.light_count()),
+          memory_(points.kernel_memory()),
           room_(points, memory_.data()) {}
 
     double operator()(const PointRun& run, const PointDraw& drawn) {
@@ -69,6 +70,8 @@ public:
         if (!with_light_)
             return double(cos) * (double(points_.diffuse[at]) / pi + points_.rho_s_exact[at] * double(lobe));
         const int k = light_met(run, drawn);
+        if (k < 0 && points_.around)
+            if (const double x = around_met(run, drawn, lobe); x > 0) return double(cos) * x;
         const std::size_t light = static_cast<std::size_t>(k), disks = points_.disks.size();
         const float d = k < 0 ? points_.fill_d[at]
             : light < disks   ? points_.disks[light].d[at]
@@ -80,6 +83,25 @@ public:
     }
 
 private:
+    /// X without the cosine of the emitting triangle or of the sky that the direction meets; 0: it meets neither.
+    double around_met(const PointRun& run, const PointDraw& drawn, float lobe) const {
+        const std::size_t at = run.point;
+        const Vec3f o{points_.px[at], points_.py[at], points_.pz[at]};
+        const Frame<float> frame{{points_.tx[at], points_.ty[at], points_.tz[at]},
+            {points_.bx[at], points_.by[at], points_.bz[at]}, {points_.nx[at], points_.ny[at], points_.nz[at]}};
+        const Vec3f d = frame.to_world(drawn.wi);
+        const Surroundings& around = *points_.around;
+        std::uint32_t triangle = drawn.triangle;
+        if (around.triangles && triangle == no_triangle) triangle = around.triangles->nearest(widen(o), widen(d));
+        float rgb[3] = {0, 0, 0};
+        if (triangle != no_triangle) triangle_radiance(around, triangle, rgb);
+        else sky_radiance(around, drawn.texel, d, rgb);
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += double(rgb[c]) * double(points_.around_d[c][at] + lobe * points_.around_s[c][at]);
+        return sum;
+    }
+
     int light_met(const PointRun& run, const PointDraw& drawn) {
         if (points_.light_count() == 0) return -1;
         if (!lights_ || at_ != run.point) lights_.emplace(points_, at_ = run.point, room_);
@@ -310,6 +332,12 @@ template <class F> struct DirectionsOfSamples {
 }  // namespace
 
 void estimate_combination(const Combination& combination, const KernelCall& call) {
+    estimate_combination(combination, call, [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
+        return simd::draw(call.seed, pixel, sample, block);
+    });
+}
+
+void estimate_combination(const Combination& combination, const KernelCall& call, const PixelNumbers& numbers) {
     const ShadingPoints& points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
     const std::size_t count = combination.directions();
@@ -332,7 +360,7 @@ void estimate_combination(const Combination& combination, const KernelCall& call
             combination.sample(
                 {points, runs},
                 [&](std::size_t run, std::size_t row, std::uint32_t block) {
-                    return simd::draw(call.seed, points.pixel[runs[run].point], first + row, block);
+                    return numbers(points.pixel[runs[run].point], first + row, block);
                 },
                 part);
             for (std::size_t r = 0; r < runs.size(); ++r) {

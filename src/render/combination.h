@@ -80,4 +80,9 @@ private:
 /// Has the form of a kernel of the table.
 void estimate_combination(const Combination& combination, const KernelCall& call);
 
+/// Two random numbers in (0, 1) of a sample of a pixel; each block has others.
+using PixelNumbers = std::function<Vec2<float>(std::uint32_t pixel, std::uint64_t sample, std::uint32_t block)>;
+/// The same with other random numbers.
+void estimate_combination(const Combination& combination, const KernelCall& call, const PixelNumbers& numbers);
+
 }  // namespace crescent::inline render

@@ -88,11 +88,8 @@ template <class F> struct DiskCone {
 
 template <class F> Vec3<F> broadcast(const std::array<float, 3>& a) { return {F(a[0]), F(a[1]), F(a[2])}; }
 
-/// Returns whether the body's surface crosses the ray o + t d before a light at `distance`. Crossings within 1e-5 of
-/// the distance from either end do not count, so a body that touches the surface point or the light hides nothing
-/// there.
-template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
-    const F lo = distance * number<F>(1e-5), hi = distance * number<F>(1 - 1e-5);
+/// Returns whether the body's surface crosses the ray o + t d between lo and hi.
+template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
     const PackedBody<F> packed = {
         broadcast<F>(body.a), broadcast<F>(body.b), broadcast<F>(body.c), F(body.radius), F(body.offset)};
     MaskOf<F> out = lo > hi;
@@ -102,6 +99,12 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
     };
     among(Bodies{});
     return out;
+}
+
+/// The same before a light at `distance`. Crossings within 1e-5 of the distance from either end do not count, so a body
+/// that touches the surface point or the light hides nothing there.
+template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
+    return blocked_by(body, o, d, distance * number<F>(1e-5), distance * number<F>(1 - 1e-5));
 }
 
 }  // namespace crescent::inline render

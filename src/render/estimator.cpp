@@ -21,14 +21,13 @@ namespace crescent::inline render {
 namespace {
 
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
-    std::vector<std::byte> memory(memory_of_light * call.shading_points->light_count());
+    std::vector<std::byte> memory(call.shading_points->kernel_memory());
     call.memory = memory.data();
     if (arm.outside && arm.outside->as_combination()) return estimate_combination(*arm.outside->as_combination(), call);
     if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
-    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.shading_points->lobe + 1)](
-        call);
+    kernels_for(isa).kernel(index, *call.shading_points)(call);
 }
 
 SampleCost cost_of_sample(const SamplerRef& arm) {
@@ -38,32 +37,20 @@ SampleCost cost_of_sample(const SamplerRef& arm) {
     return {directions, directions, directions - 1};
 }
 
-/// Converts the sums of one shading point over its film's n samples to the film's pixel.
-class FilmResolve {
+/// The mean radiance of shading points over n samples.
+class MeanRadiance {
 public:
-    FilmResolve(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film)
-        : scene_(scene), shading_points_(shading_points), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
+    MeanRadiance(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, std::uint64_t n)
+        : scene_(scene),
+          shading_points_(shading_points),
+          m_(m),
+          n_(static_cast<double>(n)),
+          is_power_of_2_(std::has_single_bit(n)) {}
 
-    void pixel(std::size_t i) const {
-        const std::size_t at = shading_points_.pixel[i];
-        const Rgb mean = radiance(i);
-        const double y = luminance(mean);
-        film_.r[at] = static_cast<float>(mean[0]);
-        film_.g[at] = static_cast<float>(mean[1]);
-        film_.b[at] = static_cast<float>(mean[2]);
-        film_.y[at] = static_cast<float>(y);
-        film_.second_moment[at] = static_cast<float>(over_n(m_.spread[i]) + y * y);
-        film_.var[at] = film_.n > 1 ? static_cast<float>(m_.spread[i] / (n_ * (n_ - 1))) : 0.0f;
-        film_.largest[at] = m_.largest[i];
-        film_.horizon[at] = m_.horizon[i];
-        film_.light_hits[at] = m_.hits[i];
-    }
-
-private:
     /// Returns x / n, by the faster product if that has the same bits.
     double over_n(double x) const { return is_power_of_2_ ? x * inverse_n_ : x / n_; }
 
-    Rgb radiance(std::size_t i) const {
+    Rgb operator()(std::size_t i) const {
         double fill_g = m_.g[i], fill_lobe = m_.g_lobe[i];
         Rgb diffuse{}, lobe{};
         for (std::size_t k = 0; k < m_.light_g.size(); ++k) {
@@ -73,6 +60,10 @@ private:
                 diffuse[c] += scene_.lights()[k].radiance[c] * m_.light_g[k][i];
                 lobe[c] += scene_.lights()[k].radiance[c] * m_.light_g_lobe[k][i];
             }
+        }
+        if (shading_points_.around) {
+            fill_g -= m_.around_g[i], fill_lobe -= m_.around_g_lobe[i];
+            for (std::size_t c = 0; c < 3; ++c) diffuse[c] += m_.around[c][i], lobe[c] += m_.around_lobe[c][i];
         }
         Rgb out{};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -84,19 +75,38 @@ private:
         return out;
     }
 
+private:
     const Scene& scene_;
     const ShadingPoints& shading_points_;
     const Moments& m_;
-    Film& film_;
     double n_, inverse_n_ = 1 / n_;
-    bool is_power_of_2_ = std::has_single_bit(film_.n);
+    bool is_power_of_2_;
 };
 
 }  // namespace
 
-void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film) {
-    const FilmResolve finish(scene, shading_points, moments, film);
-    for (std::size_t i = 0; i < shading_points.count; ++i) finish.pixel(i);
+void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film) {
+    const MeanRadiance mean_of(scene, shading_points, m, film.n);
+    const double n = static_cast<double>(film.n);
+    for (std::size_t i = 0; i < shading_points.count; ++i) {
+        const std::size_t at = shading_points.pixel[i];
+        const Rgb mean = mean_of(i);
+        const double y = luminance(mean);
+        film.r[at] = static_cast<float>(mean[0]);
+        film.g[at] = static_cast<float>(mean[1]);
+        film.b[at] = static_cast<float>(mean[2]);
+        film.y[at] = static_cast<float>(y);
+        film.second_moment[at] = static_cast<float>(mean_of.over_n(m.spread[i]) + y * y);
+        film.var[at] = film.n > 1 ? static_cast<float>(m.spread[i] / (n * (n - 1))) : 0.0f;
+        film.largest[at] = m.largest[i];
+        film.horizon[at] = m.horizon[i];
+        film.light_hits[at] = m.hits[i];
+    }
+}
+
+Rgb mean_radiance(
+    const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, std::uint64_t n, std::size_t i) {
+    return MeanRadiance(scene, shading_points, moments, n)(i);
 }
 
 void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
@@ -129,7 +139,7 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
         double samples = 0;
         const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
         for (const ShadingPoints& shading_points : *groups) {
-            for (Moments& m : moments) m.resize(shading_points.pixel.size(), shading_points.light_count());
+            for (Moments& m : moments) m.resize(shading_points);
             run_kernel(isa, arm, {&shading_points, n, seed, moments, &monitor.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 resolve_film(view.scene(), shading_points, moments[r], films[r]);
@@ -161,7 +171,7 @@ ShapeMap shape_map(const Scene& scene) {
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
-    moments[0].resize(shading_points.pixel.size(), shading_points.light_count());
+    moments[0].resize(shading_points);
     const std::array<std::uint64_t, 1> sample_counts = {n};
     run_kernel(isa, arm, {&shading_points, sample_counts, seed, moments, stop, samples});
     return std::move(moments[0]);

@@ -23,6 +23,10 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
 /// Converts sums over film.n samples to the pixels of these shading points. The caller counts film.invalid.
 void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film);
 
+/// Returns the mean radiance of shading point i over the n samples of `moments`.
+Rgb mean_radiance(
+    const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, std::uint64_t n, std::size_t i);
+
 /// Returns the shape that each pixel sees.
 ShapeMap shape_map(const Scene& scene);
 

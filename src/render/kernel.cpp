@@ -14,14 +14,18 @@ KernelTable scalar_kernels();
 CRESCENT_ISAS(CRESCENT_DECLARE)
 #undef CRESCENT_DECLARE
 
-void Moments::resize(std::size_t shading_points, std::size_t lights) {
-    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(shading_points);
+void Moments::resize(const ShadingPoints& shading_points) {
+    const std::size_t size = shading_points.pixel.size(), of_around = shading_points.around ? size : 0;
+    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(size);
     for (auto* sums : {&light_g, &light_g_lobe}) {
-        sums->resize(lights);
-        for (std::vector<double>& of_light : *sums) of_light.resize(shading_points);
+        sums->resize(shading_points.light_count());
+        for (std::vector<double>& of_light : *sums) of_light.resize(size);
     }
-    largest.resize(shading_points);
-    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(shading_points);
+    for (auto* sums : {&around_g, &around_g_lobe}) sums->resize(of_around);
+    for (auto* sums : {&around, &around_lobe})
+        for (std::vector<double>& of_channel : *sums) of_channel.resize(of_around);
+    largest.resize(size);
+    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(size);
 }
 
 namespace {

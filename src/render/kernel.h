@@ -5,7 +5,7 @@
 //   X = f L_i cos / p     with   f = rho_d/pi + rho_s lobe   and   L_i one of few constants (the fill, each light),
 //
 // so RGB means follow from sums of g = cos/p and of g * lobe per emitter; only Y needs its square and its largest
-// value.
+// value. Light that varies, as that of a sky, has sums of g L and of g * lobe L per colour channel.
 #pragma once
 
 #include <array>
@@ -27,15 +27,15 @@ namespace crescent::inline render {
 struct Moments {
     std::vector<double> g, g_lobe;                           // sum of g and of g * lobe over all samples
     std::vector<std::vector<double>> light_g, light_g_lobe;  // over the samples that met light k, disks first
+    /// Over the samples that met light that varies: g, g * lobe, and both times L by colour channel. Empty without it.
+    std::vector<double> around_g, around_g_lobe;
+    std::array<std::vector<double>, 3> around, around_lobe;
     std::vector<double> spread;                              // sum of (X - mean X)^2
     std::vector<float> largest;                              // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
     /// New entries are 0; kernels write all of them.
-    void resize(std::size_t shading_points, std::size_t lights);
+    void resize(const ShadingPoints& shading_points);
 };
-
-/// Memory that a kernel needs for each light of a scene, in bytes.
-inline constexpr std::size_t memory_of_light = 4096;
 
 /// One call of a kernel: samples 0 to the last sample count of a sampler at all shading points, one after another.
 /// Shading points and memory belong to the caller, who may make calls on several threads, each with its own `out` and
@@ -47,15 +47,21 @@ struct KernelCall {
     std::span<Moments> out;  // one per sample count, sized to the padded count
     const std::atomic<bool>* stop = nullptr;
     float* samples = nullptr;     // if not null: every X, sample k of shading point i at i * n + k
-    std::byte* memory = nullptr;  // memory_of_light bytes for each of the shading points' lights
+    std::byte* memory = nullptr;  // kernel_memory() bytes of the shading points
 };
 
 using Kernel = void (*)(const KernelCall&);
 
-/// The kernels of one instruction set, [index of the sampler in its list][lobe + 1].
+/// The kernels of one instruction set, by the index of the sampler in its list.
 struct KernelTable {
     std::string_view isa;
-    std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count> kernels;
+    std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count> of_lights;  // [lobe + 1]
+    std::array<Kernel, Samplers::count> of_surroundings;                          // for points with surroundings
+
+    Kernel kernel(int sampler, const ShadingPoints& points) const {
+        const auto k = static_cast<std::size_t>(sampler);
+        return points.around ? of_surroundings[k] : of_lights[k][static_cast<std::size_t>(points.lobe + 1)];
+    }
 };
 
 /// Returns the instruction sets of isas.h that this machine can run, best last.

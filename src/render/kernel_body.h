@@ -8,7 +8,7 @@
 #include <concepts>
 
 #include "math/simd/random.h"
-#include "render/kernel_lights.h"
+#include "render/kernel_surroundings.h"
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
@@ -73,7 +73,8 @@ template <class A, class L, class E, class F> struct Lane : E {
         RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
-        const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
+        auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
+        if constexpr (requires { this->below_face(drawn.wi); }) down = down | this->below_face(drawn.wi);
         const auto up = !(down | (drawn.pdf.v == zero));
         to.horizon = plus_one_where(down, to.horizon);
         const F g = select(up, weight * (cos / drawn.pdf.v), zero);
@@ -177,6 +178,28 @@ template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& e
     store(p.bad, out.bad.data() + at);
 }
 
+/// Any lobe, chosen at each call. Where a sample takes rays through trees, the choice costs nothing beside them, and one
+/// kernel for all lobes is compiled in a fifth of the time.
+template <class F> struct AnyLobe {
+    static constexpr bool present = true;
+    int kind;  // -1: none
+    F s, alpha;
+    [[gnu::noinline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {
+        F out = number<F>(0);
+        const auto among = [&]<template <class> class... L>(LobeList<L...>) {
+            int k = 0;
+            ((k++ == kind ? void(out = L<F>(s, alpha)(wo, wi)) : void()), ...);
+        };
+        among(Lobes{});
+        return out;
+    }
+};
+
+template <class L, class F> L lobe_of(const ShadingPoints& points, const ShadingPoint<F>& at) {
+    if constexpr (requires { L{points.lobe, at.s, at.alpha}; }) return L{points.lobe, at.s, at.alpha};
+    else return L(at.s, at.alpha);
+}
+
 /// Runs one pack of pixels through all its samples; make(shading point) returns the sampler.
 template <class A, class L, class E, class F, class Make>
 void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
@@ -186,7 +209,7 @@ void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& roo
     Totals<F> totals;
     typename E::Totals emitted(room);
     const A arm = make(lane.shading_point);
-    const L brdf(lane.shading_point.s, lane.shading_point.alpha);
+    const L brdf = lobe_of<L>(*call.shading_points, lane.shading_point);
     const Constants<E, F> c = lane.constants();
     const std::uint64_t n = call.sample_counts.back();
     std::size_t sample_count = 0;
@@ -237,7 +260,7 @@ constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
     return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};
 }
 template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
-    return {isa, {{kernels_on<F, A>(Lobes{})...}}};
+    return {isa, {{kernels_on<F, A>(Lobes{})...}}, {{estimate<A<F>, AnyLobe<F>, Surrounded<F>, F>...}}};
 }
 
 }  // namespace CRESCENT_ISA

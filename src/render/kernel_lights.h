@@ -55,7 +55,7 @@ template <class F> struct LightRoom {
             "a kernel's memory holds each light, and what alignment takes");
     }
 
-private:
+protected:
     template <class T> static T* take(std::byte*& at, std::size_t elements) {
         const std::size_t past = reinterpret_cast<std::uintptr_t>(at) % alignof(T);
         at += past ? alignof(T) - past : 0;
@@ -155,6 +155,9 @@ template <class F> struct Lights {
     void show(ShadingPoint<F>& shading_point) const {
         shading_point.disks = disks, shading_point.disk_count = static_cast<int>(disk_count);
         shading_point.others = others, shading_point.other_count = static_cast<int>(light_count - disk_count);
+        if (!shading_points.around) return;
+        shading_point.around = shading_points.around.get();
+        shading_point.position = position(), shading_point.frame = frame();
     }
 
     /// Returns X of a sample with known g and lobe; x is the part from the fill.
@@ -185,14 +188,32 @@ template <class F> struct Lights {
     /// Handles samples that may have met a light: finds the nearest light, then tests the bodies before it. Returns X
     /// if one was met.
     template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
-        const Vec3<F> wi = drawn.wi;
-        const F far = number<F>(1e30);
-        F nearest = far;
+        const Met nearest = nearest_light(drawn);
+        F seen = select(up & (nearest.distance < number<F>(far)), number<F>(1), number<F>(0));
+        const WorldRay ray = ray_of(drawn.wi);
+        seen = seen_past_bodies(
+            ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), seen);
+        x = add_light(nearest.light, seen, g, lobe, x);
+        met.hits = plus_one_where(seen > number<F>(0), met.hits);
+        met.any = true;
+        return x;
+    }
+
+protected:
+    static constexpr double far = 1e30;
+
+    /// The nearest light of each sample; the distance is `far`, and the light -1, if none is met.
+    struct Met {
+        F distance, light;
+    };
+    template <class D> [[gnu::always_inline]] Met nearest_light(const D& drawn) const {
+        const F none = number<F>(far);
+        F nearest = none;
         F index = number<F>(-1);
         for (std::size_t k = 0; k < disk_count; ++k) {
             F v;
             const auto hit = meets_disk(facing[k], drawn, k, light_count == 1, v);
-            const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), far);
+            const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), none);
             const auto nearer = is_nearer(t, nearest);
             index = select(nearer, F(static_cast<float>(k)), index);
             nearest = select(nearer, t, nearest);
@@ -204,17 +225,35 @@ template <class F> struct Lights {
             index = select(nearer, F(static_cast<float>(k)), index);
             nearest = select(nearer, t, nearest);
         }
-        const Vec3<F> o = load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at);
-        const Frame<F> frame = {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, at),
+        return {nearest, index};
+    }
+
+    /// A direction in the world, from the surface point.
+    struct WorldRay {
+        Vec3<F> o, d;
+    };
+    [[gnu::always_inline]] WorldRay ray_of(Vec3<F> wi) const { return {position(), frame().to_world(wi)}; }
+    Vec3<F> position() const {
+        return load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at);
+    }
+    Frame<F> frame() const {
+        return {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, at),
             load_lanes<F>(shading_points.bx, shading_points.by, shading_points.bz, at),
             load_lanes<F>(shading_points.nx, shading_points.ny, shading_points.nz, at)};
-        const Vec3<F> d = frame.to_world(wi);
+    }
+
+    /// Returns `seen`, with 0 where a body crosses the ray between lo and hi.
+    [[gnu::always_inline]] F seen_past_bodies(const WorldRay& ray, F lo, F hi, F seen) const {
         const U own = load_lanes<F>(shading_points.shape, at);
-        F seen = select(up & (nearest < far), number<F>(1), number<F>(0));
         for (const OccluderF& body : shading_points.occluders) {
             const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
-            seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
+            seen = select(other & blocked_by(body, ray.o, ray.d, lo, hi), number<F>(0), seen);
         }
+        return seen;
+    }
+
+    /// Adds the samples that met a light. Returns their X, else x.
+    [[gnu::always_inline]] F add_light(F index, F seen, F g, F lobe, F x) {
         for (std::size_t k = 0; k < light_count; ++k) {
             const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
             const F gk = select(this_one, g, number<F>(0));
@@ -226,8 +265,6 @@ template <class F> struct Lights {
             const F xk = g * (load_lanes<F>(d_of, at) + lobe * load_lanes<F>(s_of, at));
             x = select(this_one, xk, x);
         }
-        met.hits = plus_one_where(seen > number<F>(0), met.hits);
-        met.any = true;
         return x;
     }
 };

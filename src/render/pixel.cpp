@@ -181,9 +181,13 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
 }
 
 ShadingPoint<float> OpenPixel::aimed_from() const {
-    return {at(shading_points_.wox, shading_points_.woy, shading_points_.woz), shading_points_.s[0],
-        shading_points_.alpha[0], shading_points_.diffuse[0], shading_points_.rho_s[0], local_.data(),
+    const ShadingPoints& p = shading_points_;
+    ShadingPoint<float> out{at(p.wox, p.woy, p.woz), p.s[0], p.alpha[0], p.diffuse[0], p.rho_s[0], local_.data(),
         static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
+    if (!p.around) return out;
+    out.around = p.around.get(), out.position = at(p.px, p.py, p.pz);
+    out.frame = {at(p.tx, p.ty, p.tz), at(p.bx, p.by, p.bz), at(p.nx, p.ny, p.nz)};
+    return out;
 }
 
 Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }

@@ -64,6 +64,8 @@ std::vector<TileBox> tiles_of(int width, int height) {
 ShadingPoints empty_points(const Scene& scene, int lobe) {
     ShadingPoints shading_points;
     shading_points.lobe = lobe;
+    shading_points.around = scene.surroundings();
+    shading_points.has_faces = scene.has_meshes();
     double total = 0;
     for (const Light& light : scene.lights()) total += light.power();
     const auto share = [&](const Light& light) { return total > 0 ? static_cast<float>(light.power() / total) : 0.0f; };
@@ -94,6 +96,10 @@ Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
         disk_d.push_back(worth(reflected(light.radiance, surface.rho_d) / pi));
         disk_s.push_back(worth(surface.tinted(light.radiance) * surface.rho_s));
     }
+    for (std::size_t c = 0; c < 3; ++c) {
+        around_d[c] = worth(luminance_weights[c] * lambert[c]);
+        around_s[c] = worth(luminance_weights[c] * surface.tint[c] * surface.rho_s);
+    }
 }
 
 void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading) {
@@ -106,7 +112,8 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
     alpha[i] = static_cast<float>(shading.surface.alpha);
     diffuse[i] = static_cast<float>(luminance(shading.surface.rho_d));
     rho_s[i] = static_cast<float>(shading.surface.rho_s);
-    put(px, py, pz, i, hit.x - scene.origin());
+    put(px, py, pz, i, scene.ray_start(hit));
+    if (has_faces) put(face_x, face_y, face_z, i, hit.is_mesh() ? frame.to_local(hit.face) : Vec3d{0, 0, 1});
     put(tx, ty, tz, i, frame.t);
     put(bx, by, bz, i, frame.b);
     put(nx, ny, nz, i, frame.n);
@@ -125,6 +132,8 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
         others[k].d[i] = shading.disk_d[light];
         others[k].s[i] = shading.disk_s[light];
     }
+    for (std::size_t c = 0; around && c < 3; ++c)
+        around_d[c][i] = shading.around_d[c], around_s[c][i] = shading.around_s[c];
     lambert[i] = shading.lambert;
     rho_s_exact[i] = shading.surface.rho_s;
     tint[i] = shading.surface.tint;
@@ -134,6 +143,8 @@ template <class Work> void ShadingPoints::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
     all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
         fill_s, lambert, rho_s_exact, tint);
+    for (std::size_t c = 0; around && c < 3; ++c) all(around_d[c], around_s[c]);
+    if (has_faces) all(face_x, face_y, face_z);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
     for (LightArrays& k : others) {
         for (std::vector<float>& numbers : k.numbers) all(numbers);
@@ -173,6 +184,7 @@ std::size_t ShadingPoints::bytes_of_one() {
 }
 
 void ShadingPoints::cull_occluders(const Scene& scene) {
+    if (around && (around->sky || around->triangles)) return;
     const auto range = [](const std::vector<float>& v) {
         const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
         return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));
@@ -207,9 +219,9 @@ public:
     }
 
     void add(std::uint32_t pixel, const Hit& hit) {
-        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_) {
+        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_ || hit.below != below_) {
             shading_.emplace(scene_, scene_.surface(hit));
-            shape_ = hit.shape, reveal_ = hit.reveal;
+            shape_ = hit.shape, reveal_ = hit.reveal, below_ = hit.below;
         }
         const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
         auto group = std::find_if(groups.begin(), groups.end(), [&](const ShadingPoints& g) { return g.lobe == lobe; });
@@ -228,7 +240,7 @@ private:
     std::size_t columns_, area_;  // pixels in a row, and in the tile
     std::optional<Shading> shading_;
     int shape_ = -1;
-    bool reveal_ = false;
+    bool reveal_ = false, below_ = false;
 };
 
 }  // namespace

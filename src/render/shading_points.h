@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "scene/scene.h"
@@ -11,6 +12,8 @@
 namespace crescent::inline render {
 
 inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
+/// Memory that a kernel needs for each light of a scene, and for the light that varies, in bytes.
+inline constexpr std::size_t memory_of_light = 4096;
 
 /// A rectangle of pixels, x1 and y1 exclusive.
 struct TileBox {
@@ -45,7 +48,8 @@ struct Shading {
     Surface surface;
     Rgb lambert{};  // like ShadingPoints, and the next two
     float fill_d = 0, fill_s = 0;
-    std::vector<float> disk_d, disk_s;  // like DiskArrays, one per disk
+    std::vector<float> disk_d, disk_s;            // like DiskArrays, one per disk
+    std::array<float, 3> around_d{}, around_s{};  // like ShadingPoints
     Shading(const Scene& scene, const Surface& on);
 };
 
@@ -68,13 +72,22 @@ struct ShadingPoints {
     std::vector<std::uint32_t> pixel, shape;  // index in the image, index of the shape
     std::vector<float> wox, woy, woz;
     std::vector<float> s, alpha, diffuse, rho_s;  // diffuse: Y(rho_d)
-    std::vector<float> px, py, pz;                // the surface point from the scene's origin, along the world's axes
+    std::vector<float> px, py, pz;                // where rays from the surface begin (Scene::ray_start), world axes
     std::vector<float> tx, ty, tz, bx, by, bz, nx, ny, nz;  // the local frame, world
-    std::vector<float> fill_d, fill_s;                      // like DiskArrays::d, s, for the fill
+    // Normal of the triangle in the local frame, (0, 0, 1) on a shape; empty in a scene without meshes. A direction
+    // below it carries nothing.
+    bool has_faces = false;
+    std::vector<float> face_x, face_y, face_z;
+    std::vector<float> fill_d, fill_s;  // like DiskArrays::d, s, for the fill
     std::vector<DiskArrays> disks;
     std::vector<LightArrays> others;  // lights other than disks
     std::size_t light_count() const { return disks.size() + others.size(); }
-    std::vector<OccluderF> occluders;  // those that may hide a disk from one of the shading points
+    /// Returns the bytes of memory that a kernel needs, see KernelCall.
+    std::size_t kernel_memory() const { return memory_of_light * (light_count() + (around ? 1 : 0)); }
+    std::shared_ptr<const Surroundings> around;  // the scene's; null: the next two are empty
+    /// By colour channel: X of light that varies is (cos/p) times the sum of (around_d + around_s lobe) L over them.
+    std::array<std::vector<float>, 3> around_d, around_s;
+    std::vector<OccluderF> occluders;  // those that may hide a light from one of the shading points
     std::vector<Rgb> lambert;          // rho_d / pi, for the colours of the film
     std::vector<double> rho_s_exact;
     std::vector<Rgb> tint;  // of the lobe, like Surface
@@ -85,7 +98,7 @@ struct ShadingPoints {
     void reserve(std::size_t shading_points);
     /// Repeats the last shading point until every pack is full.
     void pad();
-    /// Drops the occluders that cannot lie between any shading point and any disk.
+    /// Drops the occluders that cannot lie between any shading point and any light; a sky is in every direction.
     void cull_occluders(const Scene& scene);
     /// Takes the lobe's parameters from a scene of the same view, see Scene::with_s.
     void take_s(const Scene& scene);

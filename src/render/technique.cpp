@@ -32,6 +32,8 @@ public:
                 const auto d = arm.sample(run.wo, {as_float(u[2 * row]), as_float(u[2 * row + 1])});
                 out[row] = {d.wi, static_cast<double>(d.pdf.v)};
                 if constexpr (requires { d.met; }) out[row].light = d.disk, out[row].met = d.met;
+                if constexpr (requires { d.texel; }) out[row].texel = d.texel;
+                if constexpr (requires { d.triangle; }) out[row].triangle = d.triangle;
             }
         });
     }
@@ -46,7 +48,7 @@ public:
 private:
     template <class Work> static void each_run(const PointRows& at, Work&& work) {
         const ShadingPoints& p = at.points;
-        std::vector<std::byte> memory(memory_of_light * p.light_count());
+        std::vector<std::byte> memory(p.kernel_memory());
         scalar::LightRoom<float> room(p, memory.data());
         for (const PointRun& run : at.runs) {
             const scalar::Lights<float> lights(p, run.point, room);

@@ -2,6 +2,7 @@
 // Directions are float, as in the estimator; densities in 1/sr.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -34,6 +35,7 @@ struct PointDraw {
     double pdf = 0;
     float light = -1;  // the light at which it was aimed, disks first
     bool met = false;  // it meets that light
+    std::uint32_t texel = no_texel, triangle = no_triangle;  // of the sky and of emitting triangles, if drawn there
 };
 
 class Technique {

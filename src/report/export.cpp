@@ -21,6 +21,9 @@ Json tail_json(const Tail& tail) {
     return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}};
 }
 
+/// An RMSE whose estimated square is below 0 is not a number: null. Elsewhere NaN is an invalid number and stays visible.
+Json number_or_null(double x, bool paired) { return paired && std::isnan(x) ? Json(nullptr) : number(x); }
+
 Json json_of(double x) { return number(x); }
 Json json_of(std::uint64_t count) { return count; }
 
@@ -30,41 +33,51 @@ template <class Of> void add_metrics(Json& out, const Of& of) {
         of, [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
 }
 
-Json run_json(const RunMetrics& run) {
+Json run_json(const RunMetrics& run, bool paired) {
     Json regions = Json::object();
     for (const RegionMetrics& r : run.regions) {
         Json& at = regions[r.region] = Json::object();
         add_metrics(at, r);
         at["pixels"] = r.pixels;
         if (r.tail) at["tail"] = tail_json(*r.tail);
+        if (!r.is_paired()) continue;
+        at["rmse"] = number_or_null(r.rmse, true);
+        at["mse"] = number(r.mse), at["mse_error"] = number(r.mse_error);
+        at["mse_interval"] = numbers({r.mse_low(), r.mse_high()});
+        at["reference_error"] = number(r.reference_error);
     }
     Json out = {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
         {"regions", std::move(regions)}};
     add_metrics(out, run);
+    out["rmse_frame"] = number_or_null(run.rmse_frame, paired);
     return out;
 }
 
-Json interval_json(const Band& band) {
+Json interval_json(const Band& band, bool paired) {
     if (band.heavy) return heavy_tail;
     if (band.seeds < 2) return nullptr;
-    return Json::array({number(band.q05), number(band.q95)});
+    return Json::array({number_or_null(band.q05, paired), number_or_null(band.q95, paired)});
 }
 
-Json band_json(const SeedSpread& b) {
+Json band_json(const SeedSpread& b, bool paired) {
     return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"meter", b.metric},
-        {"published", optional_number(b.published)}, {"measured", number(b.measured)},
-        {"median", number(b.band.median)}, {"q05", number(b.band.q05)}, {"q95", number(b.band.q95)},
-        {"seeds", b.band.seeds}, {"interval", interval_json(b.band)},
+        {"published", optional_number(b.published)}, {"measured", number_or_null(b.measured, paired)},
+        {"median", number_or_null(b.band.median, paired)}, {"q05", number_or_null(b.band.q05, paired)},
+        {"q95", number_or_null(b.band.q95, paired)}, {"seeds", b.band.seeds},
+        {"interval", interval_json(b.band, paired)},
         {"published_rank", optional_number(b.published_rank)}};
 }
 
-Json ladder_json(const Ladder& l) {
+Json ladder_json(const Ladder& l, bool paired) {
+    Json rmse = Json::array();
+    for (const double x : l.rmse) rmse.push_back(number_or_null(x, paired));
     Json interval = heavy_tail;
     if (!l.heavy)
         interval = std::isfinite(l.low) && std::isfinite(l.high) ? Json::array({number(l.low), number(l.high)})
                                                                  : Json(nullptr);
-    return {{"arm", l.arm}, {"region", l.region}, {"s", number(l.s)}, {"n", l.n}, {"rmse", numbers(l.rmse)},
-        {"slope", number(l.slope)}, {"low", number(l.low)}, {"high", number(l.high)},
+    return {{"arm", l.arm}, {"region", l.region}, {"s", number(l.s)}, {"n", l.n}, {"rmse", std::move(rmse)},
+        {"slope", number_or_null(l.slope, paired)}, {"low", number_or_null(l.low, paired)},
+        {"high", number_or_null(l.high, paired)},
         {"interval", std::move(interval)}};
 }
 
@@ -77,8 +90,11 @@ Json furnace_json(const FurnaceResult& f) {
 }
 
 Json reference_json(const ReferenceQuality& r) {
+    if (r.paired_error)
+        return {{"s", number(r.s)}, {"region", r.region}, {"paired_error", number(*r.paired_error)},
+            {"error_share", number(r.error_share)}};
     return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", optional_number(r.rms_difference)},
-        {"rms_standard_error", optional_number(r.rms_standard_error)}, {"quadrature_error", number(r.quadrature_error)},
+        {"rms_standard_error", optional_number(r.rms_standard_error)}, {"quadrature_error", optional_number(r.quadrature_error)},
         {"rmse_unlike", optional_number(r.max_relative_rmse_change)}, {"error_share", number(r.error_share)}};
 }
 
@@ -177,11 +193,13 @@ Json provenance_json(const Provenance& p) {
 
 std::string metrics_json(const ReportInputs& in) {
     const Metrics& m = in.metrics;
+    const bool paired = in.experiment.reference.kind == ReferenceKind::paired;
+    const auto of_rmse = [&](const SeedSpread& b) { return band_json(b, paired && b.metric.starts_with("rmse")); };
     Json provenance = provenance_json(in.provenance);
     provenance["experiment"] = experiment_json(in);
     const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
-        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, run_json)},
-        {"bands", list(m.bands, band_json)}, {"ladders", list(m.ladders, ladder_json)},
+        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
+        {"bands", list(m.bands, of_rmse)}, {"ladders", list(m.ladders, [&](const Ladder& l) { return ladder_json(l, paired); })},
         {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
         {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
         {"evidence", evidence_json(in.evidence)}, {"provenance", std::move(provenance)}};
@@ -213,6 +231,12 @@ struct Rows {
 void add_region(Rows& rows, const RegionMetrics& r) {
     for_each_metric(r, [&](std::string_view name, const MetricInfo&, auto value) { rows.add(name, r.region, value); });
     rows.add("pixels", r.region, r.pixels);
+    if (r.is_paired()) {
+        rows.add("mse", r.region, r.mse);
+        rows.add("mse_low", r.region, r.mse_low());
+        rows.add("mse_high", r.region, r.mse_high());
+        rows.add("reference_error", r.region, r.reference_error);
+    }
     if (!r.tail) return;
     rows.add("tail_k", r.region, r.tail->k);
     rows.add("tail_se", r.region, r.tail->se);

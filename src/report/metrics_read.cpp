@@ -26,7 +26,7 @@ std::optional<double> optional_of(const Json& json) {
     return json.is_null() ? std::nullopt : std::optional(number_of(json));
 }
 
-void read(const Json& json, double& to) { to = number_of(json); }
+void read(const Json& json, double& to) { to = json.is_null() ? std::nan("") : number_of(json); }
 void read(const Json& json, std::uint64_t& to) { to = json.get<std::uint64_t>(); }
 
 std::optional<Tail> tail_of(const Json& json) {
@@ -53,6 +53,10 @@ RunMetrics run_of(const Json& json) {
         m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
         const auto metrics = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
         metrics(region, m);
+        if (region.contains("mse")) {
+            m.mse = number_of(region.at("mse")), m.reference_error = number_of(region.at("reference_error"));
+            m.mse_error = number_of(region.at("mse_error"));
+        }
         run.regions.push_back(std::move(m));
     }
 #undef CRESCENT_READ
@@ -71,9 +75,18 @@ FurnaceResult furnace_of(const Json& json) {
 }
 
 ReferenceQuality reference_of(const Json& json) {
-    return {number_of(json.at("s")), json.at("region").get<std::string>(), optional_of(json.at("rms_difference")),
-        optional_of(json.at("rms_standard_error")), number_of(json.at("quadrature_error")),
-        optional_of(json.at("rmse_unlike")), number_of(json.at("error_share"))};
+    ReferenceQuality out;
+    out.s = number_of(json.at("s")), out.region = json.at("region").get<std::string>();
+    out.error_share = number_of(json.at("error_share"));
+    if (json.contains("paired_error")) {
+        out.paired_error = number_of(json.at("paired_error"));
+        return out;
+    }
+    out.rms_difference = optional_of(json.at("rms_difference"));
+    out.rms_standard_error = optional_of(json.at("rms_standard_error"));
+    out.quadrature_error = optional_of(json.at("quadrature_error"));
+    out.max_relative_rmse_change = optional_of(json.at("rmse_unlike"));
+    return out;
 }
 
 AssertionResult assertion_of(const Json& json) {

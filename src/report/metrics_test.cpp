@@ -70,6 +70,28 @@ TEST(MetricsJson, IsReadBackToTheSameBytes) {
     EXPECT_THROW((void)read_metrics("title = 'TOML'", "a"), InputError);
 }
 
+TEST(MetricsJson, HasNullForAnRmseBelowAPairedReference) {
+    Sample s;
+    s.experiment.reference.kind = ReferenceKind::paired;
+    for (RunMetrics& run : s.metrics.runs)
+        for (RegionMetrics& region : run.regions)
+            region.mse = 0.25, region.rmse = 0.5, region.mse_error = 0.125, region.reference_error = 0.1;
+    RegionMetrics& below = s.region("cosine", "H", 7);
+    below.mse = -0.01, below.rmse = nan;
+    s.metrics.references.clear();
+    ReferenceQuality& quality = s.metrics.references.emplace_back();
+    quality.s = 32, quality.region = "H", quality.paired_error = 0.1, quality.error_share = inf;
+    const auto json = parsed(s);
+    const auto run = json["runs"][0]["regions"]["H"];
+    EXPECT_TRUE(run["rmse"].is_null());
+    EXPECT_EQ(run["mse"], -0.01);
+    EXPECT_NEAR(run["mse_interval"][0].get<double>(), -0.01 - 1.96 * 0.125, 1e-12);
+    EXPECT_EQ(json["references"][0]["paired_error"], 0.1);
+    EXPECT_FALSE(json["references"][0].contains("quadrature_error"));
+    EXPECT_NE(metrics_csv(s.inputs()).find(",mse_low,H,"), std::string::npos);
+    keep("paired", json, true);
+}
+
 TEST(MetricsJson, NotANumberAndInfinityAreWordsNeverNull) {
     Sample s;
     s.metrics.runs[0].largest = inf;

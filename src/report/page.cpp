@@ -120,7 +120,7 @@ std::string tail_html(const std::optional<Tail>& tail) {
 std::string interval_html(const std::string& metric, const Band& band) {
     if (band.heavy) return html::heavy_tail();
     if (band.seeds < 2) return "–";
-    return html::value(figures_of(metric, band.q05) + " … " + figures_of(metric, band.q95));
+    return html::value(figures_of(metric, band.q05, std::isfinite(band.q95)) + " … " + figures_of(metric, band.q95));
 }
 
 std::string times(double ratio) {

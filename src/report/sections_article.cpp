@@ -39,8 +39,9 @@ std::vector<html::Cell> band_row(const Page& page, const SeedSpread& b, bool pub
         b.published.has_value(), b.published.value_or(0)};
     std::vector<html::Cell> row{html::heading(run_html(b.key, page.in.experiment))};
     if (published) row.push_back(html::figure(b.published ? figures_of(b.metric, *b.published) : ""));
-    row.push_back(html::figure(figures_of(b.metric, b.measured)));
-    row.push_back(html::figure(figures_of(b.metric, b.band.median)));
+    const bool paired = page.in.experiment.reference.kind == ReferenceKind::paired;
+    row.push_back(html::figure(figures_of(b.metric, b.measured, paired)));
+    row.push_back(html::figure(figures_of(b.metric, b.band.median, paired)));
     row.push_back({interval_html(b.metric, b.band), true});
     row.push_back(words(strip_svg(strip)));
     if (published) row.push_back({fallen(b), true});

@@ -1,5 +1,6 @@
 // The scene as the experiment gives it: camera, shapes, lights. Lengths in scene units, radiance in W/(sr m^2).
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "experiment/queries.h"
@@ -66,6 +67,16 @@ std::string shapes_table(const Page& page) {
             words(parameters_of(shape.form)), words(rgb(shape.material.rho_d)), words(lobe(shape.material)),
             words(shape.occludes ? "yes" : "no"), html::figure(known ? std::to_string(found->second) : "")});
     }
+    for (const MeshObject& mesh : page.in.experiment.meshes) {
+        const auto found = page.in.metrics.shape_pixels.find(mesh.name);
+        const bool known = found != page.in.metrics.shape_pixels.end();
+        std::string where = escape(mesh.file);
+        if (mesh.pack) where += fmt::format(", {} triangles", mesh.pack->mesh.triangles.size());
+        if (!mesh.instances.empty()) where += fmt::format(", {} instances", mesh.instances.size());
+        if (mesh.emits()) where += fmt::format(", emits {} W/(sr m²)", rgb(mesh.emission));
+        table.row({html::heading(escape(mesh.name)), words("mesh"), words(where), words(rgb(mesh.material.rho_d)),
+            words(lobe(mesh.material)), words("yes"), html::figure(known ? std::to_string(found->second) : "")});
+    }
     return table.empty() ? "" : table.str();
 }
 
@@ -75,6 +86,11 @@ std::string lights_table(const Experiment& e) {
     for (const auto& [path, light] : all_lights(e))
         table.row({html::heading(escape(light.name)),
             words(fmt::format("{}: {}", light.kind(), parameters_of(light.form))), words(rgb(light.radiance))});
+    if (e.sky)
+        table.row({html::heading("sky"),
+            words(fmt::format("the image {}, content {}, turned by {}°", html::code(e.sky->file),
+                html::code(e.sky->content.value_or("not read")), shortest(e.sky->rotation))),
+            words(fmt::format("that of its texels, times {}", shortest(e.sky->scale)))});
     table.row({html::heading("fill"), words("the whole hemisphere"), words(rgb(e.fill))});
     return table.str();
 }
@@ -128,11 +144,11 @@ bool plain(const ArmPlan& arm) {
 }
 
 /// Returns the arm's name, with its sampler if that differs, and the light that it cannot reach.
-std::string name_of(const ArmPlan& arm, const SamplerInfo& info, bool fill) {
+std::string name_of(const ArmPlan& arm, const SamplerInfo& info, const Experiment& e) {
     std::string out = escape(arm.name == arm.sampler ? std::string(info.label) : arm.name);
     if (arm.name != arm.sampler) out += ", sampler " + html::code(arm.sampler);
-    if (!info.misses.empty() && fill)
-        out += fmt::format("<br /><small>cannot reach {}: biased here</small>", info.misses);
+    if (const std::string missed = missed_light(arm, e); !missed.empty())
+        out += fmt::format("<br /><small>cannot reach {}: biased here</small>", missed);
     return out;
 }
 
@@ -142,7 +158,6 @@ PageSection densities(Page& page) {
     html::Table table("The densities, the maps that draw from them and the sample counts <i>N</i> of each arm",
         {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
     const auto& arms = page.in.experiment.arms;
-    const Rgb& fill = page.in.experiment.fill;
     for (const ArmPlan& arm : arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
@@ -150,7 +165,7 @@ PageSection densities(Page& page) {
                 words(""), words(sample_counts(arm))});
             continue;
         }
-        table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
+        table.row({html::heading(name_of(arm, *info, page.in.experiment)),
             words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
             words(formula::html(info->axis)), words(sample_counts(arm))});
     }
@@ -228,10 +243,12 @@ std::string regions_sentence(const Experiment& e) {
 /// Returns the lobes of the scene's glossy surfaces, in the list's order.
 std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
     std::vector<const LobeInfo*> out;
-    for (const LobeInfo& lobe : lobe_infos())
-        if (std::ranges::any_of(
-                e.shapes, [&](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe.kind; }))
-            out.push_back(&lobe);
+    for (const LobeInfo& lobe : lobe_infos()) {
+        bool used = false;
+        for (std::size_t k = 0; k < e.surface_count(); ++k)
+            used = used || (e.material(k).rho_s > 0 && e.material(k).brdf == lobe.kind);
+        if (used) out.push_back(&lobe);
+    }
     return out;
 }
 
@@ -289,6 +306,13 @@ constexpr const char* quadrature_prose = R"(
 from a table of its albedo, every light by quadrature. It has no seed, and states its own error.</p>
 )";
 
+constexpr const char* paired_prose = R"(
+<p>The reference is a pair of independent estimates <i>R</i><sub>1</sub> and <i>R</i><sub>2</sub> of every pixel, by
+{n} scrambled Sobol points for each way to draw a direction, on a seed of their own ({seed}). The squared error of a film
+is the mean of (<i>Y</i> − <i>R</i><sub>1</sub>)(<i>Y</i> − <i>R</i><sub>2</sub>), in which the errors of the reference
+cancel in the mean. Where this estimate is negative, the RMSE is below the reference’s error.</p>
+)";
+
 constexpr const char* both_prose = R"(
 <p>Two references are computed. The quadrature integrates each pixel to convergence and has no seed. The Monte Carlo one
 adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn from it, and each light by {disk} on
@@ -296,6 +320,19 @@ its surface, on a seed of its own ({seed}). The metrics of this run use the <b>{
 difference of the two, the standard error that the random one states, and by how much the RMSE of any arm would change
 if the other one were used.</p>
 )";
+
+/// Returns the runs whose squared error is below 0, with its interval.
+std::string below_the_reference(const ReportInputs& in) {
+    html::Table table("Runs whose RMSE is below the reference’s error: their squared error, with its 95 % interval",
+        {words("Run"), words("Region"), {"Seed", true}, {"Squared error", true}, {"Interval", true}});
+    for (const RunMetrics& run : in.metrics.runs)
+        for (const RegionMetrics& region : run.regions)
+            if (region.is_paired() && region.mse < 0)
+                table.row({html::heading(run_html(run.key, in.experiment)), words(escape(region.region)),
+                    html::figure(std::to_string(run.key.seed)), html::figure(figures(region.mse, 2)),
+                    html::figure(figures(region.mse_low(), 2) + " … " + figures(region.mse_high(), 2))});
+    return table.empty() ? "" : table.str();
+}
 
 /// Returns where the reference's own error is too large a part of an RMSE.
 std::string not_good_enough(const std::vector<ReferenceQuality>& all) {
@@ -331,7 +368,7 @@ std::string table_of_both(const std::vector<ReferenceQuality>& all) {
     for (const ReferenceQuality& r : all)
         table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
             html::figure(figures(*r.rms_difference, 3)), html::figure(figures(*r.rms_standard_error, 3)),
-            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(*r.max_relative_rmse_change, 2))});
+            html::figure(figures(*r.quadrature_error, 2)), html::figure(percent(*r.max_relative_rmse_change, 2))});
     return table.str() + verdict(all);
 }
 
@@ -340,7 +377,8 @@ std::string table_of_one(const std::vector<ReferenceQuality>& all) {
         {words("Region"), {"<i>s</i>", true}, {"Its error", true}, {"Share of the smallest RMSE", true}});
     for (const ReferenceQuality& r : all)
         table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
-            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(r.error_share, 2))});
+            html::figure(figures(r.paired_error ? *r.paired_error : *r.quadrature_error, 2)),
+            html::figure(std::isfinite(r.error_share) ? percent(r.error_share, 2) : "above it")});
     return table.str();
 }
 
@@ -353,12 +391,14 @@ PageSection reference(Page& page) {
     if (all.empty() && plates.empty()) return {};
     const bool both = !all.empty() && all.front().max_relative_rmse_change.has_value();
     std::string out = quadrature_prose;
+    if (plan.kind == ReferenceKind::paired)
+        out = fmt::format(paired_prose, fmt::arg("n", plan.n), fmt::arg("seed", plan.seed));
     if (both)
         out = fmt::format(both_prose, fmt::arg("lobe", plural(plan.lobe_spp, "sample")),
             fmt::arg("disk", plural(plan.disk_spp, "sample")), fmt::arg("seed", plan.seed),
             fmt::arg("used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "Monte Carlo reference"));
     if (!all.empty()) out += (both ? table_of_both(all) : table_of_one(all)) + not_good_enough(all);
-    return {"reference", "The reference", out + plates};
+    return {"reference", "The reference", out + below_the_reference(page.in) + plates};
 }
 
 }  // namespace crescent::inline report

@@ -63,15 +63,16 @@ std::string verdict(const std::vector<AssertionResult>& given, const Paint& pain
     return out;
 }
 
-std::string table_row(const SeedSpread& b, bool published) {
+std::string table_row(const SeedSpread& b, bool published, bool paired) {
     const std::string name = fmt::format("{} {}", b.metric, b.key.arm);
     std::string row = fmt::format("  {}", left(name, published ? 23 : 34));
     if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.metric, *b.published) : "-", 10));
-    row += fmt::format(" {}", right(figures_of(b.metric, b.measured), 10));
+    row += fmt::format(" {}", right(figures_of(b.metric, b.measured, paired), 10));
     if (b.band.seeds < 2) return row;
-    row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median), 10));
+    row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median, paired), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(figures_of(b.metric, b.band.q05) + " .. " + figures_of(b.metric, b.band.q95), 20);
+    return row + clip(
+        figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {
@@ -83,7 +84,7 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     for (const std::string& metric : headline_metrics(in.experiment))
         for (const ArmPlan& arm : in.experiment.arms)
             if (const SeedSpread* band = find.band(arm.name, n, metric)) {
-                rows += table_row(*band, published) + "\n";
+                rows += table_row(*band, published, in.experiment.reference.kind == ReferenceKind::paired) + "\n";
                 seeds = std::max(seeds, band->band.seeds);
             }
     if (rows.empty()) return {};

@@ -148,9 +148,10 @@ std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) 
 
 html::Cell metric_cell(const Page& page, const SeedSpread* band) {
     if (!band) return html::figure("");
-    std::string out = html::number(figures_of(band->metric, band->measured));
+    const bool paired = page.in.experiment.reference.kind == ReferenceKind::paired;
+    std::string out = html::number(figures_of(band->metric, band->measured, paired));
     if (band->band.seeds > 1)
-        out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->metric, band->band.median)),
+        out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->metric, band->band.median, paired)),
             interval_html(band->metric, band->band));
     if (const auto tail = page.find.tail(*band); tail && band->metric.starts_with("rmse."))
         out += fmt::format("<small>tail index {}</small>", html::value(tail_html(tail)));

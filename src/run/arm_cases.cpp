@@ -201,6 +201,15 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
             out.area_lights.push_back({radiance, lights::Sphere{c, lights[k].radius}});
         }
     }
+    if (points.around) {
+        const auto at = [](const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+            return Vec3d{double(x[0]), double(y[0]), double(z[0])};
+        };
+        out.around = points.around;
+        out.position = at(points.px, points.py, points.pz);
+        out.frame = {at(points.tx, points.ty, points.tz), at(points.bx, points.by, points.bz),
+            at(points.nx, points.ny, points.nz)};
+    }
     return out;
 }
 
@@ -272,7 +281,7 @@ private:
         const std::uint32_t pixel = point->pixel[0], width = static_cast<std::uint32_t>(image.width);
         const LobeInfo* lobe = point->lobe < 0 ? nullptr : &lobe_info(static_cast<LobeKind>(point->lobe));
         CheckCase t;
-        t.brdf = experiment_.shapes[point->shape[0]].name;
+        t.brdf = experiment_.surface_name(point->shape[0]);
         t.lighting = fmt::format("pixel {} {}", pixel % width, pixel / width);
         t.wo = wo;
         const auto rounded = [](double v) { return std::round(v * 1e4) / 1e4; };

@@ -76,6 +76,8 @@ void add_hashes(Measured& out) {
         all.emplace_back(fmt::format("quadrature s={}", film.s), [&] { return hash(film); });
     for (const ReferenceFilm& film : out.monte_carlo)
         all.emplace_back(fmt::format("note reference s={}", film.s), [&] { return hash(film); });
+    for (const ReferenceFilm& film : out.paired)
+        all.emplace_back(fmt::format("paired s={}", film.s), [&] { return hash(film); });
     std::vector<std::string> hashes(all.size());
     parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) { hashes[k] = all[k].second(); });
     for (std::size_t k = 0; k < all.size(); ++k) out.metrics.film_hashes[all[k].first] = hashes[k];
@@ -84,6 +86,7 @@ void add_hashes(Measured& out) {
 void add_references_compared(Measured& out) {
     const Experiment& experiment = out.experiment;
     Metrics& metrics = out.metrics;
+    std::ranges::move(paired_quality(out.paired, experiment, metrics.runs), std::back_inserter(metrics.references));
     for (std::size_t e = 0; e < out.quadrature.size(); ++e)
         for (const Region& region : experiment.regions)
             metrics.references.push_back(compare(out.quadrature[e],
@@ -92,10 +95,11 @@ void add_references_compared(Measured& out) {
 
 void add_view(Prepared& prepared, Measured& out) {
     for (std::size_t k = 0; k < prepared.shape_pixels.size(); ++k)
-        out.metrics.shape_pixels[out.experiment.shapes[k].name] = prepared.shape_pixels[k];
+        out.metrics.shape_pixels[out.experiment.surface_name(k)] = prepared.shape_pixels[k];
     out.metrics.geometry_pixels = prepared.geometry_pixels;
     out.shapes = std::move(prepared.shapes), out.outside = std::move(prepared.outside);
     out.quadrature = std::move(prepared.quadrature), out.monte_carlo = std::move(prepared.monte_carlo);
+    out.paired = std::move(prepared.paired);
 }
 
 }  // namespace
@@ -106,7 +110,7 @@ const Film* Measured::film(const RunKey& key) const {
 }
 
 const ReferenceFilm* Measured::reference(double s) const {
-    return reference_of(experiment, quadrature, monte_carlo, s);
+    return reference_of(experiment, *this, s);
 }
 
 std::optional<Tail> region_tail(

@@ -23,7 +23,7 @@ struct Measured {
     Timing timing;
     ShapeMap shapes;
     std::vector<std::pair<RunKey, Film>> films;          // of the jobs whose films were kept
-    std::vector<ReferenceFilm> quadrature, monte_carlo;  // one per exponent; none if not requested
+    std::vector<ReferenceFilm> quadrature, monte_carlo, paired;  // one per exponent; none if not requested
     Plates plates;                                       // none before write()
     ExternalSamplers outside;                            // plates evaluate their densities
     bool stopped = false;

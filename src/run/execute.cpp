@@ -13,6 +13,7 @@
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
 #include "render/kernel.h"
+#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "run/checkpoint.h"
 #include "run/external_samplers.h"
@@ -24,7 +25,7 @@ namespace {
 
 std::vector<RunMetrics> metrics_of(
     const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
-    const ReferenceFilm* reference = reference_of(plan.experiment, prepared.quadrature, prepared.monte_carlo, job.s);
+    const ReferenceFilm* reference = reference_of(plan.experiment, prepared, job.s);
     ensure(reference != nullptr, "references are made before the jobs that are measured against them");
     std::vector<RunMetrics> out(films.size());
     parallel_for(std::size_t{0}, films.size(), [&](std::size_t r) {
@@ -32,6 +33,12 @@ std::vector<RunMetrics> metrics_of(
             measure(plan.experiment, {job.arm, films[r].n, job.s, job.seed}, films[r], *reference, prepared.shapes);
     });
     return out;
+}
+
+/// Its seeds follow those of the article's reference, of which there is one for the lobe and one for each light.
+PairedPlan paired_plan(const Experiment& experiment) {
+    const std::uint64_t n = experiment.reference.n > 0 ? experiment.reference.n : paired_samples;
+    return {n, {reference_seed(experiment, 0x10000), reference_seed(experiment, 0x10001)}};
 }
 
 void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& monitor,
@@ -62,13 +69,6 @@ Engine settled(Engine engine) {
     return engine;
 }
 
-const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,
-    const std::vector<ReferenceFilm>& monte_carlo, double s) {
-    const auto& films = experiment.reference.kind == ReferenceKind::quadrature ? quadrature : monte_carlo;
-    const auto film = std::ranges::find(films, s, &ReferenceFilm::s);
-    return film == films.end() ? nullptr : &*film;
-}
-
 const TiledScene& view_at(const Prepared& prepared, double s) {
     const auto view = std::ranges::find(prepared.views, s, [](const TiledScene& v) { return v.scene().s(); });
     ensure(view != prepared.views.end(), "a job's exponent is one of its plan's");
@@ -76,7 +76,7 @@ const TiledScene& view_at(const Prepared& prepared, double s) {
 }
 
 std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const ShapeMap& shapes) {
-    std::vector<std::uint64_t> out(experiment.shapes.size());
+    std::vector<std::uint64_t> out(experiment.surface_count());
     for (const std::int16_t shape : shapes.shape)
         if (shape >= 0) ++out[static_cast<std::size_t>(shape)];
     if (std::ranges::all_of(out, [](std::uint64_t pixels) { return pixels == 0; }))
@@ -110,10 +110,17 @@ void add_references(
         return std::unique_ptr<TileCheckpoint>(checkpoint ? new TileCheckpoint(checkpoint->tiles(name)) : nullptr);
     };
     prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
+        const ReferencePlan& asked = plan.experiment.reference;
+        if (asked.kind == ReferenceKind::paired) {
+            monitor.begin("paired reference", pixels);
+            const std::unique_ptr<TileCheckpoint> tiles = tiles_of_pass("paired");
+            prepared.paired = paired_reference(
+                prepared.views, paired_plan(plan.whole), monitor, tiles.get());
+            return;
+        }
         monitor.begin("reference by quadrature", pixels);
         const std::unique_ptr<TileCheckpoint> quadrature = tiles_of_pass("quadrature"), note = tiles_of_pass("note");
         prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor, quadrature.get());
-        const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
         monitor.begin("the article's reference", pixels);
         prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor, note.get());

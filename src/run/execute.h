@@ -5,6 +5,7 @@
 // process (signals, locale, thread pools); each may be called from several threads with plans of their own.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,7 +43,7 @@ struct Prepared {
     ShapeMap shapes;
     std::vector<std::uint64_t> shape_pixels;  // of each shape, in the experiment's order
     std::uint64_t geometry_pixels = 0;
-    std::vector<ReferenceFilm> quadrature, monte_carlo;  // one per exponent, in the plan's order
+    std::vector<ReferenceFilm> quadrature, monte_carlo, paired;  // one per exponent, in the plan's order
     bool stopped = false;
 };
 
@@ -77,8 +78,14 @@ const TiledScene& view_at(const Prepared& prepared, double s);
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& monitor, bool keep_films = true, Checkpoint* checkpoint = nullptr);
 
-/// Returns the reference that the metrics of exponent s use; null if none was computed.
-const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,
-    const std::vector<ReferenceFilm>& monte_carlo, double s);
+/// Returns the reference that the metrics of exponent s use, of what a run has prepared or measured; null if none was
+/// computed.
+template <class Run> const ReferenceFilm* reference_of(const Experiment& experiment, const Run& run, double s) {
+    const std::vector<ReferenceFilm>& films = experiment.reference.kind == ReferenceKind::quadrature ? run.quadrature
+        : experiment.reference.kind == ReferenceKind::paired                                         ? run.paired
+                                                                                                     : run.monte_carlo;
+    const auto film = std::ranges::find(films, s, &ReferenceFilm::s);
+    return film == films.end() ? nullptr : &*film;
+}
 
 }  // namespace crescent::inline runs

@@ -35,7 +35,7 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
 
 RunPlan plan(const Experiment& experiment, SeedRange range) {
     RunPlan out;
-    out.whole = out.experiment = with_figures(experiment);
+    out.whole = out.experiment = with_files(experiment);
     out.hash = hash(out.whole);
     if (range.last == 0) range.last = experiment.seeds;
     if (range.first < 1 || range.first > range.last || range.last > experiment.seeds)

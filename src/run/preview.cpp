@@ -16,7 +16,7 @@ Experiment without_arms(Experiment e) {
     e.furnaces.clear();
     e.published.reset();
     e.seeds = 1;
-    e.reference.kind = ReferenceKind::quadrature;
+    if (e.reference.kind == ReferenceKind::note) e.reference.kind = ReferenceKind::quadrature;
     e.reference.monte_carlo = false;
     return e;
 }
@@ -32,7 +32,7 @@ std::vector<unsigned char> preview(const Experiment& experiment, const Engine& e
     monitor.check();
     const Metrics none;
     const PlateInputs in{seen.experiment, none, prepared.shapes, [](const RunKey&) { return nullptr; },
-        [&](double s) { return reference_of(seen.experiment, prepared.quadrature, {}, s); }, with.backend->name(),
+        [&](double s) { return reference_of(seen.experiment, prepared, s); }, with.backend->name(),
         experiment.theme.value_or(Theme::dark)};
     const Provenance p = provenance_of(seen, *with.backend, "");
     return encode_png(draw_preview(in), {{"crescent", p.version + " " + p.commit}, {"plate", "preview"}});

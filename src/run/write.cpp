@@ -53,6 +53,7 @@ void write_references(const Measured& m, Staging& staging) {
     std::vector<std::pair<std::string, const ReferenceFilm*>> parts;
     for (const ReferenceFilm& film : m.quadrature) parts.emplace_back(fmt::format("quadrature s={}", film.s), &film);
     for (const ReferenceFilm& film : m.monte_carlo) parts.emplace_back(fmt::format("note s={}", film.s), &film);
+    for (const ReferenceFilm& film : m.paired) parts.emplace_back(fmt::format("paired s={}", film.s), &film);
     if (!parts.empty()) write_exr(staging.path(fmt::format("films/{}.exr", reference_file)), parts, attributes_of(m));
 }
 

@@ -10,10 +10,12 @@
 #include "samplers/ggx_vndf.h"
 #include "samplers/light_area.h"
 #include "samplers/light_solid_angle.h"
+#include "samplers/light_triangle.h"
 #include "samplers/mis.h"
 #include "samplers/mixture.h"
 #include "samplers/phong.h"
 #include "samplers/sampler.h"
+#include "samplers/sky.h"
 #include "samplers/uniform.h"
 
 namespace crescent::inline samplers {
@@ -26,7 +28,7 @@ struct ArmList {
 };
 
 using Samplers = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
-    GgxVndf, GgxBoundedVndf, BeckmannD>;
+    GgxVndf, GgxBoundedVndf, BeckmannD, SkyByTexel, LightTriangle>;
 
 /// Calls f.template operator()<A>() for every sampler A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_sampler(ArmList<A...>, Call&& f) {

@@ -20,7 +20,7 @@ struct CaseSurface {
     std::string_view lobe = "";       // a word of lobes/; "": none
     double sharpness = 32;            // that lobe's s or alpha
     bool lambert = false;             // with rho_d = 0.5 in addition
-    std::string_view light = "fill";  // "fill", "disk", "overhead disk", "two disks", or fill + one of these
+    std::string_view light = "fill";  // "fill", "disk", "overhead disk", "two disks", "sky", "triangles", or fill + these
 };
 
 /// The surface and light of one case, the input of a sampler's theory.
@@ -46,6 +46,11 @@ struct ExpectedBehaviour {
 /// less than 2^-1074; "" if it is not.
 std::string power_underflows(const CasePoint& at, double least);
 
+/// The light that a sampler finds.
+struct Reaches {
+    bool fill = true, lights = true, sky = true, triangles = true;
+};
+
 /// The allowed difference of a GL film from the CPU's: relative to Y, at one sample per pixel, on a software renderer.
 struct GlTolerance {
     double relative = 0;  // 0: this sampler has no GLSL version
@@ -64,6 +69,7 @@ struct SamplerDoc {
     bool needs_s = false;                           // an experiment without an exponent cannot run it
     bool combines = false;                          // it combines several densities
     std::string_view misses = "";                   // light that it cannot reach, under which it is biased; empty: none
+    Reaches reaches = {};
     std::span<const CaseSurface> check_cases = {};  // empty: every lobe, and Lambert, under the fill
     GlTolerance gl = {};
 };

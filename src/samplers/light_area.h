@@ -20,6 +20,7 @@ template <class F> struct LightArea {
         .draw = "even over a light's area",
         .axis = "the light",
         .misses = light_arm_misses,
+        .reaches = {.fill = false, .sky = false, .triangles = false},
         .check_cases = check_cases,
         .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }

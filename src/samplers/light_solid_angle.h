@@ -27,6 +27,7 @@ template <class F> struct LightSolidAngle {
         .draw = R"(even over a light's solid angle $\Omega$; of a disk, over a cap around it)",
         .axis = "the light",
         .misses = light_arm_misses,
+        .reaches = {.fill = false, .sky = false, .triangles = false},
         .check_cases = check_cases,
         .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};
     static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }

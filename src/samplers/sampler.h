@@ -9,6 +9,7 @@
 #include "math/simd/frame.h"
 #include "samplers/info.h"
 #include "scene/lights/all.h"
+#include "scene/surroundings.h"
 
 namespace crescent::inline samplers {
 
@@ -37,9 +38,22 @@ template <class F> struct DrawnToDisk : Drawn<F> {
     MaskOf<F> met;  // wi meets it; it may still be behind another light, or hidden
 };
 
-/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1.
+/// A direction that was drawn in a texel of the sky. Rounding may move the direction to a neighbouring texel, which may
+/// be far darker; its radiance is that of the texel it was drawn in.
+template <class F> struct DrawnToSky : Drawn<F> {
+    UintOf<F> texel;  // no_texel: none was drawn
+};
+
+/// A direction that was drawn on an emitting triangle, which it meets whatever the rounding of the direction.
+template <class F> struct DrawnToTriangle : Drawn<F> {
+    UintOf<F> triangle;  // no_triangle: none was drawn
+};
+
+/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1; `texel`
+/// and `triangle` those of samplers which aimed there.
 template <class F> struct DrawnByAny : DrawnToDisk<F> {
     static constexpr bool by_any = true;
+    UintOf<F> texel{no_texel}, triangle{no_triangle};
 };
 
 /// A disk light as seen from the surface, in the local frame.
@@ -74,6 +88,9 @@ template <class F> struct ShadingPoint {
     int disk_count = 0;
     const LocalLight<F>* others = nullptr;  // lights other than disks
     int other_count = 0;
+    const Surroundings* around = nullptr;  // the scene's sky and meshes; null: none, and the next two are not set
+    Vec3<F> position{};                    // of the point, from the scene's origin along the world's axes, m
+    Frame<F> frame{};                      // of the point, in the world
 };
 
 /// The light that samplers which aim only at lights cannot reach.

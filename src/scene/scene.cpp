@@ -3,6 +3,7 @@
 // relative to the nearest of 144 hits, which is close to what is visible.
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,21 +27,75 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
             if (light.is_disk() == disks) lights.push_back(light);
         if (disks) disk_count = lights.size();
     }
-    if (const Shape* own = data.shape_of_s()) s_shape = own - data.shapes.data();
+    if (const auto own = data.surface_of_s()) s_shape = static_cast<std::ptrdiff_t>(*own);
+    origin = c.eye;
+    rays = Rays(instances(), origin);
     origin = nearest_seen();
+    if (!rays.empty()) rays = Rays(instances(), origin);
+    for (std::uint32_t k = 0; k < rays.instances().size(); ++k) {
+        const MeshInstance& instance = rays.instances()[k];
+        const MeshObject& mesh = data.meshes[static_cast<std::size_t>(instance.mesh)];
+        if (!mesh.emits()) continue;
+        for (std::uint32_t t = 0; t < instance.pack->mesh.triangles.size(); ++t) {
+            const auto [p, q, r] = corners(k, t);
+            triangle_lights.push_back({{p, q, r}, k, t, instance.mesh});
+            if (mesh.two_sided) triangle_lights.push_back({{p, r, q}, k, t, instance.mesh});
+        }
+    }
+    around = surroundings();
+}
+
+std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
+    if (!data.sky && rays.empty()) return nullptr;
+    auto out = std::make_shared<Surroundings>();
+    if (data.sky) out->sky.emplace(*data.sky);
+    std::vector<EmittingTriangle> emitting;
+    for (const TriangleLight& light : triangle_lights) {
+        EmittingTriangle& to = emitting.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c) to.corner[c] = light.corner[c] - origin;
+        to.radiance = data.meshes[static_cast<std::size_t>(light.mesh)].emission;
+        to.instance = light.instance, to.triangle = light.triangle;
+    }
+    if (!emitting.empty()) out->triangles.emplace(std::move(emitting));
+    out->rays = rays;
+    out->eye = as<float>(data.camera.eye - origin);
+    return out;
 }
 
 Scene::Scene(SceneData data) : made_(std::make_shared<const Made>(std::move(data))), s_(made_->data.s()) {}
 
+std::vector<MeshInstance> Scene::Made::instances() const {
+    std::vector<MeshInstance> all;
+    for (std::size_t m = 0; m < data.meshes.size(); ++m) {
+        const MeshObject& mesh = data.meshes[m];
+        ensure(mesh.pack != nullptr, "the files of meshes are read before the scene is made");
+        const Affine own = mesh.placement.transform();
+        if (mesh.instances.empty()) all.push_back({mesh.pack, own, static_cast<int>(m)});
+        for (const Placement& placement : mesh.instances)
+            all.push_back({mesh.pack, placement.transform().after(own), static_cast<int>(m)});
+    }
+    return all;
+}
+
+std::array<Vec3d, 3> Scene::Made::corners(std::uint32_t instance, std::uint32_t triangle) const {
+    const MeshInstance& placed = rays.instances()[instance];
+    const auto corner = [&](std::size_t k) {
+        return placed.to_world.point(widen(placed.pack->mesh.corner(triangle, k)));
+    };
+    // A mirrored triangle keeps its front.
+    return placed.to_world.det() > 0 ? std::array{corner(0), corner(1), corner(2)}
+                                     : std::array{corner(0), corner(2), corner(1)};
+}
+
 Vec3d Scene::Made::nearest_seen() const {
-    constexpr int rays = 12;  // up and across
+    constexpr int steps = 12;  // up and across
     const Camera& c = data.camera;
     const Image& image = data.image;
     Vec3d nearest = c.eye;
     double least = std::numeric_limits<double>::infinity();
-    for (int j = 0; j < rays; ++j) {
-        for (int i = 0; i < rays; ++i) {
-            const auto middle = [&](int k, int size) { return static_cast<int>((k + 0.5) * size / rays); };
+    for (int j = 0; j < steps; ++j) {
+        for (int i = 0; i < steps; ++i) {
+            const auto middle = [&](int k, int size) { return static_cast<int>((k + 0.5) * size / steps); };
             const std::optional<Hit> hit = trace(middle(i, image.width), middle(j, image.height));
             if (!hit) continue;
             const Vec3d to = hit->x - c.eye;
@@ -84,6 +139,7 @@ std::optional<Hit> Scene::primary(int i, int j) const {
     if (!shapes_) return made_->trace(i, j);
     const int shape = (*shapes_)[at];
     if (shape < 0) return {};
+    if (static_cast<std::size_t>(shape) >= shapes().size()) return made_->trace(i, j);
     const Vec3d d = made_->towards(i, j);
     return made_->hit(shape, d, intersect(shapes()[static_cast<std::size_t>(shape)], camera().eye, d));
 }
@@ -101,15 +157,62 @@ std::optional<Hit> Scene::Made::trace(int i, int j) const {
         const Intersection c = intersect(data.shapes[k], data.camera.eye, d);
         if (c.order < best.order) best = c, shape = static_cast<int>(k);
     }
+    if (!rays.empty()) {
+        const Vec3d from = data.camera.eye - origin;
+        if (const MeshHit met = rays.closest(from, d, infinity); met.found()) {
+            const Hit on_mesh = hit(met, d);
+            const double t = dot(on_mesh.x - data.camera.eye, d);
+            if (t < best.order) return on_mesh;
+        }
+    }
     return shape < 0 ? std::nullopt : std::optional<Hit>(hit(shape, d, best));
+}
+
+/// In double precision, on the triangle that the ray in single precision has found: its plane, and the nearest point of
+/// the triangle in it.
+Hit Scene::Made::hit(const MeshHit& met, Vec3d d) const {
+    const MeshInstance& instance = rays.instances()[met.instance];
+    const Mesh& mesh = instance.pack->mesh;
+    const Triangle& triangle = mesh.triangles[met.triangle];
+    const auto corner = [&](std::size_t k) { return instance.to_world.point(widen(mesh.corner(met.triangle, k))); };
+    const Vec3d a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, across = cross(e1, e2);
+    const Vec3d from = data.camera.eye - a;
+    // Cramer's rule for from + t d = u e1 + v e2; a ray along the plane keeps the weights that were found.
+    const double det = -dot(across, d);
+    double u = static_cast<double>(met.u), v = static_cast<double>(met.v);
+    if (det != 0) u = dot(cross(e2, d), from) / det * -1, v = dot(cross(d, e1), from) / det * -1;
+    u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
+    if (u + v > 1) u /= u + v, v = 1 - u;
+    Hit out;
+    out.shape = static_cast<int>(data.shapes.size()) + instance.mesh;
+    out.x = a + u * e1 + v * e2;
+    out.wo = -d;
+    out.instance = met.instance, out.triangle = met.triangle, out.u = u, out.v = v;
+    const Vec3d face = normalize(across);
+    out.face = dot(face, d) < 0 ? face : -face;
+    out.n = out.face;
+    if (!mesh.normals.empty()) {
+        const auto normal = [&](std::size_t k) { return widen(mesh.normals[triangle[k]]); };
+        const Vec3d smooth = instance.to_world.normal((1 - u - v) * normal(0) + u * normal(1) + v * normal(2));
+        const double side = dot(smooth, out.face);
+        const Vec3d n = side == 0 ? out.face : normalize(side > 0 ? smooth : -smooth);
+        out.below = dot(n, d) >= 0;
+        if (!out.below) out.n = n;
+    }
+    return out;
 }
 
 Hit Scene::Made::hit(int shape, Vec3d d, const Intersection& met) const {
     return {shape, met.reveal, data.camera.eye + met.t * d, dot(met.n, d) < 0 ? met.n : -met.n, -d};
 }
 
+Vec3d Scene::ray_start(const Hit& hit) const {
+    const Vec3d x = hit.x - origin();
+    return hit.is_mesh() ? x + rays().offset(hit.instance, x) * hit.face : x;
+}
+
 Surface Scene::surface_of_shape(std::size_t shape) const {
-    Material material = shapes()[shape].material;
+    Material material = made_->data.material(shape);
     if (other_s_ && (static_cast<std::ptrdiff_t>(shape) == made_->s_shape || material.inherits_s)) material.s = s_;
     return surface_of(material, s_);
 }
@@ -117,6 +220,7 @@ Surface Scene::surface_of_shape(std::size_t shape) const {
 Surface Scene::surface(const Hit& hit) const {
     const auto shape = static_cast<std::size_t>(hit.shape);
     Surface out = surface_of_shape(shape);
+    if (hit.below) out.rho_d = {}, out.rho_s = 0;
     if (hit.reveal) {
         out.rho_d = albedo_of_reveal(shapes()[shape]).value_or(out.rho_d);
         out.rho_s = 0;

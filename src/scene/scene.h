@@ -9,15 +9,24 @@
 
 #include "math/simd/frame.h"
 #include "scene/scene_data.h"
+#include "scene/surroundings.h"
 
 namespace crescent::inline scene {
 
 /// The hit of a primary ray. The normal is unit and faces the camera.
 struct Hit {
-    int shape = -1;       // index into SceneData::shapes
+    int shape = -1;       // index of a surface: of SceneData::shapes, then of SceneData::meshes
     bool reveal = false;  // the side of a recessed panel
     Vec3d x{}, n{};
     Vec3d wo{};  // towards the camera, unit
+    // Of a mesh only:
+    Vec3d face{};  // normal of the triangle, unit, on the camera's side; n is the smooth normal on that side
+    std::uint32_t instance = no_item, triangle = no_item;  // as in MeshHit
+    double u = 0, v = 0;                                   // weights of the triangle's corners 1 and 2
+
+    bool below = false;  // the camera is below the smooth surface: nothing is reflected, and n is the face
+
+    bool is_mesh() const { return instance != no_item; }
 };
 
 /// What the camera sees of an experiment's shapes, and the lights. Copies share the data; const members may be called
@@ -38,6 +47,9 @@ public:
     /// Everything except the exponent is shared.
     Scene with_s(double s) const;
     Surface surface(const Hit& hit) const;
+    /// Returns where rays from a hit begin, relative to origin(): on a mesh a little above its triangle, so that the
+    /// triangle does not shadow itself (Rays::offset).
+    Vec3d ray_start(const Hit& hit) const;
     /// Returns the properties that are constant over a shape. The sides of a panel share only the lobe's parameters.
     Surface surface_of_shape(std::size_t shape) const;
 
@@ -49,11 +61,22 @@ public:
     const Image& image() const { return made_->data.image; }
     const Camera& camera() const { return made_->data.camera; }
     const std::vector<Shape>& shapes() const { return made_->data.shapes; }
+    const std::vector<MeshObject>& meshes() const { return made_->data.meshes; }
+    /// Returns the rays against all instances of the meshes; positions are relative to origin().
+    const Rays& rays() const { return made_->rays; }
+    bool has_meshes() const { return !made_->rays.empty(); }
+    /// Returns whether a mesh is met at x + t d with 0 < t < t_max; x is relative to origin().
+    bool mesh_hides(Vec3f x, Vec3f d, float t_max) const { return made_->rays.occluded(x, d, t_max); }
+    /// Returns the triangles that emit, in the order of instances and triangles, the back of two-sided ones as
+    /// triangles of their own.
+    const std::vector<TriangleLight>& triangle_lights() const { return made_->triangle_lights; }
     const std::vector<Occluder>& occluders() const { return made_->occluders; }
     /// Returns the lights: disks first, else in the order in which they are given.
     const std::vector<Light>& lights() const { return made_->lights; }
     std::size_t disk_count() const { return made_->disk_count; }
     const Rgb& fill() const { return made_->data.fill; }
+    /// Returns the sky; null if the scene has none.
+    const std::shared_ptr<const Surroundings>& surroundings() const { return made_->around; }
     /// Returns whether both come from one Scene by copies and with_s(), with the same exponent, so all their values are
     /// equal.
     bool is_same_as(const Scene& other) const { return made_ == other.made_ && s_ == other.s_; }
@@ -67,12 +90,19 @@ private:
         std::vector<Occluder> occluders;
         std::vector<Light> lights;
         std::size_t disk_count = 0;
-        std::ptrdiff_t s_shape = -1;  // whose exponent is the scene's; -1: none
+        Rays rays;
+        std::vector<TriangleLight> triangle_lights;
+        std::shared_ptr<const Surroundings> around;  // null: nothing but bodies and lights
+        std::ptrdiff_t s_shape = -1;                 // the surface whose exponent is the scene's; -1: none
 
         explicit Made(SceneData from);
+        std::shared_ptr<const Surroundings> surroundings() const;
         Vec3d towards(int i, int j) const;  // direction from the eye to pixel (i, j), unit
         std::optional<Hit> trace(int i, int j) const;
         Hit hit(int shape, Vec3d d, const Intersection& met) const;
+        Hit hit(const MeshHit& met, Vec3d d) const;
+        std::array<Vec3d, 3> corners(std::uint32_t instance, std::uint32_t triangle) const;
+        std::vector<MeshInstance> instances() const;
         Vec3d nearest_seen() const;
     };
     std::shared_ptr<const Made> made_;

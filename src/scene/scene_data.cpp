@@ -75,21 +75,58 @@ std::optional<Line> cut(const shapes::Quad& quad, Vec3d corner, Vec3d k) {
     return Line{ends[0], ends[1]};
 }
 
-const Shape* SceneData::shape_of_s() const {
-    const auto first = [&](auto holds) {
-        const auto it = std::find_if(shapes.begin(), shapes.end(),
-            [&](const Shape& shape) { return shape.material.s && !shape.material.inherits_s && holds(shape); });
-        return it == shapes.end() ? nullptr : &*it;
+const std::string& SceneData::surface_name(std::size_t surface) const {
+    return surface < shapes.size() ? shapes[surface].name : meshes[surface - shapes.size()].name;
+}
+const Material& SceneData::material(std::size_t surface) const {
+    return surface < shapes.size() ? shapes[surface].material : meshes[surface - shapes.size()].material;
+}
+Material& SceneData::material(std::size_t surface) {
+    return surface < shapes.size() ? shapes[surface].material : meshes[surface - shapes.size()].material;
+}
+
+std::vector<std::string> SceneData::surface_names() const {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < surface_count(); ++k) names.push_back(surface_name(k));
+    return names;
+}
+
+std::optional<std::size_t> SceneData::find_surface(std::string_view name) const {
+    for (std::size_t k = 0; k < surface_count(); ++k)
+        if (surface_name(k) == name) return k;
+    return {};
+}
+
+std::optional<std::size_t> SceneData::surface_of_s() const {
+    const auto first = [&](auto holds) -> std::optional<std::size_t> {
+        for (std::size_t k = 0; k < surface_count(); ++k)
+            if (material(k).s && !material(k).inherits_s && holds(k)) return k;
+        return {};
     };
-    if (const Shape* named = first([&](const Shape& shape) { return shape.name == s_of; }); named && !s_of.empty())
-        return named;
-    if (const Shape* lobe = first([](const Shape& shape) { return shape.material.rho_s > 0; })) return lobe;
-    return first([](const Shape&) { return true; });
+    if (!s_of.empty())
+        if (const auto named = first([&](std::size_t k) { return surface_name(k) == s_of; })) return named;
+    if (const auto lobe = first([&](std::size_t k) { return material(k).rho_s > 0; })) return lobe;
+    return first([](std::size_t) { return true; });
+}
+
+const Shape* SceneData::shape_of_s() const {
+    const std::optional<std::size_t> surface = surface_of_s();
+    return surface && *surface < shapes.size() ? &shapes[*surface] : nullptr;
 }
 
 double SceneData::s() const {
-    const Shape* shape = shape_of_s();
-    return shape ? *shape->material.s : 0;
+    const std::optional<std::size_t> surface = surface_of_s();
+    return surface ? *material(*surface).s : 0;
+}
+
+// ---- Meshes.
+
+Affine Placement::transform() const {
+    if (matrix) {
+        const auto column = [&](std::size_t k) { return Vec3d{(*matrix)[k], (*matrix)[4 + k], (*matrix)[8 + k]}; };
+        return {column(0), column(1), column(2), column(3)};
+    }
+    return translation(translate).after(rotation(rotate).after(scaling(scale)));
 }
 
 const Shape* SceneData::find_shape(std::string_view name) const {

@@ -13,7 +13,9 @@
 #include "base/vec.h"
 #include "scene/lights/all.h"
 #include "scene/lobes/lobe.h"
+#include "scene/mesh/rays.h"
 #include "scene/shapes/all.h"
+#include "scene/sky.h"
 
 namespace crescent::inline scene {
 
@@ -119,6 +121,38 @@ void add_occluders(const Shape& shape, int index, std::vector<Occluder>& out);
 /// Returns the diffuse albedo of the sides of a recess, if the shape has one and states it.
 std::optional<Rgb> albedo_of_reveal(const Shape& shape);
 
+// ---- Triangle meshes, from files. Lengths in m, angles in degrees, radiance in W/(sr m^2).
+
+/// Where a mesh is placed: scaled, rotated about the axes x, y, z in this order, moved. Or by a matrix, row by row: the
+/// images of the axes and of the origin are its columns.
+struct Placement {
+    Vec3d translate{}, rotate{}, scale{1, 1, 1};
+    std::optional<std::array<double, 12>> matrix;
+    Affine transform() const;
+};
+
+/// A mesh with its material. Its triangles reflect from both sides.
+struct MeshObject {
+    std::string name;
+    std::string file;                      // its .mesh file, relative to the experiment's
+    std::shared_ptr<const MeshPack> pack;  // its content, once read
+    Placement placement;
+    std::vector<Placement> instances;  // placed after `placement`; empty: once
+    Material material;
+    Rgb emission{};          // radiance of its front sides
+    bool two_sided = false;  // whether it emits from the back too
+    SourceLocation at;
+
+    bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
+};
+
+/// A triangle that emits light, in the scene.
+struct TriangleLight {
+    std::array<Vec3d, 3> corner;       // m; counterclockwise seen from the side that emits
+    std::uint32_t instance, triangle;  // as in MeshHit
+    int mesh;                          // index into SceneData::meshes
+};
+
 // ---- A pinhole camera and its grid of pixels. Lengths in m, angles in degrees; right-handed.
 
 struct Image {
@@ -221,16 +255,29 @@ struct SceneData {
     Image image;
     Camera camera;
     std::vector<Shape> shapes;
+    std::vector<MeshObject> meshes;
     std::vector<DiskLight> disks;  // lights too, before the others
     std::vector<Light> lights;
+    std::optional<SkyLight> sky;
     Rgb fill{};  // uniform over the hemisphere
     std::string
-        s_of;  // the shape whose exponent is the scene's; empty: the first with a lobe, else the first with an s
+        s_of;  // the surface whose exponent is the scene's; empty: the first with a lobe, else the first with an s
 
-    /// Returns the scene's own s, used by samplers on surfaces without a lobe: that of shape_of_s(); 0 if there is
+    /// Shapes and meshes are surfaces: their index counts the shapes, then the meshes.
+    std::size_t surface_count() const { return shapes.size() + meshes.size(); }
+    const std::string& surface_name(std::size_t surface) const;
+    const Material& material(std::size_t surface) const;
+    Material& material(std::size_t surface);
+    /// Returns the index of the surface of this name.
+    std::optional<std::size_t> find_surface(std::string_view name) const;
+    std::vector<std::string> surface_names() const;
+
+    /// Returns the scene's own s, used by samplers on surfaces without a lobe: that of surface_of_s(); 0 if there is
     /// none.
     double s() const;
-    /// Returns the shape whose exponent that is; null if no shape has an exponent of its own.
+    /// Returns the surface whose exponent that is; empty if no surface has an exponent of its own.
+    std::optional<std::size_t> surface_of_s() const;
+    /// The same if it is a shape.
     const Shape* shape_of_s() const;
     const Shape* find_shape(std::string_view name) const;
 };

@@ -23,7 +23,7 @@ std::vector<std::string> split_overrides(std::string& text) {
 }
 
 void keeps_its_promises(const Experiment& e) {
-    ensure(!e.shapes.empty() && !e.arms.empty(), "shapes and arms are required");
+    ensure(e.surface_count() > 0 && !e.arms.empty(), "surfaces and arms are required");
     for (const Region& r : e.regions)
         ensure(r.box.x0 >= 0 && r.box.y0 >= 0 && r.box.width() > 0 && r.box.height() > 0 && r.box.x1 < e.image.width &&
                 r.box.y1 < e.image.height,

@@ -17,6 +17,7 @@
 #include "math/functions.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
+#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "tests/portability/plain.h"
 
@@ -50,6 +51,34 @@ void print_functions() {
     print_function("hypot", [](double x) { return math::hypot(x, 2, 1 / x); }, -3, 3.1);
 }
 
+/// A sky of 32 x 16 texels over five orders of magnitude.
+SkyLight some_sky() {
+    auto image = std::make_shared<SkyImage>();
+    image->width = 32, image->height = 16;
+    for (std::uint32_t k = 0; k < 32 * 16; ++k)
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const std::uint32_t hash = simd::pcg4d(simd::Vec4u<std::uint32_t>{k, c, 1, 2}).x;
+            image->rgb.push_back(static_cast<float>(hash >> 8) * (k % 61 == 0 ? 0x1p-10f : 0x1p-24f));
+        }
+    SkyLight sky;
+    sky.rotation = 77, sky.image = std::move(image);
+    return sky;
+}
+
+/// 24 pixels of the same view under a sky in place of the fill.
+void print_under_a_sky(Experiment e) {
+    e.image.height = std::max(1, e.image.height * 24 / e.image.width), e.image.width = 24;
+    e.fill = {}, e.sky = some_sky();
+    const Scene scene(e);
+    ProgressMonitor monitor;
+    for (const std::string& isa : isas())
+        for (const char* sampler : {"sky", "cosine"})
+            for (const Film& film : estimate_films(scene, {sampler}, {4}, e.seed, isa, monitor))
+                std::cout << e.file << ' ' << isa << " under a sky, " << sampler << ' ' << hash(film) << '\n';
+    for (const ReferenceFilm& film : paired_reference({TiledScene(scene)}, {8, {1, 2}}, monitor))
+        std::cout << e.file << " paired " << hash(film) << '\n';
+}
+
 void print(const Experiment& experiment) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
@@ -63,6 +92,7 @@ void print(const Experiment& experiment) {
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
     for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, monitor))
         std::cout << experiment.file << " quadrature " << hash(film) << '\n';
+    print_under_a_sky(experiment);
 }
 
 /// 24 pixels across, at most 16 samples.

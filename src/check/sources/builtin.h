@@ -64,6 +64,15 @@ template <class F> std::vector<LocalLight<F>> others_of(const CaseLighting& ligh
     return out;
 }
 
+/// The same point with the sky and triangles around it, which must outlive it.
+template <class F> ShadingPoint<F> with_around(ShadingPoint<F> point, const CaseLighting& light) {
+    if (!light.around) return point;
+    point.around = light.around.get();
+    point.position = as<F>(light.position);
+    point.frame = {as<F>(light.frame.t), as<F>(light.frame.b), as<F>(light.frame.n)};
+    return point;
+}
+
 /// A is an arm template; planted faults are arms too.
 template <template <class> class A> class BuiltIn : public SamplerAdapter {
 public:
@@ -73,8 +82,9 @@ public:
           disks_double_(disks_of<double>(light)),
           others_single_(others_of<float>(light)),
           others_double_(others_of<double>(light)),
-          single_(point_of<float>(surface, wo, disks_single_, others_single_)),
-          double_(point_of<double>(surface, wo, disks_double_, others_double_)) {}
+          around_(light.around),
+          single_(with_around(point_of<float>(surface, wo, disks_single_, others_single_), light)),
+          double_(with_around(point_of<double>(surface, wo, disks_double_, others_double_), light)) {}
     BuiltIn(const BuiltIn&) = delete;
     BuiltIn& operator=(const BuiltIn&) = delete;
 
@@ -134,6 +144,7 @@ protected:
     std::vector<LocalDisk<double>> disks_double_;
     std::vector<LocalLight<float>> others_single_;
     std::vector<LocalLight<double>> others_double_;
+    std::shared_ptr<const Surroundings> around_;
     A<float> single_;
     A<double> double_;
 };

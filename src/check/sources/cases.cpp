@@ -14,6 +14,41 @@ namespace crescent::inline sources {
 
 namespace {
 
+/// A sky of 16 x 8 texels, brighter towards the horizon, with one bright texel at 56 deg from up; and five triangles,
+/// of which the nearest hides a part of the others.
+std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles) {
+    auto out = std::make_shared<Surroundings>();
+    if (sky) {
+        auto image = std::make_shared<SkyImage>();
+        image->width = 16, image->height = 8;
+        for (int row = 0; row < 8; ++row)
+            for (int column = 0; column < 16; ++column) {
+                const float grey = row == 2 && column == 5 ? 40.0f : 0.5f + 0.1f * static_cast<float>(row + column % 3);
+                image->rgb.insert(image->rgb.end(), {grey, grey, grey});
+            }
+        SkyLight light;
+        light.rotation = 20, light.image = std::move(image);
+        out->sky.emplace(light);
+    }
+    if (triangles) {
+        const std::array<Vec3d, 7> p = {{{0.5, 0.1, 1.1}, {1.5, 0.3, 1.0}, {0.8, 1.1, 1.3}, {1.6, 1.3, 1.2},
+            {-1.2, 0.4, 0.9}, {-0.4, -0.9, 1.6}, {0.9, 0.5, 0.7}}};
+        const std::array<std::array<std::size_t, 3>, 5> corners = {
+            {{0, 1, 2}, {1, 3, 2}, {4, 5, 0}, {4, 2, 5}, {0, 6, 2}}};
+        std::vector<EmittingTriangle> all;
+        for (std::uint32_t k = 0; k < corners.size(); ++k) {
+            EmittingTriangle& t = all.emplace_back();
+            for (std::size_t c = 0; c < 3; ++c) t.corner[c] = p[corners[k][c]];
+            const Vec3d across = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+            if (dot(across, t.corner[0]) > 0) std::swap(t.corner[1], t.corner[2]);  // its front faces the point
+            const double radiance = 5.0 + 4.0 * k;
+            t.radiance = {radiance, radiance, radiance}, t.triangle = k;
+        }
+        out->triangles.emplace(std::move(all));
+    }
+    return out;
+}
+
 /// A disk at 35 deg from the normal at an oblique angle; a larger one partly behind it and first in the list, so that
 /// distance decides and not order; one directly above that faces down (the axis of its frame is -z); and the example of
 /// every other kind of light. Radiances, m.
@@ -30,6 +65,9 @@ CaseLighting light_named(const std::string& name) {
     for_each_area_light([&]<class Kind>() {
         if (has(Kind::name)) light.area_lights.push_back({10, Kind::example()});
     });
+    if (has("sky") || has("triangles")) light.around = surroundings_named(has("sky"), has("triangles"));
+    if (light.around) light.frame = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // y is up
+    if (has("triangles")) light.frame = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     return light;
 }
 

@@ -47,6 +47,15 @@ std::optional<CaseLighting::Met> CaseLighting::first_met(Vec3d wi) const {
 double CaseLighting::operator()(Vec3d wi) const {
     if (wi.z <= 0) return 0;
     const std::optional<Met> met = first_met(wi);
+    if (around) {
+        const Vec3d w = frame.to_world(wi);
+        if (around->triangles) {
+            const std::uint32_t k = around->triangles->nearest(position, w);
+            if (k != no_triangle && (!met || around->triangles->distance(k, position, w) < met->distance))
+                return output::luminance(around->triangles->triangles()[k].radiance);
+        }
+        if (!met && around->sky) return output::luminance(around->sky->radiance(around->sky->texel_at(w)));
+    }
     return met ? met->radiance : fill;
 }
 

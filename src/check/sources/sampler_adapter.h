@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "math/simd/frame.h"
 #include "samplers/info.h"
 #include "scene/lights/all.h"
+#include "scene/surroundings.h"
 
 namespace crescent::inline sources {
 
@@ -187,8 +189,11 @@ inline double luminance(Vec3d c) { return output::luminance(Rgb{c.x, c.y, c.z});
 struct CaseLighting {
     double fill = 1;  // radiance
     std::vector<CaseDiskLight> disks;
-    std::vector<CaseAreaLight> area_lights{};  // lights other than disks
-    bool even() const { return disks.empty() && area_lights.empty(); }
+    std::vector<CaseAreaLight> area_lights{};              // other than disks
+    std::shared_ptr<const Surroundings> around{};          // a sky and emitting triangles; null: none
+    Vec3d position{};                                      // of the surface point in the world of `around`, m
+    Frame<double> frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // of the surface point in that world
+    bool even() const { return disks.empty() && area_lights.empty() && !around; }
     /// The nearest light along wi: its distance and its radiance.
     struct Met {
         double distance, radiance;

@@ -20,6 +20,7 @@ template <> struct Lanes<float> {
 };
 template <> struct Lanes<double> {
     using Mask = bool;
+    using Uint = std::uint32_t;
     static constexpr std::size_t count = 1;
 };
 template <class F> using MaskOf = typename Lanes<F>::Mask;

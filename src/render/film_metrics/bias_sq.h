@@ -15,7 +15,7 @@ struct BiasSqMetric {
         .in_tables = false,
         .from_two_samples = true};
     double sum = 0;
-    void add(const FilmPixel& p, const FilmFacts&) { sum += p.difference() * p.difference() - p.var; }
+    void add(const FilmPixel& p, const FilmFacts&) { sum += p.squared_error() - p.var; }
     double value(const FilmFacts& f) const {
         return f.n < 2 ? std::numeric_limits<double>::quiet_NaN() : sum / f.pixels;
     }

@@ -14,7 +14,7 @@ struct RelMseMetric {
     static constexpr double epsilon = 0.01;  // [Y]^2
     double sum = 0;
     void add(const FilmPixel& p, const FilmFacts&) {
-        sum += p.difference() * p.difference() / (p.reference * p.reference + epsilon);
+        sum += p.squared_error() / (p.reference * p.reference + epsilon);
     }
     double value(const FilmFacts& f) const { return sum / f.pixels; }
 };

@@ -11,7 +11,8 @@ struct RmseMetric {
     static constexpr MetricInfo info = {
         .means = "root mean square error of Y against the reference over a region", .label = "RMSE"};
     double squares = 0;
-    void add(const FilmPixel& p, const FilmFacts&) { squares += p.difference() * p.difference(); }
+    void add(const FilmPixel& p, const FilmFacts&) { squares += p.squared_error(); }
+    /// NaN below the error of a paired reference: the estimate of the squared error is negative.
     double value(const FilmFacts& f) const { return std::sqrt(squares / f.pixels); }
 };
 

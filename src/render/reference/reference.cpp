@@ -18,7 +18,7 @@ namespace {
 class Albedos {
 public:
     Albedos(const Scene& scene, const YieldToHost& yield_to_host) {
-        for (std::size_t k = 0; k < scene.shapes().size(); ++k) {
+        for (std::size_t k = 0; k < scene.shapes().size() + scene.meshes().size(); ++k) {
             Hit hit;
             hit.shape = static_cast<int>(k);
             const Surface surface = scene.surface(hit);

@@ -118,8 +118,8 @@ namespace {
 
 // Returns the surface for which the density is shown: that of the shape whose exponent is the experiment's.
 ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
-    const Shape* shape = e.shape_of_s();
-    Material material = shape ? shape->material : Material{};
+    const auto surface_of_s = e.surface_of_s();
+    Material material = surface_of_s ? e.material(*surface_of_s) : Material{};
     material.s = s;
     const Surface surface = surface_of(material, s);
     ShadingPoint<double> shading_point{};
@@ -156,8 +156,8 @@ double off_the_plane(const OpenPixel& pixel, double tilt) {
 /// none.
 std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double tilt) {
     const Scene scene = Scene(e).with_s(s);
-    const Shape* shape = e.shape_of_s();
-    const std::ptrdiff_t wanted = shape ? shape - e.shapes.data() : -1;
+    const auto surface = e.surface_of_s();
+    const std::ptrdiff_t wanted = surface ? static_cast<std::ptrdiff_t>(*surface) : -1;
     const int step =
         std::max(1, static_cast<int>(std::sqrt(e.image.width * static_cast<double>(e.image.height) / 4e3)));
     std::shared_ptr<const OpenPixel> best;

@@ -109,6 +109,7 @@ std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, boo
 std::string reference_words(const Experiment& e) {
     const ReferencePlan& r = e.reference;
     if (r.kind == ReferenceKind::quadrature) return "by quadrature, no samples";
+    if (r.kind == ReferenceKind::paired) return fmt::format("two estimates, {} spp each, seed {}", r.n, r.seed);
     return fmt::format("lobe {} spp, lights {} spp, seed {}", r.lobe_spp, r.disk_spp, r.seed);
 }
 
@@ -161,7 +162,7 @@ std::string stream_words(const std::vector<RunKey>& runs) {
 }
 
 std::string reference_stream(const Experiment& e) {
-    return e.reference.kind == ReferenceKind::note ? fmt::format("seed {}", e.reference.seed) : "";
+    return e.reference.kind != ReferenceKind::quadrature ? fmt::format("seed {}", e.reference.seed) : "";
 }
 
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream) {

@@ -1,0 +1,176 @@
+// crescent import: starts crescent-import, which reads a model by assimp in a process of its own, checks the mesh that
+// it wrote, and prints the tables of an experiment for it. A model that the importer dies of is an error of the input.
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "commands.h"
+
+namespace crescent::cli {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* importer_name = "crescent-import";
+constexpr std::size_t longest_description = std::size_t{1} << 20;
+
+/// The importer beside this program, else the one in PATH.
+std::string importer() {
+    std::error_code unknown;
+    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", unknown);
+    const std::filesystem::path beside = own.parent_path() / importer_name;
+    if (!unknown && std::filesystem::exists(beside, unknown)) return beside.string();
+    const char* path = std::getenv("PATH");
+    for (std::string_view rest = path ? path : ""; !rest.empty();) {
+        const std::size_t end = std::min(rest.find(':'), rest.size());
+        const std::filesystem::path file = std::filesystem::path(rest.substr(0, end)) / importer_name;
+        if (std::filesystem::exists(file, unknown)) return file.string();
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    throw OutputError(
+        "this build cannot import models: it was made without assimp (Debian: libassimp-dev); `crescent run` needs "
+        "none");
+}
+
+[[noreturn]] void refuse(const std::string& file, const std::string& message) {
+    throw InputError({file, 0, 0}, message);
+}
+
+/// What the importer found.
+struct Imported {
+    std::string mesh;  // bytes of the file
+    Json description;
+};
+
+std::string contents_of_descriptor(int file) {
+    std::string out;
+    const off_t size = ::lseek(file, 0, SEEK_END);
+    if (size <= 0 || ::lseek(file, 0, SEEK_SET) != 0) return out;
+    out.resize(static_cast<std::size_t>(size));
+    std::size_t done = 0;
+    while (done < out.size()) {
+        const ssize_t n = ::read(file, out.data() + done, out.size() - done);
+        if (n <= 0) return {};
+        done += static_cast<std::size_t>(n);
+    }
+    return out;
+}
+
+Imported import_model(const ImportFlags& flags) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> mesh(std::tmpfile(), &std::fclose);
+    if (!mesh) throw OutputError("cannot create a temporary file for the mesh");
+    ProcessPlan plan{.argv = {importer_name, flags.file, std::to_string(flags.memory_mib),
+                         fmt::format("{}", std::ceil(flags.timeout))}};
+    if (!flags.material.empty()) plan.argv.push_back(flags.material);
+    plan.file = importer(), plan.stdin_file = plan.stderr_file = "/dev/null", plan.shared = ::fileno(mesh.get());
+    Process process(plan);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto left_ms = [&] {
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+        return static_cast<int>(std::min(1e3 * (flags.timeout - spent.count()), 1e9));
+    };
+    std::string text;
+    std::optional<ProcessEnd> end;
+    for (;;) {
+        if (left_ms() <= 0)
+            refuse(flags.file, fmt::format("the importer takes more than {} s (--timeout)", flags.timeout));
+        char part[4096];
+        if (!process.wait_ready(false, true, std::min(left_ms(), 100)).output) continue;
+        const ssize_t n = process.read(part, sizeof part);
+        if (n == 0) break;
+        if (n > 0) text.append(part, static_cast<std::size_t>(n));
+        if (text.size() > longest_description) break;
+    }
+    end = process.ended(std::max(left_ms(), 0));
+    if (!end) refuse(flags.file, fmt::format("the importer takes more than {} s (--timeout)", flags.timeout));
+    Json description = Json::parse(text, nullptr, false);
+    if (description.is_object() && description.contains("error") && description["error"].is_string())
+        refuse(
+            flags.file, fmt::format("expected a model that assimp reads: {}", description["error"].get<std::string>()));
+    if (!end->well() || !description.is_object())
+        refuse(flags.file, fmt::format("expected a model that assimp reads; the importer ended with {}", end->text()));
+    return {contents_of_descriptor(plan.shared), std::move(description)};
+}
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::string table_name(const std::string& out) {
+    std::string name = std::filesystem::path(out).stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    if (name.empty() || name[0] == '-') name = "mesh" + name;
+    return name.substr(0, 64);
+}
+
+std::string point(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+
+/// A camera that sees a ball around the box, from above and the side.
+std::string camera_for(const Bounds& box) {
+    constexpr double half_view = 20;  // degrees
+    const Vec3d low = widen(box.low), high = widen(box.high), middle = 0.5 * (low + high);
+    const double radius = 0.5 * std::sqrt(dot(high - low, high - low));
+    const Vec3d towards = normalize(Vec3d{0.5, 0.4, 1});
+    return fmt::format("[camera]\neye = {}\ntarget = {}\nvfov_deg = {}\n",
+        point(middle + (1.05 * radius / math::sin(half_view * pi / 180)) * towards), point(middle), 2 * half_view);
+}
+
+std::string rho_d_of(const Json& description, const std::string& material) {
+    Rgb rho = {0.5, 0.5, 0.5};
+    for (const Json& one : description.value("materials", Json::array()))
+        if (one.value("name", "") == material || (material.empty() && description["materials"].size() == 1))
+            for (std::size_t c = 0; c < 3; ++c) rho[c] = std::clamp(one["rho_d"][c].get<double>(), 0.0, 1.0);
+    return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", rho[0], rho[1], rho[2]);
+}
+
+}  // namespace
+
+int import(const ImportFlags& flags) {
+    const std::string extension = lower(std::filesystem::path(flags.file).extension().string());
+    const std::vector<std::string> known = {".obj", ".ply", ".glb", ".gltf", ".stl"};
+    if (std::ranges::find(known, extension) == known.end())
+        refuse(flags.file, "expected a model with the extension .obj, .ply, .glb, .gltf or .stl");
+    if (!flags.out.ends_with(".mesh")) refuse(flags.out, "expected a name that ends with .mesh (--out)");
+    if (std::error_code unknown; !std::filesystem::is_regular_file(flags.file, unknown))
+        refuse(flags.file, "expected a file that can be read");
+    can_write(flags.out);
+    const Imported imported = import_model(flags);
+    const auto pack = read_mesh(imported.mesh, flags.file);
+    write_whole(flags.out, imported.mesh);
+
+    const Mesh& mesh = pack->mesh;
+    const Bounds box = mesh.bounds();
+    std::string out = fmt::format("# {}: {} triangles, {} vertices, hash {:016x}\n", flags.out, mesh.triangles.size(),
+        mesh.positions.size(), pack->hash);
+    out += fmt::format("# box {} to {}\n", point(widen(box.low)), point(widen(box.high)));
+    out += fmt::format("# normals: {}; texture coordinates: {}\n", mesh.normals.empty() ? "of the triangles" : "smooth",
+        mesh.uv.empty() ? "none" : "one set");
+    if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);
+    if (pack->duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", pack->duplicate);
+    const Json materials = imported.description.value("materials", Json::array());
+    for (const Json& material : materials)
+        out += fmt::format("# material '{}': {} triangles{}{}\n", material.value("name", ""),
+            material.value("triangles", 0),
+            material.contains("texture") ? ", texture " + material.value("texture", "") : "",
+            materials.size() > 1 && flags.material.empty() ? " (alone: --material NAME)" : "");
+    out += "\n" + camera_for(box);
+    out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name(flags.out),
+        std::filesystem::path(flags.out).filename().string(), rho_d_of(imported.description, flags.material));
+    print(out);
+    return held;
+}
+
+}  // namespace crescent::cli

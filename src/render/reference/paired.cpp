@@ -1,0 +1,81 @@
+// The estimates are those of a declared combination with other random numbers, in scalar code, so their bits are the
+// same on every instruction set.
+#include "render/reference/paired.h"
+
+#include <cmath>
+
+#include "math/sobol.h"
+#include "render/combination.h"
+#include "render/estimator.h"
+#include "render/reference/reference.h"
+#include "scene/lobes/all.h"
+
+namespace crescent::inline reference {
+
+namespace {
+
+/// What draws at these points.
+Combination combination_for(const ShadingPoints& points) {
+    CombinationPlan plan;
+    plan.kind = CombinationKind::mis;
+    plan.of = {"cosine"};
+    if (points.lobe >= 0) plan.of.emplace_back(lobe_info(static_cast<LobeKind>(points.lobe)).own_arm);
+    if (points.light_count() > 0) plan.of.emplace_back("light-solid-angle");
+    if (points.around && points.around->sky) plan.of.emplace_back("sky");
+    if (points.around && points.around->triangles) plan.of.emplace_back("light-triangle");
+    Techniques of;
+    for (const std::string& name : plan.of) of.push_back(built_in_technique(name));
+    return {"paired", plan, std::move(of), nullptr, {}, {}};
+}
+
+/// Estimates every point of a group once.
+Moments estimate(const ShadingPoints& points, const Combination& combination, std::uint64_t n, std::uint32_t seed,
+    const std::atomic<bool>* stop) {
+    std::array<Moments, 1> moments;
+    moments[0].resize(points);
+    std::vector<std::byte> memory(points.kernel_memory());
+    const std::array<std::uint64_t, 1> counts = {n};
+    const KernelCall call{&points, counts, seed, moments, stop, nullptr, memory.data()};
+    estimate_combination(combination, call, [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
+        constexpr std::uint32_t salt = 0x50b01;  // the hashes of films have small numbers of pairs here
+        const auto scramble = simd::pcg4d(simd::Vec4u<std::uint32_t>{pixel, block, seed, salt});
+        return math::scrambled_sobol(static_cast<std::uint32_t>(sample), scramble);
+    });
+    return std::move(moments[0]);
+}
+
+void write(const TiledScene& view, const ShadingPoints& points, const PairedPlan& plan, const std::atomic<bool>* stop,
+    ReferenceFilm& film) {
+    const Combination combination = combination_for(points);
+    const std::array both = {estimate(points, combination, plan.n, plan.seeds[0], stop),
+        estimate(points, combination, plan.n, plan.seeds[1], stop)};
+    for (std::size_t i = 0; i < points.count; ++i) {
+        const Rgb first = mean_radiance(view.scene(), points, both[0], plan.n, i),
+                  second = mean_radiance(view.scene(), points, both[1], plan.n, i);
+        Rgb mean{};
+        for (std::size_t c = 0; c < 3; ++c) mean[c] = 0.5 * (first[c] + second[c]);
+        store_pixel(film, points.pixel[i], mean, 0.5 * std::fabs(luminance(first) - luminance(second)));
+    }
+}
+
+}  // namespace
+
+std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views, const PairedPlan& plan,
+    ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
+    std::vector<double> exponents;
+    for (const TiledScene& view : views) exponents.push_back(view.scene().s());
+    return by_tiles(views.at(0).scene().image(), exponents, monitor, checkpoint,
+        [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
+            for (std::size_t e = 0; e < views.size(); ++e) {
+                const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
+                for (const ShadingPoints& points : *groups) {
+                    if (e == 0 || points.lobe >= 0) write(views[e], points, plan, &monitor.stop, films[e]);
+                    else
+                        for (std::size_t i = 0; i < points.count; ++i)
+                            copy_pixel(films[0], films[e], points.pixel[i]);
+                }
+            }
+        });
+}
+
+}  // namespace crescent::inline reference

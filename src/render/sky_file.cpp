@@ -1,0 +1,124 @@
+// Rows are read into one interleaved array, converted to float by OpenEXR, on this thread.
+#include "render/sky_file.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "base/errors.h"
+
+namespace crescent::inline render {
+
+namespace {
+
+/// Returns the names of the channels that become r, g and b.
+std::array<std::string, 3> channels_of(const Imf::Header& header, const std::string& path) {
+    const Imf::ChannelList& channels = header.channels();
+    std::array<std::string, 3> names = {"R", "G", "B"};
+    if (!channels.findChannel("R") && channels.findChannel("Y")) names = {"Y", "Y", "Y"};
+    for (const std::string& name : names) {
+        const Imf::Channel* channel = channels.findChannel(name);
+        if (!channel)
+            throw InputError({path, 0, 0},
+                fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part", name));
+        if (channel->xSampling != 1 || channel->ySampling != 1)
+            throw InputError({path, 0, 0}, fmt::format("expected a sample of '{}' for every pixel", name));
+    }
+    return names;
+}
+
+/// The size from the header, before anything else is read.
+std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path) {
+    const auto side = [](int low, int high) { return std::int64_t{high} - low + 1; };
+    const std::int64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+    if (width < 2 || width > widest_sky || width != 2 * height)
+        throw InputError({path, 0, 0},
+            fmt::format("expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} "
+                        "x {}",
+                widest_sky, highest_sky, width, height));
+    return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+std::uint64_t hash_of(int width, int height, const std::vector<float>& rgb) {
+    const std::uint32_t size[2] = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    return XXH3_64bits_withSeed(rgb.data(), rgb.size() * sizeof(float), XXH3_64bits(size, sizeof size));
+}
+
+std::shared_ptr<const SkyImage> read(const std::string& path) {
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    const Imf::Header& header = file.header(0);
+    if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
+        throw InputError({path, 0, 0}, "expected a flat image, found a deep one");
+    const Imath::Box2i window = header.dataWindow();
+    const auto [width, height] = size_of(window, path);
+    const std::array<std::string, 3> names = channels_of(header, path);
+    std::vector<float> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    Imf::InputPart part(file, 0);
+    constexpr std::size_t pixel = 3 * sizeof(float);
+    const std::size_t row = pixel * static_cast<std::size_t>(width);
+    char* const origin = reinterpret_cast<char*>(rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
+        static_cast<std::ptrdiff_t>(row) * window.min.y;
+    Imf::FrameBuffer buffer;
+    const bool grey = names[0] == names[1];
+    for (std::size_t c = 0; c < (grey ? 1 : 3); ++c)
+        buffer.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), pixel, row));
+    part.setFrameBuffer(buffer);
+    part.readPixels(window.min.y, window.max.y);
+    for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
+    return sky_image(width, height, std::move(rgb));
+}
+
+}  // namespace
+
+std::shared_ptr<const SkyImage> sky_image(int width, int height, std::vector<float> rgb) {
+    auto out = std::make_shared<SkyImage>();
+    out->hash = hash_of(width, height, rgb);
+    out->width = width, out->height = height, out->rgb = std::move(rgb);
+    return out;
+}
+
+std::shared_ptr<const SkyImage> read_sky(const std::string& path) {
+    errno = 0;
+    if (!std::ifstream(path, std::ios::binary))
+        throw InputError({path, 0, 0},
+            fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
+    try {
+        return read(path);
+    } catch (const InputError&) { throw; } catch (const std::exception& error) {
+        throw InputError({path, 0, 0}, fmt::format("expected an OpenEXR image: {}", error.what()));
+    }
+}
+
+void write_sky(const std::string& path, const SkyImage& image) {
+    try {
+        Imf::Header header(image.width, image.height);
+        Imf::FrameBuffer buffer;
+        constexpr std::size_t pixel = 3 * sizeof(float);
+        const float* const first = image.rgb.data();
+        const char* names[] = {"R", "G", "B"};
+        for (std::size_t c = 0; c < 3; ++c) {
+            header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+            char* at = reinterpret_cast<char*>(const_cast<float*>(first + c));
+            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, at, pixel, pixel * static_cast<std::size_t>(image.width)));
+        }
+        Imf::OutputFile file(path.c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(image.height);
+    } catch (const std::exception& error) { throw OutputError("cannot write " + path + ": " + error.what()); }
+}
+
+std::string content_hash(const SkyImage& image) { return fmt::format("{:016x}", image.hash); }
+
+}  // namespace crescent::inline render

@@ -1,0 +1,68 @@
+// light-triangle: next-event estimation towards the emitting triangles of meshes, a triangle by its power.
+//   A triangle with the probability of Y(L_k) A_k, chosen by u1, then a point uniform over it: with u1 stretched,
+//   y = c0 + sqrt(u1) (1 - u2) (c1 - c0) + sqrt(u1) u2 (c2 - c0). So p_A = Y(L_k) / sum of Y(L) A, and
+//   p = p_A |y - x|^2 / cos(light), summed over all triangles that the direction meets. Fronts emit; a triangle whose
+//   front does not face x gives nothing.
+// It reaches only these triangles: under other light it is biased, unless another technique adds that. Shirley, Wang &
+// Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations".
+#pragma once
+
+#include "math/simd/lanes.h"
+#include "samplers/sampler.h"
+
+namespace crescent::inline samplers {
+
+template <class F> struct LightTriangle {
+    static constexpr std::string_view name = "light-triangle";
+    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "triangles"},
+        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "triangles"},
+        {.lambert = true, .light = "fill + triangles"}};
+    static constexpr SamplerDoc manual = {.label = name,
+        .summary = "next-event estimation: a point of an emitting triangle, by power and even over its area",
+        .formula = R"(\frac{L\lvert y-x\rvert^2}{\Phi\cos\theta_y})",
+        .draw = R"(a triangle by its power $LA$, then even over its area; $\Phi$ is the sum of all powers)",
+        .axis = "the triangle",
+        .misses = light_arm_misses,
+        .reaches = {.fill = false, .lights = false, .sky = false},
+        .check_cases = check_cases};
+    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+
+    const Surroundings* around;
+    Vec3<F> position;
+    Frame<F> frame;
+
+    explicit LightTriangle(const ShadingPoint<F>& shading_point)
+        : around(shading_point.around), position(shading_point.position), frame(shading_point.frame) {}
+
+    [[gnu::noinline]] DrawnToTriangle<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
+        const F zero = number<F>(0);
+        if (!around) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_triangle)};
+        using Scalar = typename LaneArray<F>::Scalar;
+        const LaneArray<F> ux(u.x), uy(u.y), px(position.x), py(position.y), pz(position.z);
+        LaneArray<F> x, y, z, p;
+        LaneIntegers<F> triangle;
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
+            const TriangleDraw drawn = sample_triangles(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
+                double(ux.at[l]), double(uy.at[l]));
+            x.at[l] = static_cast<Scalar>(drawn.w.x), y.at[l] = static_cast<Scalar>(drawn.w.y);
+            z.at[l] = static_cast<Scalar>(drawn.w.z), p.at[l] = static_cast<Scalar>(drawn.pdf);
+            triangle.at[l] = drawn.triangle;
+        }
+        return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, triangle.pack()};
+    }
+
+    [[gnu::noinline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+        if (!around) return {number<F>(0)};
+        using Scalar = typename LaneArray<F>::Scalar;
+        const Vec3<F> d = frame.to_world(wi);
+        const LaneArray<F> x(d.x), y(d.y), z(d.z), px(position.x), py(position.y), pz(position.z);
+        LaneArray<F> p;
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l)
+            p.at[l] =
+                static_cast<Scalar>(triangles_pdf(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
+                    {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+        return {p.pack()};
+    }
+};
+
+}  // namespace crescent::inline samplers

@@ -1,0 +1,64 @@
+// sky: a direction of an image sky, by its luminance.
+//   A texel with the probability of its mass Y(L) dw, where dw = 2 pi / width (cos theta_r - cos theta_(r+1)) is its
+//   exact solid angle: u1 chooses a row, u2 a column of it, and what is left of both a direction, uniform in solid angle
+//   within the texel. So p = Y(L) / sum of Y(L) dw over all texels, over the whole sphere: half of a bright horizon is
+//   below the surface, where samples have weight 0.
+// It reaches only the sky: under a fill it is biased by the fill, and by the lights, unless another technique adds them.
+// Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", 12.5, without its interpolation. A scene without a sky
+// has no such direction: nothing is drawn.
+#pragma once
+
+#include "math/simd/lanes.h"
+#include "samplers/sampler.h"
+
+namespace crescent::inline samplers {
+
+template <class F> struct SkyByTexel {
+    static constexpr std::string_view name = "sky";
+    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "sky"},
+        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "sky"}};
+    static constexpr SamplerDoc manual = {.label = name,
+        .summary = "a direction of the image sky, by the luminance of its texels",
+        .formula = R"(\frac{L_\omega}{\Phi})",
+        .draw = R"(a texel by its mass $L_\omega\Delta\omega$, then even over its solid angle; $\Phi$ is the sum of all)",
+        .axis = "the sky",
+        .misses = light_arm_misses,
+        .reaches = {.fill = false, .lights = false, .triangles = false},
+        .check_cases = check_cases};
+    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+
+    const Surroundings* around;
+    Frame<F> frame;
+
+    explicit SkyByTexel(const ShadingPoint<F>& shading_point) : around(shading_point.around), frame(shading_point.frame) {}
+
+    [[gnu::noinline]] DrawnToSky<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
+        const F zero = number<F>(0);
+        if (!around) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_texel)};
+        using Scalar = typename LaneArray<F>::Scalar;
+        const LaneArray<F> ux(u.x), uy(u.y);
+        LaneArray<F> x, y, z, p;
+        LaneIntegers<F> texel;
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
+            const SkyDraw drawn = sample_sky(*around, double(ux.at[l]), double(uy.at[l]));
+            x.at[l] = static_cast<Scalar>(drawn.w.x), y.at[l] = static_cast<Scalar>(drawn.w.y);
+            z.at[l] = static_cast<Scalar>(drawn.w.z), p.at[l] = static_cast<Scalar>(drawn.pdf);
+            texel.at[l] = drawn.texel;
+        }
+        return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, texel.pack()};
+    }
+
+    [[gnu::noinline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+        if (!around) return {number<F>(0)};
+        using Scalar = typename LaneArray<F>::Scalar;
+        const Vec3<F> d = frame.to_world(wi);
+        const LaneArray<F> x(d.x), y(d.y), z(d.z);
+        LaneArray<F> p;
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l)
+            p.at[l] = static_cast<Scalar>(sky_pdf(*around,
+                {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+        return {p.pack()};
+    }
+};
+
+}  // namespace crescent::inline samplers

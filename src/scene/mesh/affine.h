@@ -1,0 +1,53 @@
+// Affine transforms of space: where an instance of a mesh is placed. Double precision; lengths in m, angles in degrees.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/vec.h"
+#include "math/functions.h"
+
+namespace crescent::inline scene {
+
+/// p -> p.x x + p.y y + p.z z + at.
+struct Affine {
+    Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, at{0, 0, 0};
+
+    Vec3d vector(Vec3d v) const { return v.x * x + v.y * y + v.z * z; }
+    Vec3d point(Vec3d p) const { return vector(p) + at; }
+    /// Returns the image of a plane's normal, not of unit length: the cofactors, which keep its side for det() > 0.
+    Vec3d normal(Vec3d n) const { return n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y); }
+    double det() const { return dot(x, cross(y, z)); }
+    /// Returns the transform that applies `inner` first.
+    Affine after(const Affine& inner) const {
+        return {vector(inner.x), vector(inner.y), vector(inner.z), point(inner.at)};
+    }
+    /// Needs det() != 0.
+    Affine inverse() const {
+        const double scale = 1 / det();
+        const Vec3d r0 = scale * cross(y, z), r1 = scale * cross(z, x), r2 = scale * cross(x, y);
+        Affine out = {{r0.x, r1.x, r2.x}, {r0.y, r1.y, r2.y}, {r0.z, r1.z, r2.z}, {}};
+        out.at = -out.vector(at);
+        return out;
+    }
+    /// Returns an upper bound of the length of the image of a unit vector: the Frobenius norm.
+    double stretch() const { return std::sqrt(dot(x, x) + dot(y, y) + dot(z, z)); }
+};
+
+/// Returns the translation by `to`.
+inline Affine translation(Vec3d to) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, to}; }
+/// Returns the scaling of each axis.
+inline Affine scaling(Vec3d by) { return {{by.x, 0, 0}, {0, by.y, 0}, {0, 0, by.z}, {}}; }
+/// Returns the rotation about the x axis, then the y axis, then the z axis, counterclockwise seen from each axis' end.
+inline Affine rotation(Vec3d degrees) {
+    const auto of = [](double angle) { return math::sincos(angle * (3.14159265358979323846 / 180)); };
+    const auto [sx, cx] = of(degrees.x);
+    const auto [sy, cy] = of(degrees.y);
+    const auto [sz, cz] = of(degrees.z);
+    const Affine about_x = {{1, 0, 0}, {0, cx, sx}, {0, -sx, cx}, {}},
+                 about_y = {{cy, 0, -sy}, {0, 1, 0}, {sy, 0, cy}, {}},
+                 about_z = {{cz, sz, 0}, {-sz, cz, 0}, {0, 0, 1}, {}};
+    return about_z.after(about_y.after(about_x));
+}
+
+}  // namespace crescent::inline scene

@@ -1,0 +1,191 @@
+// Traversal and the two tests. The errors of the watertight test, with u = 2^-24, all coordinates of the mesh at most 1
+// and those of the origin at most r, so that a corner relative to the origin is at most R = r + 1 along each axis:
+//
+//   corner - origin                   u R        sheared x = fl(A_x - fl(S_x A_z)), |S_x| <= 1
+//   S_x = fl(d_x / d_z), times A_z    u R
+//   error of A_z, times S_x           u R
+//   product                           u R
+//   difference, at most 2 R           2 u R
+//
+// together 6 u R along each of the two sheared axes. The sign of an edge function fl(fl(a b) - fl(c d)) is right or the
+// function is 0, since rounding is monotone, and 0 counts as inside for both triangles of an edge. So a ray that meets
+// the surface whose corners are moved by at most 6 u R hits a triangle, and no ray passes between two triangles. Boxes
+// are widened by e = 8 u R: 6 u R, and the rounding of o + e and o - e.
+#include "scene/mesh/bvh.h"
+
+#include <utility>
+
+#include "scene/mesh/bvh_tree.h"
+
+namespace crescent::inline scene {
+
+namespace {
+
+/// Four triangles, by axis, corner and triangle.
+struct alignas(16) Block {
+    std::array<std::array<std::array<float, group>, 3>, 3> corner;
+    Leaf triangle;
+};
+
+/// A ray as triangles are tested with: sheared so that it runs along its longest axis z.
+struct TriangleRay {
+    std::size_t kx, ky, kz;
+    float ox, oy, oz, sx, sy, sz;
+
+    TriangleRay(Vec3f o, Vec3f d) {
+        const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
+        kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+        kx = (kz + 1) % 3, ky = (kz + 2) % 3;
+        const float along = axis_of(d, kz);
+        if (along < 0) std::swap(kx, ky);
+        ox = axis_of(o, kx), oy = axis_of(o, ky), oz = axis_of(o, kz);
+        sx = axis_of(d, kx) / along, sy = axis_of(d, ky) / along, sz = 1 / along;
+    }
+
+    struct Hits {
+        unsigned met;
+        F4 t, u, v;
+    };
+    /// Returns which triangles of a block are met at 0 < t < t_max.
+    Hits hits(const Block& block, float t_max) const {
+        const auto corner = [&](std::size_t k) {
+            const F4 z = std::bit_cast<F4>(block.corner[kz][k]) - all4(oz);
+            const F4 x = (std::bit_cast<F4>(block.corner[kx][k]) - all4(ox)) - all4(sx) * z;
+            const F4 y = (std::bit_cast<F4>(block.corner[ky][k]) - all4(oy)) - all4(sy) * z;
+            return std::array{x, y, all4(sz) * z};
+        };
+        const auto [ax, ay, az] = corner(0);
+        const auto [bx, by, bz] = corner(1);
+        const auto [cx, cy, cz] = corner(2);
+        const F4 u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
+        const F4 low = least(u, least(v, w)), high = most(u, most(v, w)), det = (u + v) + w;
+        const F4 zero = all4(0);
+        const I4 inside = ((low >= zero) | (high <= zero)) & (det != zero);
+        if (bits_of(inside) == 0) return {0, zero, zero, zero};
+        const F4 t = ((u * az + v * bz) + w * cz) / det;
+        return {bits_of(inside & (t > zero) & (t < all4(t_max))), t, v / det, w / det};
+    }
+};
+
+/// Returns the box of a triangle in a block.
+Bounds box_of(const Block& block, std::size_t lane) {
+    Bounds box;
+    for (std::size_t k = 0; k < 3; ++k)
+        box.add(Vec3f{block.corner[0][k][lane], block.corner[1][k][lane], block.corner[2][k][lane]});
+    return box;
+}
+
+/// Returns the t of a triangle that the watertight test accepts: infinity if its box is not met or t is not below
+/// t_max.
+float t_in_box(const Block& block, std::size_t lane, float t, const BoxRay& boxes, float t_max) {
+    const float at = std::fmax(t, boxes.enters(box_of(block, lane), t_max));
+    return at < t_max ? at : infinity;
+}
+
+/// Takes a triangle of a block that is nearer, or as near with a lower index.
+void take(const Block& block, const BoxRay& boxes, const TriangleRay& ray, float t_max, TriangleHit& best) {
+    const auto hits = ray.hits(block, t_max);
+    for (unsigned met = hits.met; met; met &= met - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+        const float t = t_in_box(block, lane, hits.t[lane], boxes, t_max);
+        if (t < best.t || (t == best.t && t < infinity && block.triangle[lane] < best.triangle))
+            best = {t, block.triangle[lane], hits.u[lane], hits.v[lane]};
+    }
+}
+
+}  // namespace
+
+struct Bvh::Made {
+    HugeVector<BvhNode> nodes;
+    HugeVector<Block> blocks;
+
+    void fetch(std::size_t block) const {
+        const char* at = reinterpret_cast<const char*>(&blocks[block]);
+        for (const std::size_t line : {0, 64, 128}) __builtin_prefetch(at + line);
+    }
+};
+
+Bvh::Bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+    Bounds whole;
+    for (const Triangle& t : triangles)
+        for (const std::uint32_t k : t) whole.add(positions[k]);
+    if (triangles.empty()) return;
+    center_ = 0.5f * whole.low + 0.5f * whole.high;
+    const float half = std::fmax(largest_of(whole.low - center_), largest_of(whole.high - center_));
+    int exponent = 0;
+    if (half > 0) std::frexp(half, &exponent), scale_ = std::ldexp(1.0f, exponent);
+    const auto local = [&](std::uint32_t k) {
+        const Vec3f p = positions[k] - center_;
+        return Vec3f{p.x / scale_, p.y / scale_, p.z / scale_};
+    };
+    std::vector<Bounds> boxes(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        for (const std::uint32_t k : triangles[i]) boxes[i].add(local(k));
+    for (const Bounds& b : boxes) bounds_.add(b);
+    auto made = std::make_shared<Made>();
+    BvhTree tree = build_tree(boxes);
+    made->nodes = std::move(tree.nodes);
+    made->blocks.resize(tree.leaves.size());
+    for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
+        const Leaf& leaf = tree.leaves[i];
+        Block& block = made->blocks[i];
+        block.triangle = leaf;
+        for (std::size_t lane = 0; lane < group; ++lane)
+            for (std::size_t k = 0; k < 3; ++k) {
+                // An absent triangle is a point, whose edge functions are 0: never hit.
+                const Vec3f p = leaf[lane] == no_item ? Vec3f{} : local(triangles[leaf[lane]][k]);
+                for (std::size_t axis = 0; axis < 3; ++axis) block.corner[axis][k][lane] = axis_of(p, axis);
+            }
+    }
+    made_ = std::move(made);
+}
+
+bool Bvh::occluded(Vec3f o, Vec3f d, float t_max) const {
+    if (!made_) return false;
+    const BoxRay boxes(o, d, error(largest_of(o)));
+    const TriangleRay ray(o, d);
+    const auto hides = [&](std::size_t leaf) {
+        const Block& block = made_->blocks[leaf];
+        const auto hits = ray.hits(block, t_max);
+        for (unsigned met = hits.met; met; met &= met - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+            if (t_in_box(block, lane, hits.t[lane], boxes, t_max) < infinity) return true;
+        }
+        return false;
+    };
+    return visit_leaves(made_->nodes, boxes, t_max, hides, [&](std::size_t leaf) { made_->fetch(leaf); });
+}
+
+void Bvh::closest(Vec3f o, Vec3f d, float t_max, TriangleHit& best) const {
+    if (!made_) return;
+    const BoxRay boxes(o, d, error(largest_of(o)));
+    const TriangleRay ray(o, d);
+    float nearest = std::fmin(t_max, best.t);
+    visit_leaves(
+        made_->nodes, boxes, nearest,
+        [&](std::size_t leaf) {
+            take(made_->blocks[leaf], boxes, ray, t_max, best);
+            nearest = std::fmin(nearest, best.t);
+            return false;
+        },
+        [&](std::size_t leaf) { made_->fetch(leaf); });
+}
+
+TriangleHit Bvh::closest(Vec3f o, Vec3f d, float t_max) const {
+    TriangleHit best;
+    closest(o, d, t_max, best);
+    return best;
+}
+
+TriangleHit Bvh::closest_of_all(Vec3f o, Vec3f d, float t_max) const {
+    TriangleHit best;
+    for (std::size_t i = 0; made_ && i < made_->blocks.size(); ++i)
+        take(made_->blocks[i], BoxRay(o, d, error(largest_of(o))), TriangleRay(o, d), t_max, best);
+    return best;
+}
+
+std::size_t Bvh::bytes() const {
+    return made_ ? made_->nodes.size() * sizeof(BvhNode) + made_->blocks.size() * sizeof(Block) : 0;
+}
+
+}  // namespace crescent::inline scene

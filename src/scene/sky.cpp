@@ -1,0 +1,109 @@
+// The elevation of a direction is kept as h = 1 - |cos theta|, which does not lose the rows near the poles. Sums in
+// double, row by row. A row or a texel without mass has an empty interval and is never drawn; one with less than 2^-24
+// of its row's mass may never be drawn either.
+#include "scene/sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "math/simd/scalar.h"
+
+namespace crescent::inline scene {
+
+std::string why_no_sky(const SkyImage& image, double scale) {
+    if (image.width < 2 || image.height < 1 || image.width != 2 * image.height || image.width > widest_sky)
+        return fmt::format("expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found "
+                           "{} x {}",
+            widest_sky, highest_sky, image.width, image.height);
+    bool light = false;
+    for (std::size_t k = 0; k < image.rgb.size(); ++k) {
+        const float x = image.rgb[k];
+        const double scaled = scale * double(x);
+        light = light || scaled > 0;
+        if (x >= 0 && scaled <= brightest_sky) continue;
+        const std::size_t texel = k / 3, width = static_cast<std::size_t>(image.width);
+        return fmt::format("texel ({}, {}), counted from the top-left: expected a radiance from 0 to {:g}, found {}",
+            texel % width, texel / width, brightest_sky, scaled);
+    }
+    return light ? "" : "every texel is 0: expected a sky with light";
+}
+
+SkyTable::SkyTable(const SkyLight& light)
+    : image_(light.image), scale_(light.scale), turns_(light.rotation / 360) {
+    ensure(image_ != nullptr, "the file of a sky is read before its scene is made");
+    const int high = height();
+    for (int row = 0; 2 * row <= high; ++row) edge_.push_back(2 * sqr(math::sin(pi * row / (2.0 * high))));
+    if (high % 2 == 0) edge_.back() = 1;
+    const std::size_t columns = static_cast<std::size_t>(width());
+    columns_.resize(image_->texels());
+    for (int row = 0; row < high; ++row) {
+        const std::size_t first = static_cast<std::size_t>(row) * columns;
+        double sum = 0;
+        for (std::size_t k = 0; k < columns; ++k) sum += luminance(radiance(static_cast<std::uint32_t>(first + k)));
+        double part = 0;
+        for (std::size_t k = 0; k < columns; ++k) {
+            part += luminance(radiance(static_cast<std::uint32_t>(first + k)));
+            columns_[first + k] = sum > 0 ? static_cast<float>(part / sum) : 0.0f;
+        }
+        total_ += sum * solid_angle(row);
+        rows_.push_back(total_);
+    }
+}
+
+double SkyTable::pdf(std::uint32_t texel) const { return luminance(radiance(texel)) / total_; }
+
+Rgb SkyTable::radiance(std::uint32_t texel) const {
+    const float* at = &image_->rgb[3 * std::size_t{texel}];
+    return {scale_ * double(at[0]), scale_ * double(at[1]), scale_ * double(at[2])};
+}
+
+SkyTable::RowEdges SkyTable::edges_of(int row) const {
+    const int high = height(), mirrored = high - 1 - row, upper = std::min(row, mirrored);
+    const double polar = edge_[static_cast<std::size_t>(upper)];
+    if (row == mirrored) return {polar, polar, true, false};
+    return {polar, edge_[static_cast<std::size_t>(upper) + 1], false, row > mirrored};
+}
+
+double SkyTable::solid_angle(int row) const {
+    const RowEdges at = edges_of(row);
+    return 2 * pi / width() * (at.across ? 2 * (1 - at.polar) : at.equatorial - at.polar);
+}
+
+SkyDraw SkyTable::sample(double u, double v) const {
+    const auto found = std::upper_bound(rows_.begin(), rows_.end() - 1, u * total_);
+    const auto row = static_cast<std::size_t>(found - rows_.begin());
+    const auto inside = [](double x, double low, double high) {
+        const double part = high > low ? (x - low) / (high - low) : 0.5;
+        return std::clamp(part, 0.0, 1.0);
+    };
+    const double down = inside(u * total_, row > 0 ? rows_[row - 1] : 0, rows_[row]);
+    const std::size_t columns = static_cast<std::size_t>(width());
+    const float* const first = &columns_[row * columns];
+    const auto column = static_cast<std::size_t>(std::upper_bound(first, first + columns - 1, v) - first);
+    const double along = inside(v, column > 0 ? double(first[column - 1]) : 0, double(first[column]));
+    const RowEdges at = edges_of(static_cast<int>(row));
+    double h, y;
+    if (at.across) y = (1 - at.polar) * (1 - 2 * down), h = 1 - std::fabs(y);
+    else h = at.polar + (at.equatorial - at.polar) * (at.below ? 1 - down : down), y = at.below ? h - 1 : 1 - h;
+    const double across = std::sqrt(h * (2 - h));
+    const math::SinCos phi = math::sincos(2 * pi * ((static_cast<double>(column) + along) / width() - turns_));
+    const auto texel = static_cast<std::uint32_t>(row * columns + column);
+    return {{across * phi.sin, y, -across * phi.cos}, texel, pdf(texel)};
+}
+
+std::uint32_t SkyTable::texel_at(Vec3d w) const {
+    const double across2 = w.x * w.x + w.z * w.z, size = std::sqrt(across2 + w.y * w.y);
+    const double h = across2 / (size * (size + std::fabs(w.y)));
+    const int last = (height() - 1) / 2;  // the last row that is not below the equator
+    const int upper =
+        std::min(static_cast<int>(std::upper_bound(edge_.begin(), edge_.end(), h) - edge_.begin()) - 1, last);
+    const int row = w.y < 0 ? height() - 1 - upper : upper;
+    double turn = math::atan2(w.x, -w.z) / (2 * pi) + turns_;
+    turn -= std::floor(turn);
+    const int column = std::min(static_cast<int>(turn * width()), width() - 1);
+    return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(width()) + static_cast<std::uint32_t>(column);
+}
+
+}  // namespace crescent::inline scene

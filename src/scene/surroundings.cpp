@@ -1,0 +1,70 @@
+// The ends of a ray count as in the kernels: what is within a relative 1e-5 of a light does not hide it.
+#include "scene/surroundings.h"
+
+#include <algorithm>
+
+namespace crescent::inline scene {
+
+namespace {
+
+void put(const Rgb& radiance, float* rgb) {
+    for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<float>(radiance[c]);
+}
+
+}  // namespace
+
+MeshesBefore meshes_before(const Surroundings& around, Vec3f x, Vec3f d, float light, std::uint32_t aimed) {
+    constexpr float before = 1 - 1e-5f;
+    MeshesBefore out;
+    if (!around.triangles) {
+        out.hidden = around.rays.occluded(x, d, light * before);
+        return out;
+    }
+    float end = light * before;
+    if (aimed != no_triangle) {
+        out.distance = static_cast<float>(around.triangles->distance(aimed, widen(x), widen(d)));
+        if (out.distance > 0 && out.distance < light) out.triangle = aimed, end = std::min(end, out.distance * before);
+    }
+    const MeshHit hit = around.rays.closest(x, d, end);
+    if (!hit.found()) return out;
+    out.triangle = around.triangles->find(hit.instance, hit.triangle, widen(d));
+    out.distance = hit.t;
+    out.hidden = out.triangle == no_triangle;
+    return out;
+}
+
+void sky_radiance(const Surroundings& around, std::uint32_t texel, Vec3f d, float* rgb) {
+    if (around.sky) put(around.sky->radiance(texel == no_texel ? around.sky->texel_at(widen(d)) : texel), rgb);
+}
+
+void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float* rgb) {
+    put(around.triangles->triangles()[triangle].radiance, rgb);
+}
+
+bool has_sky(const Surroundings& around) { return around.sky.has_value(); }
+bool has_meshes(const Surroundings& around) { return !around.rays.empty(); }
+
+double open_radiance(const Surroundings& around, Vec3d x, Vec3d d) {
+    if (around.triangles)
+        if (const std::uint32_t k = around.triangles->nearest(x, d); k != no_triangle)
+            return luminance(around.triangles->triangles()[k].radiance);
+    return around.sky ? luminance(around.sky->radiance(around.sky->texel_at(d))) : 0;
+}
+
+SkyDraw sample_sky(const Surroundings& around, double u, double v) {
+    return around.sky ? around.sky->sample(u, v) : SkyDraw{{0, 1, 0}, no_texel, 0};
+}
+
+double sky_pdf(const Surroundings& around, Vec3d d) {
+    return around.sky ? around.sky->pdf(around.sky->texel_at(d)) : 0;
+}
+
+TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v) {
+    return around.triangles ? around.triangles->sample(x, u, v) : TriangleDraw{{0, 1, 0}, no_triangle, 0};
+}
+
+double triangles_pdf(const Surroundings& around, Vec3d x, Vec3d d) {
+    return around.triangles ? around.triangles->pdf(x, d) : 0;
+}
+
+}  // namespace crescent::inline scene

@@ -1,0 +1,107 @@
+// The tree only saves tests: a box is widened by more than the rounding errors of the test in double precision.
+#include "scene/triangle_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "base/errors.h"
+#include "scene/mesh/bvh_tree.h"
+
+namespace crescent::inline scene {
+
+TriangleLights::TriangleLights(std::vector<EmittingTriangle> triangles) : triangles_(std::move(triangles)) {
+    std::vector<Bounds> boxes;
+    double total = 0;
+    for (const EmittingTriangle& t : triangles_) {
+        Bounds box;
+        for (const Vec3d& corner : t.corner) {
+            box.add(as<float>(corner));
+            for (const double c : {corner.x, corner.y, corner.z})
+                reach_ = std::max(reach_, static_cast<float>(std::fabs(c)));
+        }
+        boxes.push_back(box);
+        const Vec3d e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0], across = cross(e1, e2);
+        sides_.push_back({t.corner[0], e1, e2, across});
+        total += luminance(t.radiance) * 0.5 * std::sqrt(dot(across, across));
+        powers_.push_back(total);
+    }
+    ensure(total > 0, "emitting triangles have power");
+    tree_ = std::make_shared<const BvhTree>(build_tree(boxes));
+}
+
+double TriangleLights::density(std::uint32_t k, double distance, Vec3d w) const {
+    const Vec3d& across = sides_[k].across;
+    const double cos = -dot(w, across) / std::sqrt(dot(across, across));
+    return cos > 0 ? luminance(triangles_[k].radiance) / powers_.back() * distance * distance / cos : 0;
+}
+
+TriangleDraw TriangleLights::sample(Vec3d x, double u, double v) const {
+    const double at = u * powers_.back();
+    const auto k =
+        static_cast<std::uint32_t>(std::upper_bound(powers_.begin(), powers_.end() - 1, at) - powers_.begin());
+    const double low = k > 0 ? powers_[k - 1] : 0;
+    const double root = std::sqrt(std::clamp((at - low) / (powers_[k] - low), 0.0, 1.0));
+    const Side& side = sides_[k];
+    const Vec3d to = side.corner + (root * (1 - v)) * side.e1 + (root * v) * side.e2 - x;
+    const double distance = std::sqrt(dot(to, to));
+    if (!(distance > 0)) return {{0, 0, 1}, no_triangle, 0};
+    const Vec3d w = (1 / distance) * to;
+    const double own = density(k, distance, w);
+    return {w, k, own > 0 ? own + pdf(x, w, k) : 0};
+}
+
+template <class Work> void TriangleLights::each_met(Vec3d x, Vec3d w, Work&& work) const {
+    const Vec3f o = as<float>(x);
+    const float far = std::max({reach_, std::fabs(o.x), std::fabs(o.y), std::fabs(o.z)});
+    const BoxRay ray(o, as<float>(w), 1e-5f * far);
+    const auto test = [&](std::size_t leaf) {
+        for (const std::uint32_t k : tree_->leaves[leaf]) {
+            if (k == no_item) break;
+            // x + t w = corner + a e1 + b e2 by Cramer's rule, times the determinant (Moeller & Trumbore 1997).
+            const Side& side = sides_[k];
+            const double det = -dot(side.across, w);
+            if (!(det > 0)) continue;  // its back
+            const Vec3d from = x - side.corner;
+            const double a = -dot(from, cross(side.e2, w)), b = dot(from, cross(side.e1, w)),
+                         t = dot(from, side.across);
+            if (a >= 0 && b >= 0 && a + b <= det && t > 0) work(k, t / det);
+        }
+        return false;
+    };
+    visit_leaves(tree_->nodes, ray, infinity, test, [](std::size_t) {});
+}
+
+double TriangleLights::pdf(Vec3d x, Vec3d w, std::uint32_t but) const {
+    double sum = 0;
+    each_met(x, w, [&](std::uint32_t k, double distance) {
+        if (k != but) sum += density(k, distance, w);
+    });
+    return sum;
+}
+
+std::uint32_t TriangleLights::nearest(Vec3d x, Vec3d w) const {
+    std::uint32_t out = no_triangle;
+    double least = std::numeric_limits<double>::infinity();
+    each_met(x, w, [&](std::uint32_t k, double distance) {
+        if (distance < least || (distance == least && k < out)) least = distance, out = k;
+    });
+    return out;
+}
+
+double TriangleLights::distance(std::uint32_t k, Vec3d x, Vec3d w) const {
+    return dot(sides_[k].across, sides_[k].corner - x) / dot(sides_[k].across, w);
+}
+
+std::uint32_t TriangleLights::find(std::uint32_t instance, std::uint32_t triangle, Vec3d d) const {
+    const auto key = [](const EmittingTriangle& t) { return std::tuple(t.instance, t.triangle); };
+    auto at = std::ranges::lower_bound(triangles_, std::tuple(instance, triangle), {}, key);
+    for (; at != triangles_.end() && key(*at) == std::tuple(instance, triangle); ++at) {
+        const auto k = static_cast<std::uint32_t>(at - triangles_.begin());
+        if (dot(sides_[k].across, d) < 0) return k;
+    }
+    return no_triangle;
+}
+
+}  // namespace crescent::inline scene

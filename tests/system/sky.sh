@@ -1,0 +1,76 @@
+#!/bin/bash
+# Image skies from files: bad ones are refused with the texel, the content and not the path is the identity, films have
+# the same bytes on every instruction set, parts of the seeds join, and other back ends and references are refused.
+. "$(dirname "$0")/common.sh"
+image() { /usr/bin/python3 "$here/sky_image.py" "$@" || die "cannot make $1"; }
+sunset='(8, 6, 4) if 0.8 * right + 0.6 * up > 0.97 else (0.3 + 0.2 * up, 0.4 + 0.2 * up, 0.6 + 0.3 * up)'
+image sunset.exr 64 "$sunset"
+
+# The scene of tiny.toml under the sky in place of the fill.
+sed -e '/^\[fill\]/,/^$/d' "$tiny" >body.toml
+experiment() { # IMAGE [MORE]
+    { cat body.toml && printf '\n[sky]\nfile = "%s"\n%s\n' "$@" "" && cat arms; } >sky.toml
+}
+printf '\n[arms.sky]\nn = [4, 16]\n\n[arms.both]\nkind = "mis"\nof = ["sky", "mixture", "light-area"]\nn = [4, 16]\n' >arms
+run() { expect "$1" "$CRESCENT" run sky.toml --quiet "${@:2}"; }
+refuses() { # WORDS [IMAGE [MORE]]
+    experiment "${2:-sunset.exr}" "${3:-}"
+    run 2 --out refused
+    grep -q -- "$1" said || die "no '$1' in: $(cat said)"
+    [ ! -e refused ] || die "a refused run writes"
+}
+
+image negative.exr 8 '(1, -1 if (x, y) == (5, 2) else 1, 1)'
+image inf.exr 8 '(inf if (x, y) == (6, 1) else 1, 1, 1)'
+image nan.exr 8 '(1, 1, nan if (x, y) == (7, 3) else 1)'
+image zero.exr 8 '(0, 0, 0)'
+image square.exr 8 '(1, 1, 1)' 8
+head -c 300 sunset.exr >cut.exr
+echo 'no image' >text.exr
+refuses 'negative.exr.*texel (5, 2)' negative.exr
+refuses 'inf.exr.*texel (6, 1)' inf.exr
+refuses 'nan.exr.*texel (7, 3)' nan.exr
+refuses 'zero.exr.*every texel is 0' zero.exr
+refuses 'square.exr.*8 x 8' square.exr
+refuses 'cut.exr.*OpenEXR' cut.exr
+refuses 'text.exr.*OpenEXR' text.exr
+refuses 'none.exr.*can be read' none.exr
+refuses 'sky.toml:.*texel' sunset.exr 'scale = 1e9'
+refuses 'content.*0123456789abcdef' sunset.exr 'content = "0123456789abcdef"'
+refuses 'hexadecimal' sunset.exr 'content = "sunset"'
+refuses 'paired' sunset.exr $'[reference]\nkind = "quadrature"'
+refuses 'reference.n' sunset.exr $'[reference]\nn = 0'
+experiment sunset.exr 'rotation = 30'
+"$CRESCENT" run sky.toml --quiet --instrument gl --out refused >printed 2>said && die "GL draws a sky"
+
+# The same bytes on every instruction set and any threads; the sampler of the sky is unbiased: its mean is the reference's.
+run 0 --isa scalar --out scalar
+run 0 --threads 1 --out best
+same_outputs scalar best
+cat >>sky.toml <<'END'
+[assertions.mean]
+check = "bias_sq.ball(sky) < 0.05"
+[assertions.better]
+check = "rmse.ball(both) < rmse.ball(uniform)"
+[assertions.valid]
+check = "bad(sky) == 0"
+END
+run 0 --out holds
+
+# Another path, another folder: the same identity. Another content: another one.
+hash_of() { sed -n 's/.*"hash": "\([0-9a-f]*\)".*/\1/p' "$1/metrics.json" | head -n 1; }
+mkdir elsewhere && cp sunset.exr elsewhere/image.exr && sed 's/sunset.exr/image.exr/' sky.toml >elsewhere/sky.toml
+expect 0 "$CRESCENT" run elsewhere/sky.toml --quiet --only metrics --out moved
+[ "$(hash_of holds)" = "$(hash_of moved)" ] || die "the path of a sky is part of the identity"
+image sunset.exr 64 '(1, 1, 1 + up)'
+run 1 --only metrics --out other
+[ "$(hash_of holds)" != "$(hash_of other)" ] || die "the content of a sky is no part of the identity"
+
+# Parts join without the image.
+run 1 --seeds 4 --only metrics --out whole
+run 1 --seeds 4 --seed-range 1:2 --only metrics --out a
+run 1 --seeds 4 --seed-range 3:4 --only metrics --out b
+rm sunset.exr
+expect 1 "$CRESCENT" join a b --out joined
+cmp whole/metrics.csv joined/metrics.csv || die "parts under a sky do not join to the whole"
+exit 0
