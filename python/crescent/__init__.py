@@ -24,7 +24,7 @@ from ._summaries import Summary
 from .experiments import Experiment, Film, Measured, RunInterrupted, join, load, parse, run
 
 if TYPE_CHECKING:
-    from . import adapters, testing
+    from . import adapters, scenes, testing
 
 __all__ = [
     "Combination",
@@ -58,6 +58,7 @@ __all__ = [
     "pdf_of",
     "ris",
     "run",
+    "scenes",
     "sweep",
     "sweep_check",
     "tail",
@@ -67,7 +68,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Loads a module of the package on first use."""
-    if name in ("adapters", "testing"):
+    if name in ("adapters", "scenes", "testing"):
         return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 

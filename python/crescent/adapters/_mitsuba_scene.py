@@ -178,9 +178,11 @@ def _add_sky(made: _Made, emitter: Any) -> None:
     if not np.allclose(turn, [[c, 0, s], [0, 1, 0], [-s, 0, c]], atol=1e-4):
         made.refuse("envmap: a rotation that is not about the y axis", "only the part about it is used")
     pixels = np.array(params["data"], np.float32)[..., :3]
+    resolution = re.search(r"res = \"?\[(\d+), \d+\]", str(emitter))
+    repeated = pixels.shape[1] - int(resolution[1]) if resolution else 0  # columns about the seam: at both ends, or the last
+    if repeated > 0:
+        pixels = pixels[:, repeated // 2 : pixels.shape[1] - (repeated + 1) // 2]
     width = 2 * pixels.shape[0]
-    if pixels.shape[1] == width + 1:  # Mitsuba repeats the first column at the end
-        pixels = pixels[:, :-1]
     if pixels.shape[1] != width:
         made.refuse(f"envmap: an image of {pixels.shape[1]} x {pixels.shape[0]}", "the nearest texels are used, twice as wide as high")
         columns = (np.arange(width) + 0.5) * pixels.shape[1] / width
@@ -215,7 +217,7 @@ def _toml(value: Any) -> str:
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
-    return repr(value)
+    return f"{value:.7g}" if isinstance(value, float) else repr(value)  # Mitsuba's numbers are single precision
 
 
 def _written(title: str, tables: dict[str, Table]) -> str:

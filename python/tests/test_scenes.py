@@ -1,0 +1,141 @@
+"""Scenes from arrays and from Mitsuba 3."""
+
+import numpy as np
+import pytest
+
+import crescent
+from crescent import scenes
+
+SQUARE = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], float)
+CORNERS = np.array([[0, 2, 1], [0, 3, 2]])
+EXPERIMENT = """
+[image]
+width = 32
+height = 18
+[camera]
+eye = [0, 2, 2]
+target = [0, 0, 0]
+vfov_deg = 30
+[meshes.floor]
+file = "floor.mesh"
+rho_d = [0.5, 0.5, 0.5]
+[sky]
+file = "sky.exr"
+[reference]
+n = 16
+[arms.cosine]
+n = [16]
+"""
+
+
+def test_arrays_become_a_scene(tmp_path):
+    scenes.write_mesh(tmp_path / "floor.mesh", SQUARE, CORNERS, normals=np.full((4, 3), [0, 2, 0]))
+    scenes.write_sky(tmp_path / "sky.exr", np.full((4, 8, 3), 2.0))
+    (tmp_path / "scene.toml").write_text(EXPERIMENT)
+    result = crescent.run(crescent.load(tmp_path / "scene.toml"))
+    planes = result.films["cosine", 16].planes
+    # A plane under an even sky: every sample of the cosine sampler is rho L, which is 1.
+    assert np.allclose(planes["g"][planes["g"] > 0], 1, rtol=1e-5)
+    assert (planes["g"] > 0).mean() > 0.5
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"positions": np.zeros((4, 2))}, "positions has the shape"),
+        ({"positions": np.where(np.arange(12).reshape(4, 3) == 5, np.nan, 0)}, "positions: row 1 is not finite"),
+        ({"triangles": np.array([[0, 1, 4]])}, "triangles: row 0 is"),
+        ({"triangles": np.zeros((1, 3))}, "expected integers"),
+        ({"normals": np.zeros((4, 3))}, "normals: row 0 is 0"),
+        ({"uv": np.zeros((3, 2))}, "uv has 3 rows for 4 positions"),
+    ],
+)
+def test_wrong_arrays_are_refused(tmp_path, given, said):
+    with pytest.raises(ValueError, match=said):
+        scenes.write_mesh(tmp_path / "x.mesh", **{"positions": SQUARE, "triangles": CORNERS, **given})
+    assert not (tmp_path / "x.mesh").exists()
+
+
+def test_skies_are_twice_as_wide_as_high(tmp_path):
+    with pytest.raises(ValueError, match="expected \\(height, 2 height, 3\\)"):
+        scenes.write_sky(tmp_path / "x.exr", np.zeros((4, 4, 3)))
+
+
+def _mitsuba_scene(mi):
+    at = mi.ScalarTransform4f
+    color = {"type": "rgb", "value": [0.1, 0.2, 0.3]}
+    gloss = {
+        "type": "roughconductor",
+        "material": "none",
+        "distribution": "ggx",
+        "alpha": 0.3,
+        "specular_reflectance": {"type": "rgb", "value": [0.5, 0.5, 0.5]},
+    }
+    sky = np.repeat(np.repeat(np.random.default_rng(1).random((4, 8, 3)), 64, 0), 64, 1).astype(np.float32)
+    return {
+        "type": "scene",
+        "integrator": {"type": "direct", "hide_emitters": True, "emitter_samples": 1, "bsdf_samples": 1},
+        "sensor": {
+            "type": "perspective",
+            "fov": 40,
+            "to_world": at().look_at(origin=[1, 2, 5], target=[0, 0.5, 0], up=[0, 1, 0]),
+            "film": {"type": "hdrfilm", "width": 96, "height": 54, "rfilter": {"type": "box"}},
+            "sampler": {"type": "independent", "sample_count": 256},
+        },
+        "box": {
+            "type": "cube",
+            "to_world": at().translate([0, 0.5, 0]).rotate([0, 1, 0], 30).scale(0.5),
+            "bsdf": {"type": "twosided", "below": {"type": "diffuse", "reflectance": color}},
+        },
+        "floor": {"type": "rectangle", "to_world": at().rotate([1, 0, 0], -90).scale(4), "bsdf": gloss},
+        "ball": {"type": "sphere", "center": [1.3, 0.4, 0], "radius": 0.4, "bsdf": {"type": "diffuse"}},
+        "lamp": {
+            "type": "rectangle",
+            "to_world": at().translate([0, 3, 0]).rotate([1, 0, 0], 90).scale(0.5),
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [5, 5, 5]}},
+        },
+        "around": {
+            "type": "envmap",
+            "bitmap": mi.Bitmap(sky),
+            "scale": 0.5,
+            "to_world": at().rotate([0, 1, 0], 40),
+        },
+    }
+
+
+def test_a_mitsuba_scene_has_mitsubas_radiance(tmp_path):
+    mi = pytest.importorskip("mitsuba")
+    if not mi.variant():
+        mi.set_variant("llvm_ad_rgb", "scalar_rgb")
+    given = _mitsuba_scene(mi)
+    e = crescent.adapters.mitsuba.scene(given, tmp_path / "made", n=(16,))
+    assert [name for name in ("cosine", "sky", "light-triangle") if f"arms.{name}" in e] == [
+        "cosine",
+        "sky",
+        "light-triangle",
+    ]
+    reference = crescent.run(e.with_({"reference.n": 256})).references[e["s"] if "s" in e else 0.0]
+    theirs = np.array(mi.render(mi.load_dict(given)))[::-1]  # ours begins at the bottom
+    for k, channel in enumerate("rgb"):
+        ours, other = np.asarray(reference[channel]), theirs[..., k]
+        for rows, columns in ((slice(0, 54), slice(0, 96)), (slice(20, 34), slice(38, 58)), (slice(2, 12), slice(5, 90))):
+            assert abs(ours[rows, columns].mean() / other[rows, columns].mean() - 1) < 0.02
+
+
+def test_what_has_no_counterpart_is_listed(tmp_path):
+    mi = pytest.importorskip("mitsuba")
+    if not mi.variant():
+        mi.set_variant("llvm_ad_rgb", "scalar_rgb")
+    given = _mitsuba_scene(mi) | {
+        "pipe": {"type": "cylinder"},
+        "coat": {"type": "cube", "bsdf": {"type": "plastic"}},
+        "spot": {"type": "point", "intensity": {"type": "rgb", "value": 1.0}},
+    }
+    with pytest.raises(crescent.adapters.UnsupportedScene) as refused:
+        crescent.adapters.mitsuba.scene(given, tmp_path / "made")
+    assert [line.split(":")[0] for line in sorted(refused.value.parts)][:2] == ["coat", "pipe"]
+    assert any("PointLight" in line for line in refused.value.parts)
+    assert not (tmp_path / "made").exists()
+    with pytest.warns(UserWarning, match="the BSDF SmoothPlastic"):
+        e = crescent.adapters.mitsuba.scene(given, tmp_path / "made", approximate=True)
+    assert e["meshes.coat.rho_d"] == [0.5, 0.5, 0.5]
