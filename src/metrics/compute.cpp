@@ -212,12 +212,12 @@ std::vector<SeedSpread> bands(
             if (run.key.n < 2 && info->from_two_samples) continue;
             std::vector<double> values = over_seeds(runs, run.key, metric);
             // An RMSE below the error of a paired reference is the smallest of all; a quantile among such is not known.
-            const bool below = paired && metric.starts_with("rmse");
+            const bool of_pair = paired && metric.starts_with("rmse");
             for (double& v : values)
-                if (below && std::isnan(v)) v = -1;
+                if (of_pair && std::isnan(v)) v = -1;
             const auto quantile = [&](const std::vector<double>& of, double q) {
                 const double value = crescent::quantile(of, q);
-                return below && value < 0 ? not_paired : value;
+                return of_pair && value < 0 ? not_paired : value;
             };
             SeedSpread b;
             b.key = run.key;

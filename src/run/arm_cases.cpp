@@ -202,13 +202,13 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
         }
     }
     if (points.around) {
-        const auto at = [](const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+        const auto first = [](const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
             return Vec3d{double(x[0]), double(y[0]), double(z[0])};
         };
         out.around = points.around;
-        out.position = at(points.px, points.py, points.pz);
-        out.frame = {at(points.tx, points.ty, points.tz), at(points.bx, points.by, points.bz),
-            at(points.nx, points.ny, points.nz)};
+        out.position = first(points.px, points.py, points.pz);
+        out.frame = {first(points.tx, points.ty, points.tz), first(points.bx, points.by, points.bz),
+            first(points.nx, points.ny, points.nz)};
     }
     return out;
 }

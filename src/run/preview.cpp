@@ -1,6 +1,8 @@
 // The steps of a run without its jobs: what the camera sees, the reference, one plate.
 #include "run/preview.h"
 
+#include <algorithm>
+
 #include "report/plates/plates.h"
 #include "run/collect.h"
 #include "run/resources.h"
@@ -18,6 +20,7 @@ Experiment without_arms(Experiment e) {
     e.seeds = 1;
     if (e.reference.kind == ReferenceKind::note) e.reference.kind = ReferenceKind::quadrature;
     e.reference.monte_carlo = false;
+    if (e.reference.kind == ReferenceKind::paired) e.reference.n = std::min<std::uint64_t>(e.reference.n, 16);
     return e;
 }
 

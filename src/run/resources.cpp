@@ -43,7 +43,9 @@ std::uint64_t memory_needed(const Experiment& experiment) {
     const double a_pixel =
         film * (sample_counts + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
     const double hits = pixels <= static_cast<double>(Scene::whole_hits) ? pixels * sizeof(Hit) : 0;
-    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits);
+    // Three floats of a texel and one of its row's distribution.
+    const double sky = experiment.sky && experiment.sky->image ? 16.0 * double(experiment.sky->image->texels()) : 0;
+    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits + sky);
 }
 
 bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available) {

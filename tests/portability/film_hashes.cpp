@@ -15,6 +15,7 @@
 
 #include "experiment/experiment.h"
 #include "math/functions.h"
+#include "math/simd/random.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
 #include "render/reference/paired.h"

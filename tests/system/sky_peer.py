@@ -19,7 +19,7 @@ BALLS = {
     "metal": ((0.0, 0.5, 0.0), {"rho_d": [0, 0, 0], "rho_s": 0.7, "brdf": '"ggx"', "alpha": 0.3}),
     "blue": ((1.2, 0.5, 0.0), {"rho_d": [0.1, 0.2, 0.6]}),
 }
-REGIONS = {"red": (32, 14, 50, 44), "metal": (72, 14, 90, 44), "blue": (110, 14, 128, 44), "floor": (10, 0, 150, 4)}
+REGIONS = {"red": (35, 22, 51, 41), "metal": (72, 22, 88, 41), "blue": (109, 22, 125, 41), "floor": (10, 0, 150, 4)}
 EYE, TARGET, VFOV, TURN = (0, 0.8, 5), (0, 0.45, 0), 22, 40
 
 
@@ -30,6 +30,7 @@ def experiment() -> str:
         out += f'[shapes.{name}]\nkind = "sphere"\ncenter = {list(center)}\nradius = 0.5\noccludes = true\n'
         out += "".join(f"{key} = {value}\n" for key, value in material.items())
     out += '[shapes.floor]\nkind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nrho_d = [0.4, 0.4, 0.4]\n'
+    out += "occludes = true\n"
     out += "[arms.sky]\nn = 16\n[reference]\nn = 1024\n"
     return out + "".join(f"[regions.{n}]\nbox = {list(box)}\n" for n, box in REGIONS.items())
 
