@@ -24,7 +24,7 @@
 #include <assimp/scene.h>
 #include <nlohmann/json.hpp>
 
-#include "scene/mesh/mesh.h"
+#include "crescent/crescent.h"
 
 namespace {
 

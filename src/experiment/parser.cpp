@@ -359,7 +359,8 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
-/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or meshes.
+/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or
+/// meshes.
 void resolve_reference(ParseContext& context) {
     Experiment& e = context.e;
     ReferencePlan& plan = e.reference;
@@ -375,8 +376,8 @@ void resolve_reference(ParseContext& context) {
         context.report("reference.monte_carlo",
             "reference.monte_carlo: expected false with reference.kind = \"paired\", which takes its place");
     if (!paired && plan.n > 0)
-        context.report("reference.n",
-            "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
+        context.report(
+            "reference.n", "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
     if (paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
 }
 
@@ -437,12 +438,15 @@ Experiment parse(std::string_view text, const std::string& name, const std::vect
 }
 
 Experiment load(const std::string& path, const std::vector<std::string>& overrides) {
-    for (const char* foreign : {".pbrt", ".xml", ".obj", ".ply", ".gltf", ".glb", ".usd", ".usda", ".usdz", ".blend"})
+    for (const char* model : {".obj", ".ply", ".gltf", ".glb", ".stl"})
+        if (path.ends_with(model))
+            throw InputError({path, 0, 0},
+                "expected an experiment, a TOML file: `crescent import` makes a mesh of a model, for an experiment");
+    for (const char* foreign : {".pbrt", ".xml", ".usd", ".usda", ".usdz", ".blend"})
         if (path.ends_with(foreign))
             throw InputError({path, 0, 0},
-                "expected an experiment, a TOML file: scenes of other programs cannot be read; README.md says what a "
-                "scene "
-                "can be");
+                "expected an experiment, a TOML file: scenes of other programs cannot be read; docs/run.md says what a "
+                "scene can be");
     ParseContext context = draft_of(read_text(path, "an experiment file"), path, overrides);
     if (context.e.published) {
         try {

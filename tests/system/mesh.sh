@@ -59,7 +59,7 @@ refuses() { # WORDS FILE [MORE]
     grep -q -- "$1" said || die "no '$1' in: $(cat said)"
     [ ! -e refused ] || die "a refused run writes"
 }
-hash_of() { sed -n 's/.*"experiment_hash": "\([0-9a-f]*\)".*/\1/p' "$1/metrics.json"; }
+hash_of() { sed -n 's/.*"hash": "\([0-9a-f]\{16\}\)".*/\1/p' "$1/metrics.json" | head -n 1; }
 
 # The same bytes on every instruction set and any threads; the file's name is no part of the identity, its content is.
 experiment tent-obj.mesh 'translate = [0, 0.3, 0]'
