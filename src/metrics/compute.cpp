@@ -153,8 +153,8 @@ std::vector<ReferenceQuality> paired_quality(
 }
 
 double share_of_reference(const RegionMetrics& region) {
-    if (!(region.mse_error > 0)) return 0;
-    return region.mse > 0 ? std::sqrt(1.96 * region.mse_error / region.mse) : std::numeric_limits<double>::infinity();
+    if (region.mse > 0) return std::sqrt(1.96 * region.mse_error / region.mse);
+    return region.reference_error > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 std::vector<MetricName> metric_names(const Experiment& experiment) {
