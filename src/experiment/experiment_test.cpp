@@ -135,6 +135,8 @@ std::string example(const Key& key) {
         case Type::integer: return "1";
         case Type::number:
         case Type::gray: return fmt::format("{}", x);
+        case Type::factors: return "[1, 2, 3]";
+        case Type::matrix: return "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]";
         case Type::point:
         case Type::color: return "[1, 1, 1]";
         case Type::direction: return "[0, 0.6, 0.8]";

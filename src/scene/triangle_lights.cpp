@@ -2,12 +2,12 @@
 #include "scene/triangle_lights.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
 #include "base/errors.h"
+#include "scene/mesh/bvh_tree.h"
 
 namespace crescent::inline scene {
 
@@ -28,7 +28,7 @@ TriangleLights::TriangleLights(std::vector<EmittingTriangle> triangles) : triang
         powers_.push_back(total);
     }
     ensure(total > 0, "emitting triangles have power");
-    tree_ = build_tree(boxes);
+    tree_ = std::make_shared<const BvhTree>(build_tree(boxes));
 }
 
 double TriangleLights::density(std::uint32_t k, double distance, Vec3d w) const {
@@ -39,7 +39,8 @@ double TriangleLights::density(std::uint32_t k, double distance, Vec3d w) const 
 
 TriangleDraw TriangleLights::sample(Vec3d x, double u, double v) const {
     const double at = u * powers_.back();
-    const auto k = static_cast<std::uint32_t>(std::upper_bound(powers_.begin(), powers_.end() - 1, at) - powers_.begin());
+    const auto k =
+        static_cast<std::uint32_t>(std::upper_bound(powers_.begin(), powers_.end() - 1, at) - powers_.begin());
     const double low = k > 0 ? powers_[k - 1] : 0;
     const double root = std::sqrt(std::clamp((at - low) / (powers_[k] - low), 0.0, 1.0));
     const Side& side = sides_[k];
@@ -55,31 +56,21 @@ template <class Work> void TriangleLights::each_met(Vec3d x, Vec3d w, Work&& wor
     const Vec3f o = as<float>(x);
     const float far = std::max({reach_, std::fabs(o.x), std::fabs(o.y), std::fabs(o.z)});
     const BoxRay ray(o, as<float>(w), 1e-5f * far);
-    std::array<std::int32_t, stack_size> stack;
-    std::size_t size = 0;
-    std::int32_t next = 0;
-    for (;;) {
-        if (next >= 0) {
-            std::array<float, 4> entry;
-            const BvhNode& node = tree_.nodes[static_cast<std::size_t>(next)];
-            for (unsigned met = ray.meets(node, infinity, entry); met; met &= met - 1)
-                stack[size++] = node.child[static_cast<std::size_t>(std::countr_zero(met))];
-        } else {
-            for (const std::uint32_t k : tree_.leaves[static_cast<std::size_t>(~next)]) {
-                if (k == no_item) break;
-                // x + t w = corner + a e1 + b e2 by Cramer's rule, times the determinant (Moeller & Trumbore 1997).
-                const Side& side = sides_[k];
-                const double det = -dot(side.across, w);
-                if (!(det > 0)) continue;  // its back
-                const Vec3d from = x - side.corner;
-                const double a = -dot(from, cross(side.e2, w)), b = dot(from, cross(side.e1, w)),
-                             t = dot(from, side.across);
-                if (a >= 0 && b >= 0 && a + b <= det && t > 0) work(k, t / det);
-            }
+    const auto test = [&](std::size_t leaf) {
+        for (const std::uint32_t k : tree_->leaves[leaf]) {
+            if (k == no_item) break;
+            // x + t w = corner + a e1 + b e2 by Cramer's rule, times the determinant (Moeller & Trumbore 1997).
+            const Side& side = sides_[k];
+            const double det = -dot(side.across, w);
+            if (!(det > 0)) continue;  // its back
+            const Vec3d from = x - side.corner;
+            const double a = -dot(from, cross(side.e2, w)), b = dot(from, cross(side.e1, w)),
+                         t = dot(from, side.across);
+            if (a >= 0 && b >= 0 && a + b <= det && t > 0) work(k, t / det);
         }
-        if (size == 0) return;
-        next = stack[--size];
-    }
+        return false;
+    };
+    visit_leaves(tree_->nodes, ray, infinity, test, [](std::size_t) {});
 }
 
 double TriangleLights::pdf(Vec3d x, Vec3d w, std::uint32_t but) const {

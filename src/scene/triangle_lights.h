@@ -3,18 +3,21 @@
 //
 //   p_A = Y(L_k) / sum of Y(L) A over all triangles,  p = p_A r^2 / cos(light),
 //
-// summed over all triangles that a direction meets, since each of them could have been chosen. Only the front emits: the
-// side from which the corners are counterclockwise.
+// summed over all triangles that a direction meets, since each of them could have been chosen. Only the front emits:
+// the side from which the corners are counterclockwise.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/vec.h"
 #include "scene/mesh/bvh.h"
 
 namespace crescent::inline scene {
+
+struct BvhTree;
 
 struct EmittingTriangle {
     std::array<Vec3d, 3> corner;
@@ -24,8 +27,8 @@ struct EmittingTriangle {
 
 inline constexpr std::uint32_t no_triangle = 0xffffffff;
 
-/// A direction from a point to a triangle, and the density in 1/sr with which it is drawn from there; 0 if the triangle's
-/// front does not face the point.
+/// A direction from a point to a triangle, and the density in 1/sr with which it is drawn from there; 0 if the
+/// triangle's front does not face the point.
 struct TriangleDraw {
     Vec3d w;
     std::uint32_t triangle;
@@ -62,7 +65,7 @@ private:
     std::vector<EmittingTriangle> triangles_;
     std::vector<Side> sides_;
     std::vector<double> powers_;  // sum of the powers of all triangles up to this one
-    BvhTree tree_;
+    std::shared_ptr<const BvhTree> tree_;
     float reach_ = 0;  // the largest coordinate, m
 };
 

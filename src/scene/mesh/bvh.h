@@ -1,5 +1,6 @@
-// Rays against the triangles of one mesh: a hierarchy of boxes (BVH) with four children per node and four triangles per
-// leaf, and the watertight test of Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection". Single precision.
+// Rays against the triangles of one mesh: a hierarchy of boxes (BVH) with eight children per node and four triangles
+// per leaf, and the watertight test of Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection". Single
+// precision.
 //
 // A ray hits a triangle if it meets the triangle's own box and the watertight test accepts it at 0 < t < t_max, where t
 // is that of the watertight test, or that at which the ray enters the box if this is larger. Both tests are defined
@@ -12,8 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "base/vec.h"
 #include "scene/mesh/affine.h"
@@ -41,41 +42,7 @@ struct Bounds {
     }
 };
 
-/// Four boxes and what is in them: a node (>= 0), a leaf (its complement ~c), or nothing (an empty box).
-struct alignas(16) BvhNode {
-    std::array<std::array<float, 4>, 3> low, high;  // by axis and child
-    std::array<std::int32_t, 4> child;
-};
-
 inline constexpr std::uint32_t no_item = 0xffffffff;
-using Leaf = std::array<std::uint32_t, 4>;  // up to four items; no_item fills it
-
-/// A tree over boxes, built by binned SAH (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"),
-/// in parallel, with a result that does not depend on threads. Node 0 is the root.
-struct BvhTree {
-    std::vector<BvhNode> nodes;
-    std::vector<Leaf> leaves;
-};
-BvhTree build_tree(std::span<const Bounds> items);
-
-/// The most entries that a traversal keeps: three siblings on each level of a tree of at most 80 levels
-/// (bvh_build.cpp).
-inline constexpr std::size_t stack_size = 3 * 80 + 1;
-
-/// A ray as the boxes of a tree are tested with: x = o + t d for 0 < t < t_max.
-struct BoxRay {
-    std::array<float, 3> inverse;       // 1 / d; a component below 1e-18 counts as that
-    std::array<float, 3> above, below;  // o + e, o - e, where e bounds the rounding errors of the tests of items
-
-    /// `e` widens every box.
-    BoxRay(Vec3f o, Vec3f d, float e);
-    /// Returns which boxes of a node are met before `t_max` (bits 0 to 3), and stores where.
-    unsigned meets(const BvhNode& node, float t_max, std::array<float, 4>& at) const;
-    /// The same for one box.
-    bool meets(const Bounds& box, float t_max) const;
-    /// Returns where a box that is met is entered, at least 0.
-    float enters(const Bounds& box) const;
-};
 
 /// Where a ray meets a triangle: corner 0 has the weight 1 - u - v, corners 1 and 2 have u and v.
 struct TriangleHit {
@@ -116,15 +83,9 @@ public:
     /// from it. Derived in bvh.cpp.
     static constexpr float error(float reach) { return static_cast<float>(8 * unit_roundoff) * (reach + 1); }
 
-    /// Four triangles, by axis, corner and triangle.
-    struct alignas(16) Block {
-        std::array<std::array<std::array<float, 4>, 3>, 3> corner;
-        Leaf triangle;
-    };
-
 private:
-    BvhTree tree_;  // without its leaves, which are blocks
-    std::vector<Block> blocks_;
+    struct Made;
+    std::shared_ptr<const Made> made_;
     Vec3f center_{};
     float scale_ = 1;
     Bounds bounds_;

@@ -1,7 +1,7 @@
 // Builds a tree over boxes: binned SAH (Wald 2007) into two children, then the children of each node are opened until
-// it has four, the one of the largest area first. The cost of a leaf counts groups of four, because four triangles are
+// it has eight, the one of the largest area first. The cost of a leaf counts groups of four, because four triangles are
 // tested at once. Each subtree has a range of the array of its own, so that threads do not change the result.
-#include "scene/mesh/bvh.h"
+#include "scene/mesh/bvh_tree.h"
 
 #include <algorithm>
 
@@ -13,12 +13,9 @@ namespace crescent::inline scene {
 namespace {
 
 constexpr std::size_t bins = 16;
-constexpr std::size_t group = 4;        // items in a leaf
-constexpr int deepest_by_cost = 48;     // below it nodes are halved: at most 31 more levels, see stack_size
+constexpr int deepest_by_cost = 48;     // below it nodes are halved: at most 31 more levels, see most_levels
 constexpr std::size_t chunk = 1 << 14;  // items that one thread bins at a time
 constexpr std::size_t parallel_from = 1 << 12;
-
-float axis(Vec3f v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 
 /// Returns half of the surface area.
 float area(const Bounds& b) {
@@ -98,12 +95,12 @@ private:
     std::size_t partition(std::size_t begin, std::size_t end, const Bounds& centers) {
         std::array<float, 3> low{}, per{};
         for (std::size_t k = 0; k < 3; ++k) {
-            low[k] = axis(centers.low, k);
-            const float size = axis(centers.high, k) - low[k];
+            low[k] = axis_of(centers.low, k);
+            const float size = axis_of(centers.high, k) - low[k];
             per[k] = size > 1e-30f ? static_cast<float>(bins) / size : 0.0f;
         }
         const auto bin_of = [&](std::uint32_t item, std::size_t k) {
-            return std::min(static_cast<std::size_t>((axis(centers_[item], k) - low[k]) * per[k]), bins - 1);
+            return std::min(static_cast<std::size_t>((axis_of(centers_[item], k) - low[k]) * per[k]), bins - 1);
         };
         Bins sums{};
         for (const Bins& part : in_chunks<Bins>(begin, end, [&](Bins& b, std::size_t from, std::size_t to) {
@@ -153,30 +150,31 @@ private:
 
     /// Writes splits_[at], and all below it, into nodes[to] and new nodes.
     void emit(BvhTree& tree, std::size_t at, std::size_t to) const {
-        std::array<std::uint32_t, 4> children{static_cast<std::uint32_t>(at)};
+        std::array<std::uint32_t, children> opened{static_cast<std::uint32_t>(at)};
         std::size_t count = 1;
-        while (count < 4) {
+        while (count < children) {
             std::size_t widest = count;
             for (std::size_t c = 0; c < count; ++c)
-                if (splits_[children[c]].left &&
-                    (widest == count || area(splits_[children[c]].box) > area(splits_[children[widest]].box)))
+                if (splits_[opened[c]].left &&
+                    (widest == count || area(splits_[opened[c]].box) > area(splits_[opened[widest]].box)))
                     widest = c;
             if (widest == count) break;
-            const Split& opened = splits_[children[widest]];
-            children[widest] = opened.left, children[count++] = opened.right;
+            const Split& inner = splits_[opened[widest]];
+            opened[widest] = inner.left, opened[count++] = inner.right;
         }
-        for (std::size_t c = 0; c < 4; ++c) {
-            const Bounds box = c < count ? splits_[children[c]].box : Bounds{};
+        for (std::size_t c = 0; c < children; ++c) {
+            const Bounds box = c < count ? splits_[opened[c]].box : Bounds{};
             for (std::size_t k = 0; k < 3; ++k)
-                tree.nodes[to].low[k][c] = axis(box.low, k), tree.nodes[to].high[k][c] = axis(box.high, k);
+                tree.nodes[to].side[0][k][c / 4][c % 4] = axis_of(box.low, k),
+                                                     tree.nodes[to].side[1][k][c / 4][c % 4] = axis_of(box.high, k);
             tree.nodes[to].child[c] = 0;
             if (c >= count) continue;
-            const Split& child = splits_[children[c]];
+            const Split& child = splits_[opened[c]];
             if (child.left) {
                 const std::size_t next = tree.nodes.size();
                 tree.nodes.emplace_back();
                 tree.nodes[to].child[c] = static_cast<std::int32_t>(next);
-                emit(tree, children[c], next);
+                emit(tree, opened[c], next);
             } else {
                 Leaf leaf;
                 leaf.fill(no_item);

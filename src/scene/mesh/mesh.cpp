@@ -80,6 +80,7 @@ std::shared_ptr<MeshPack> make_pack(Mesh mesh) {
     const Removed removed = remove_useless(mesh);
     pack->degenerate = removed.degenerate, pack->duplicate = removed.duplicate;
     pack->bvh = Bvh(mesh.positions, mesh.triangles);
+    pack->hash = hash_of(mesh);
     pack->mesh = std::move(mesh);
     return pack;
 }

@@ -56,6 +56,8 @@ std::shared_ptr<MeshPack> make_pack(Mesh mesh);
 //   float uv[vertices][2]          if flagged
 //   uint32 triangles[triangles][3]
 
+/// Returns the hash in its file.
+std::uint64_t hash_of(const Mesh& mesh);
 /// Returns the file's bytes.
 std::string mesh_file(const Mesh& mesh);
 

@@ -122,12 +122,26 @@ private:
 
 }  // namespace
 
-std::string mesh_file(const Mesh& mesh) {
+namespace {
+
+std::string content_of(const Mesh& mesh) {
     std::string content;
     append(content, mesh.positions);
     append(content, mesh.normals);
     append(content, mesh.uv);
     append(content, mesh.triangles);
+    return content;
+}
+
+}  // namespace
+
+std::uint64_t hash_of(const Mesh& mesh) {
+    const std::string content = content_of(mesh);
+    return XXH3_64bits(content.data(), content.size());
+}
+
+std::string mesh_file(const Mesh& mesh) {
+    const std::string content = content_of(mesh);
     Header header{{}, mesh_kind, mesh_version, static_cast<std::uint32_t>(mesh.positions.size()),
         static_cast<std::uint32_t>(mesh.triangles.size()),
         (mesh.normals.empty() ? 0 : with_normals) | (mesh.uv.empty() ? 0 : with_uv), 0,

@@ -3,9 +3,9 @@
 // (see bvh.h). Rays are transformed in double precision and rounded once.
 #include "scene/mesh/rays.h"
 
-#include <array>
-#include <bit>
 #include <cmath>
+
+#include "scene/mesh/bvh_tree.h"
 
 namespace crescent::inline scene {
 
@@ -13,24 +13,46 @@ namespace {
 
 double largest(Vec3d v) { return std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)); }
 
-/// Moves the nearest hit of one instance into `best` if it is nearer there.
-void take(const MeshInstance& instance, const Affine& to_mesh, const Bounds& box, const BoxRay& boxes, Vec3d x, Vec3d d,
-    float t_max, std::uint32_t index, bool all, MeshHit& best) {
-    if (!boxes.meets(box, t_max)) return;
-    const Bvh& bvh = instance.pack->bvh;
-    const Vec3f o = as<float>(to_mesh.point(x)), to = as<float>(to_mesh.vector(d));
-    TriangleHit hit{best.t};
-    if (all) hit = bvh.closest_of_all(o, to, t_max);
-    else bvh.closest(o, to, t_max, hit);
-    if (hit.triangle == no_item) return;
-    const float t = std::fmax(hit.t, boxes.enters(box));
-    if (t < t_max && (t < best.t || (t == best.t && index < best.instance)))
-        best = {t, index, hit.triangle, hit.u, hit.v};
-}
+/// An instance as it is traced.
+struct Placed {
+    Affine to_mesh;  // from the scene's space about its origin to the normalised space of the mesh
+    Bounds box;      // about the origin
+    double stretch;  // at most so many m in the scene per unit of the normalised space
+};
 
 }  // namespace
 
+struct Rays::Made {
+    std::vector<Placed> placed;
+    BvhTree tree;
+    double reach = 0;      // largest coordinate of all boxes, m
+    double condition = 1;  // largest product of the stretches of a transform and of its inverse
+
+    /// A mesh in its own space is off by at most 6 u of the reach of the ray's origin there, and the rounding of the
+    /// transformed ray; here by that times the stretch of both transforms.
+    BoxRay box_ray(Vec3d x, Vec3d d) const {
+        const double e = 16 * unit_roundoff * condition * (largest(x) + reach);
+        return {as<float>(x), as<float>(d), static_cast<float>(e)};
+    }
+
+    /// Moves the nearest hit of one instance into `best` if it is nearer there.
+    void take(const Bvh& bvh, std::uint32_t index, const BoxRay& boxes, Vec3d x, Vec3d d, float t_max, bool all,
+        MeshHit& best) const {
+        const float entry = boxes.enters(placed[index].box, t_max);
+        if (!(entry < t_max)) return;
+        const Vec3f o = as<float>(placed[index].to_mesh.point(x)), to = as<float>(placed[index].to_mesh.vector(d));
+        TriangleHit hit{best.t};
+        if (all) hit = bvh.closest_of_all(o, to, t_max);
+        else bvh.closest(o, to, t_max, hit);
+        if (hit.triangle == no_item) return;
+        const float t = std::fmax(hit.t, entry);
+        if (t < t_max && (t < best.t || (t == best.t && index < best.instance)))
+            best = {t, index, hit.triangle, hit.u, hit.v};
+    }
+};
+
 Rays::Rays(std::vector<MeshInstance> instances, Vec3d origin) : instances_(std::move(instances)) {
+    auto made = std::make_shared<Made>();
     std::vector<Bounds> boxes;
     for (const MeshInstance& instance : instances_) {
         const Bvh& bvh = instance.pack->bvh;
@@ -45,88 +67,53 @@ Rays::Rays(std::vector<MeshInstance> instances, Vec3d origin) : instances_(std::
             box.add(as<float>(whole.point(
                 {side(0, own.low.x, own.high.x), side(1, own.low.y, own.high.y), side(2, own.low.z, own.high.z)})));
         }
-        reach_ = std::fmax(reach_, std::fmax(largest(widen(box.low)), largest(widen(box.high))));
-        condition_ = std::fmax(condition_, whole.stretch() * back.stretch());
-        placed_.push_back({back, box, whole.stretch()});
+        made->reach = std::fmax(made->reach, std::fmax(largest(widen(box.low)), largest(widen(box.high))));
+        made->condition = std::fmax(made->condition, whole.stretch() * back.stretch());
+        made->placed.push_back({back, box, whole.stretch()});
         boxes.push_back(box);
     }
-    tree_ = build_tree(boxes);
-}
-
-BoxRay Rays::box_ray(Vec3d x, Vec3d d) const {
-    // A mesh in its own space is off by at most Bvh::error / 8 * 6 and 2 roundings of the transformed ray, all relative
-    // to the distance of the ray's origin there; here by that times the stretch of both transforms.
-    const double e = 16 * unit_roundoff * condition_ * (largest(x) + reach_);
-    return {as<float>(x), as<float>(d), static_cast<float>(e)};
+    made->tree = build_tree(boxes);
+    made_ = std::move(made);
 }
 
 bool Rays::occluded(Vec3f x, Vec3f d, float t_max) const {
-    if (tree_.nodes.empty()) return false;
+    if (empty()) return false;
     const Vec3d wide_x = widen(x), wide_d = widen(d);
-    const BoxRay boxes = box_ray(wide_x, wide_d);
-    std::array<std::int32_t, stack_size> stack;
-    std::size_t size = 0;
-    std::int32_t at = 0;
-    for (;;) {
-        if (at >= 0) {
-            const BvhNode& node = tree_.nodes[static_cast<std::size_t>(at)];
-            std::array<float, 4> entry;
-            for (unsigned met = boxes.meets(node, t_max, entry); met; met &= met - 1)
-                stack[size++] = node.child[static_cast<std::size_t>(std::countr_zero(met))];
-        } else {
-            for (const std::uint32_t i : tree_.leaves[static_cast<std::size_t>(~at)]) {
-                if (i == no_item) break;
-                const Placed& placed = placed_[i];
-                if (!boxes.meets(placed.box, t_max) || !(boxes.enters(placed.box) < t_max)) continue;
-                const Vec3f o = as<float>(placed.to_mesh.point(wide_x)), to = as<float>(placed.to_mesh.vector(wide_d));
-                if (instances_[i].pack->bvh.occluded(o, to, t_max)) return true;
-            }
+    const BoxRay boxes = made_->box_ray(wide_x, wide_d);
+    const auto hides = [&](std::size_t leaf) {
+        for (const std::uint32_t i : made_->tree.leaves[leaf]) {
+            if (i == no_item) break;
+            const Placed& placed = made_->placed[i];
+            if (!(boxes.enters(placed.box, t_max) < t_max)) continue;
+            const Vec3f o = as<float>(placed.to_mesh.point(wide_x)), to = as<float>(placed.to_mesh.vector(wide_d));
+            if (instances_[i].pack->bvh.occluded(o, to, t_max)) return true;
         }
-        if (size == 0) return false;
-        at = stack[--size];
-    }
+        return false;
+    };
+    return visit_leaves(made_->tree.nodes, boxes, t_max, hides, [](std::size_t) {});
 }
 
 MeshHit Rays::closest(Vec3d x, Vec3d d, float t_max) const {
     MeshHit best;
-    if (tree_.nodes.empty()) return best;
-    const BoxRay boxes = box_ray(x, d);
-    struct Entry {
-        float t;
-        std::int32_t at;
-    };
-    std::array<Entry, stack_size> stack;
-    std::size_t size = 0;
-    Entry next{0, 0};
-    for (;;) {
-        if (next.at >= 0) {
-            const BvhNode& node = tree_.nodes[static_cast<std::size_t>(next.at)];
-            std::array<float, 4> entry;
-            const std::size_t begin = size;
-            for (unsigned met = boxes.meets(node, std::fmin(t_max, best.t), entry); met; met &= met - 1) {
-                const auto c = static_cast<std::size_t>(std::countr_zero(met));
-                std::size_t i = size++;  // the nearest last
-                for (; i > begin && stack[i - 1].t < entry[c]; --i) stack[i] = stack[i - 1];
-                stack[i] = {entry[c], node.child[c]};
-            }
-        } else {
-            for (const std::uint32_t i : tree_.leaves[static_cast<std::size_t>(~next.at)]) {
-                if (i == no_item) break;
-                take(instances_[i], placed_[i].to_mesh, placed_[i].box, boxes, x, d, t_max, i, false, best);
-            }
-        }
-        do {
-            if (size == 0) return best;
-            next = stack[--size];
-        } while (next.t > best.t);
-    }
+    if (empty()) return best;
+    const BoxRay boxes = made_->box_ray(x, d);
+    float nearest = t_max;
+    visit_leaves(
+        made_->tree.nodes, boxes, nearest,
+        [&](std::size_t leaf) {
+            for (const std::uint32_t i : made_->tree.leaves[leaf])
+                if (i != no_item) made_->take(instances_[i].pack->bvh, i, boxes, x, d, t_max, false, best);
+            nearest = std::fmin(nearest, best.t);
+            return false;
+        },
+        [](std::size_t) {});
+    return best;
 }
 
 MeshHit Rays::closest_of_all(Vec3d x, Vec3d d, float t_max) const {
     MeshHit best;
-    const BoxRay boxes = box_ray(x, d);
     for (std::uint32_t i = 0; i < instances_.size(); ++i)
-        take(instances_[i], placed_[i].to_mesh, placed_[i].box, boxes, x, d, t_max, i, true, best);
+        made_->take(instances_[i].pack->bvh, i, made_->box_ray(x, d), x, d, t_max, true, best);
     return best;
 }
 
@@ -134,7 +121,7 @@ double Rays::offset(std::uint32_t instance, Vec3d x) const {
     // In the mesh's space, from an origin on the surface (R = 2, see bvh.cpp): 12 u along each sheared axis, so 17 u
     // along the normal; 2 u along the ray; sqrt(3) u each for the rounding of the ray's origin and of the corners. In
     // the scene: sqrt(3) u |x| for the rounding of x.
-    return unit_roundoff * (24 * placed_[instance].stretch + 2 * largest(x));
+    return unit_roundoff * (24 * made_->placed[instance].stretch + 2 * largest(x));
 }
 
 }  // namespace crescent::inline scene

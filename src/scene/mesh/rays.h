@@ -33,7 +33,7 @@ public:
     /// Rays are traced from positions relative to `origin`.
     Rays(std::vector<MeshInstance> instances, Vec3d origin);
 
-    bool empty() const { return placed_.empty(); }
+    bool empty() const { return instances_.empty(); }
     const std::vector<MeshInstance>& instances() const { return instances_; }
 
     /// Returns whether a triangle is hit at x + t d with 0 < t < t_max.
@@ -49,19 +49,9 @@ public:
     double offset(std::uint32_t instance, Vec3d x) const;
 
 private:
-    /// An instance as it is traced.
-    struct Placed {
-        Affine to_mesh;  // from the scene's space about its origin to the normalised space of the mesh
-        Bounds box;      // about the origin
-        double stretch;  // at most so many m in the scene per unit of the normalised space
-    };
-    BoxRay box_ray(Vec3d x, Vec3d d) const;
-
+    struct Made;
     std::vector<MeshInstance> instances_;
-    std::vector<Placed> placed_;
-    BvhTree tree_;
-    double reach_ = 0;      // largest coordinate of all boxes, m
-    double condition_ = 1;  // largest product of the stretches of a transform and of its inverse
+    std::shared_ptr<const Made> made_;
 };
 
 }  // namespace crescent::inline scene
