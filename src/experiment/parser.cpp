@@ -359,7 +359,8 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
-/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or meshes.
+/// The quadrature integrates lights of one radiance behind bodies in closed form; it cannot integrate an image or
+/// meshes.
 void resolve_reference(ParseContext& context) {
     Experiment& e = context.e;
     ReferencePlan& plan = e.reference;
@@ -375,8 +376,8 @@ void resolve_reference(ParseContext& context) {
         context.report("reference.monte_carlo",
             "reference.monte_carlo: expected false with reference.kind = \"paired\", which takes its place");
     if (!paired && plan.n > 0)
-        context.report("reference.n",
-            "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
+        context.report(
+            "reference.n", "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
     if (paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
 }
 

@@ -71,8 +71,7 @@ std::string table_row(const SeedSpread& b, bool published, bool paired) {
     if (b.band.seeds < 2) return row;
     row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median, paired), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(
-        figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
+    return row + clip(figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {

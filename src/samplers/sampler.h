@@ -49,8 +49,8 @@ template <class F> struct DrawnToTriangle : Drawn<F> {
     UintOf<F> triangle;  // no_triangle: none was drawn
 };
 
-/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1; `texel`
-/// and `triangle` those of samplers which aimed there.
+/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1;
+/// `texel` and `triangle` those of samplers which aimed there.
 template <class F> struct DrawnByAny : DrawnToDisk<F> {
     static constexpr bool by_any = true;
     UintOf<F> texel{no_texel}, triangle{no_triangle};
