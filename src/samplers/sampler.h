@@ -44,7 +44,7 @@ template <class F> struct DrawnToSky : Drawn<F> {
     UintOf<F> texel;  // no_texel: none was drawn
 };
 
-/// A direction that was drawn on an emitting triangle, which it meets whatever the rounding of the direction.
+/// A direction that was drawn on an emitting triangle, which it meets for any rounding of the direction.
 template <class F> struct DrawnToTriangle : Drawn<F> {
     UintOf<F> triangle;  // no_triangle: none was drawn
 };
