@@ -124,6 +124,15 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
     return out;
 }
 
+/// Returns the error of a paired reference in each region, at the experiment's own exponent.
+std::string reference_line(const ReportInputs& in) {
+    std::string out;
+    for (const ReferenceQuality& r : in.metrics.references)
+        if (r.paired_error && r.s == in.experiment.s())
+            out += fmt::format("{}{} {}", out.empty() ? "" : ", ", r.region, figures(*r.paired_error, 2));
+    return out.empty() ? out : "\n" + clip("  the reference's own error (rms): " + out, columns) + "\n";
+}
+
 std::string speed(const Timing& t) {
     if (t.threads == 0) return {};  // nothing was computed: runs were joined
     std::uint64_t samples = 0;
@@ -160,7 +169,7 @@ std::string terminal_summary(
     if (const std::vector<int> missing = in.provenance.missing(); !missing.empty())
         out += fmt::format("seeds {} of {}: a part of the series; missing: {}\n", ranges_text(in.provenance.places),
             in.provenance.series, ranges_text(missing));
-    out += table(in, paint) + films(hashes_shown(in), paint);
+    out += table(in, paint) + reference_line(in) + films(hashes_shown(in), paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format("\n{}\n",
             paint(red,
