@@ -170,7 +170,7 @@ int import(const ImportFlags& flags) {
     out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name(flags.out),
         std::filesystem::path(flags.out).filename().string(), rho_d_of(imported.description, flags.material));
     print(out);
-    return held;
+    return passed;
 }
 
 }  // namespace crescent::cli
