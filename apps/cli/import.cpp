@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 constexpr const char* importer_name = "crescent-import";
 constexpr std::size_t longest_description = std::size_t{1} << 20;
 
-/// The importer beside this program, else the one in PATH.
+/// The importer next to this program, otherwise the one in PATH.
 std::string importer() {
     std::error_code unknown;
     const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", unknown);

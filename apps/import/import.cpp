@@ -40,7 +40,7 @@ void limit(int what, rlim_t most) {
     setrlimit(what, &value);
 }
 
-/// Opens files of the model's folder and below it only, whatever paths the model has.
+/// Opens files of the model's folder and below it only, for any path that the model has.
 class FolderFiles : public Assimp::DefaultIOSystem {
 public:
     explicit FolderFiles(const std::filesystem::path& model)

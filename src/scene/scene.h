@@ -25,7 +25,7 @@ struct Hit {
     double u = 0, v = 0;                                   // weights of the triangle's corners 1 and 2
 
     bool below = false;  // the camera is below the smooth surface: nothing is reflected, and n is the face
-
+    /// Returns whether it is on a mesh.
     bool is_mesh() const { return instance != no_item; }
 };
 
