@@ -1,5 +1,5 @@
 // Reads the files of meshes: each file once, and not before its size is known to be that of a regular file. A mesh must
-// be within 1000 km of the origin, the range of all coordinates.
+// be within 1000 km of the origin, the range of all coordinates. A page has no files: there meshes are refused.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,6 +13,11 @@ namespace crescent::inline experiment {
 
 namespace {
 
+#ifdef CRESCENT_NO_FILESYSTEM
+std::string contents_of_regular_file(const std::string& path) {
+    throw InputError({path, 0, 0}, "a page cannot read the file of a mesh");
+}
+#else
 std::string contents_of_regular_file(const std::string& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -29,6 +34,7 @@ std::string contents_of_regular_file(const std::string& path) {
     if (error || !file) throw InputError({path, 0, 0}, "expected a .mesh file that can be read");
     return bytes;
 }
+#endif
 
 void check_extent(const Experiment& e, const MeshObject& mesh) {
     const Bounds box = mesh.pack->mesh.bounds();

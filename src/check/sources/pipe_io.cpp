@@ -218,17 +218,23 @@ bool PipeConnection::take_block(
         std::memcpy(&value, head.data() + at, sizeof value);
         return value;
     };
-    if (head.size() < 4) return read_head(4);
+    const auto has = [&](std::size_t size, bool& open) {
+        open = head.size() >= size || read_head(size);
+        return head.size() >= size;
+    };
+    bool open = true;
+    if (!has(4, open)) return open;
     if (number(0) == 0) {  // an error: its length and its text
-        const std::size_t length = head.size() < 8 ? 0 : std::min<std::size_t>(number(4), 4096);
-        if (head.size() < 8 + length || head.size() < 8) return read_head(8 + length);
+        if (!has(8, open)) return open;
+        const std::size_t length = std::min<std::size_t>(number(4), 4096);
+        if (!has(8 + length, open)) return open;
         fault(x, x.answered, "got an error: " + shown(std::string_view(head).substr(8, length)));
     }
     if (number(0) != n) fault(x, x.answered, fmt::format("got a block of {} rows for one of {}", number(0), n));
     const std::size_t bytes = n * rows.got * sizeof(double);
     auto* to = reinterpret_cast<char*>(rows.out.data() + x.answered * rows.got);
     std::size_t got = 0;
-    const bool open = read(to + payload_read, bytes - payload_read, got);
+    open = read(to + payload_read, bytes - payload_read, got);
     payload_read += got;
     if (payload_read == bytes) {
         x.answered += n;
