@@ -99,9 +99,11 @@ void check_light(ParseContext& context) {
     const auto is_hexadecimal = [](std::string_view text) {
         return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
     };
-    if (const auto& sky = context.e.sky; sky && context.is_valid("sky.content") && sky->content && !is_hexadecimal(*sky->content))
+    if (const auto& sky = context.e.sky;
+        sky && context.is_valid("sky.content") && sky->content && !is_hexadecimal(*sky->content))
         context.report("sky.content",
-            fmt::format("sky.content: expected 16 hexadecimal digits in lower case, found \"{}\"", sky->content->substr(0, 64)));
+            fmt::format("sky.content: expected 16 hexadecimal digits in lower case, found \"{}\"",
+                sky->content->substr(0, 64)));
     for (const Light& light : lights) check_form(context, "lights." + light.name, light.form);
     const Rgb& fill = context.e.fill;
     const auto is_dark = [](const auto& light) {
@@ -110,9 +112,11 @@ void check_light(ParseContext& context) {
     const bool dark = std::all_of(disks.begin(), disks.end(), is_dark) &&
         std::all_of(lights.begin(), lights.end(), is_dark) &&
         std::ranges::none_of(context.e.meshes, [](const MeshObject& mesh) { return mesh.emits(); });
-    if (dark && !context.e.sky && context.is_valid("meshes") && context.is_valid("disks") && context.is_valid("lights") &&
-        context.is_valid("fill") && context.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
-        context.report("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0, or a sky");
+    if (dark && !context.e.sky && context.is_valid("meshes") && context.is_valid("disks") &&
+        context.is_valid("lights") && context.is_valid("fill") && context.is_valid("fill.radiance") &&
+        fill[0] + fill[1] + fill[2] <= 0)
+        context.report(
+            "fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0, or a sky");
 }
 
 void check_external_arms(ParseContext& context) {

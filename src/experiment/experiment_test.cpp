@@ -52,6 +52,54 @@ TEST(Experiments, ShapesStandInFileOrder) {
     EXPECT_THAT(names, ElementsAre("sphere", "plinth", "foot", "floor", "wall", "canvas", "rail"));
 }
 
+TEST(Skies, HaveAPairedReference) {
+    const std::string scene = R"(
+[image]
+width = 8
+height = 8
+[camera]
+eye = [0, 1, 5]
+target = [0, 1, 0]
+vfov_deg = 40
+[shapes.ball]
+kind = "sphere"
+center = [0, 1, 0]
+radius = 1
+rho_d = [0.5, 0.5, 0.5]
+[sky]
+file = "images/sky.exr"
+rotation = 45
+[arms.sky]
+n = 4
+)";
+    const auto parsed = [&](const std::string& more) { return parse(scene + more, "folder/a.toml"); };
+    const auto complaint = [&](const std::string& more) -> std::string {
+        try {
+            (void)parsed(more);
+        } catch (const InputError& error) { return error.what(); }
+        return "";
+    };
+    const Experiment e = parsed("");
+    EXPECT_EQ(e.sky->file, "folder/images/sky.exr");
+    EXPECT_EQ(e.sky->rotation, 45);
+    EXPECT_EQ(e.sky->scale, 1);
+    EXPECT_EQ(e.reference.kind, ReferenceKind::paired);
+    EXPECT_EQ(e.reference.n, paired_samples);
+    EXPECT_EQ(parsed("[reference]\nn = 7\n").reference.n, 7u);
+    EXPECT_EQ(missed_light(e.arms[0], e), "");
+    EXPECT_EQ(missed_light({"a", "light-area", {4}, {}}, e), "the sky");
+    EXPECT_EQ(hash(parse(canonical_text(e), "b.toml")), hash(parse(canonical_text(e), "c.toml")));
+    EXPECT_THAT(complaint("[reference]\nkind = \"quadrature\"\n"), HasSubstr("\"paired\""));
+    EXPECT_THAT(complaint("[reference]\nmonte_carlo = true\n"), HasSubstr("reference.monte_carlo"));
+    EXPECT_THAT(complaint("[fill]\nradius = 1\n"), HasSubstr("unknown key"));
+    Experiment pinned = e, moved = e;
+    pinned.sky->content = moved.sky->content = "0123456789abcdef";
+    moved.sky->file = "elsewhere.exr";
+    EXPECT_EQ(hash(pinned), hash(moved));
+    moved.sky->content = "0123456789abcdee";
+    EXPECT_NE(hash(pinned), hash(moved));
+}
+
 TEST(WhatIfs, AreOneLineEach) {
     EXPECT_EQ(gallery({"seed=7"}).seed, 7u);
     EXPECT_EQ(gallery({"firefly_k=2.5"}).firefly_k, 2.5);

@@ -67,9 +67,10 @@ std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const bool lights = std::ranges::any_of(experiment.disks, shines) || std::ranges::any_of(experiment.lights, shines);
     const Rgb& fill = experiment.fill;
     std::string out;
-    for (const auto& [there, reached, name] : {std::tuple(fill[0] + fill[1] + fill[2] > 0, info->reaches.fill, "the fill"),
-             {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"},
-             {std::ranges::any_of(experiment.meshes, &MeshObject::emits), info->reaches.triangles, "the triangles"}})
+    for (const auto& [there, reached, name] :
+        {std::tuple(fill[0] + fill[1] + fill[2] > 0, info->reaches.fill, "the fill"),
+            {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"},
+            {std::ranges::any_of(experiment.meshes, &MeshObject::emits), info->reaches.triangles, "the triangles"}})
         if (there && !reached) out += (out.empty() ? "" : " and ") + std::string(name);
     return out;
 }

@@ -18,8 +18,8 @@ void load_sky(SkyLight& sky) {
     if (const std::string why = why_no_sky(*image, sky.scale); !why.empty()) throw InputError({sky.file, 0, 0}, why);
     const std::string content = content_hash(*image);
     if (sky.content && sky.content != content)
-        throw InputError({sky.file, 0, 0},
-            fmt::format("expected an image with the content {}, found {}", *sky.content, content));
+        throw InputError(
+            {sky.file, 0, 0}, fmt::format("expected an image with the content {}, found {}", *sky.content, content));
     sky.content = content, sky.image = std::move(image);
 }
 #endif

@@ -259,8 +259,8 @@ Section reference() {
              "Converged integration, the article's Monte Carlo, or two independent estimates, the default for a scene "
              "with a sky or meshes.",
              to<&ReferencePlan::kind>, words_to<ReferenceKind::paired>({"quadrature", "note", "paired"})},
-            {"n", Type::integer, count_range, "samples/pixel", optional, "256", "Of each of the two estimates of paired.",
-                to<&ReferencePlan::n>},
+            {"n", Type::integer, count_range, "samples/pixel", optional, "256",
+                "Of each of the two estimates of paired.", to<&ReferencePlan::n>},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
                 "Whether the article's is computed in addition to the quadrature.", to<&ReferencePlan::monte_carlo>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "Of the Monte Carlo reference.",

@@ -67,8 +67,7 @@ void GlBackend::claim_framebuffer(const std::string& what, int width, int height
 
 std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint*) {
     const Scene& scene = view.scene();
-    if (scene.surroundings())
-        throw OutputError("the GL back end has no image skies and no meshes: use the cpu");
+    if (scene.surroundings()) throw OutputError("the GL back end has no image skies and no meshes: use the cpu");
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.image();

@@ -28,8 +28,7 @@ Pass::Pass(const Context& context, const PointTexture& shading_points, const Fra
       moments_(shading_points.groups().size()),
       met_(framebuffer.attachments() - 2) {
     for (std::size_t g = 0; g < moments_.size(); ++g)
-        moments_[g].resize(shading_points.groups()[g]),
-            means_.emplace_back(shading_points.groups()[g].count);
+        moments_[g].resize(shading_points.groups()[g]), means_.emplace_back(shading_points.groups()[g].count);
 }
 
 void Pass::advance_to(std::uint64_t n) {

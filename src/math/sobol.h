@@ -1,11 +1,11 @@
 // Points of the first two dimensions of Sobol's sequence, scrambled as Owen does, as a function of their index and a
-// seed. Direction numbers of Joe & Kuo 2008, "Constructing Sobol Sequences with Better Two-Dimensional Projections": the
-// first dimension is the radical inverse, the second has the primitive polynomial x + 1 with m_1 = 1.
+// seed. Direction numbers of Joe & Kuo 2008, "Constructing Sobol Sequences with Better Two-Dimensional Projections":
+// the first dimension is the radical inverse, the second has the primitive polynomial x + 1 with m_1 = 1.
 //
 // The scrambling is hash-based: Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency", as Burley 2020,
 // "Practical Hash-based Owen Scrambling", JCGT 9(4), applies it, with the constants of Vegdahl 2021. It permutes as a
-// nested uniform scrambling does, but is not exactly uniform over seeds; a random digital shift on top makes every point
-// uniform, so that an estimate is unbiased, and keeps the nesting.
+// nested uniform scrambling does, but is not exactly uniform over seeds; a random digital shift on top makes every
+// point uniform, so that an estimate is unbiased, and keeps the nesting.
 #pragma once
 
 #include <cstdint>

@@ -49,8 +49,8 @@ FilmPixel pixel_at(
 }
 
 /// The squared error of a region against a paired reference. With d = Y - R and e = (R1 - R2)/2, whose square estimates
-/// the variance of R, the variance of d^2 - e^2 over references is 4 d^2 e^2 in the mean, for errors of R1 and R2 that are
-/// independent and symmetric.
+/// the variance of R, the variance of d^2 - e^2 over references is 4 d^2 e^2 in the mean, for errors of R1 and R2 that
+/// are independent and symmetric.
 struct PairedError {
     double squares = 0, variance = 0, own = 0;
     void add(const FilmPixel& p) {
@@ -59,7 +59,8 @@ struct PairedError {
     }
     void write(RegionMetrics& m) const {
         const double pixels = static_cast<double>(m.pixels);
-        m.mse = squares / pixels, m.mse_error = std::sqrt(variance) / pixels, m.reference_error = std::sqrt(own / pixels);
+        m.mse = squares / pixels, m.mse_error = std::sqrt(variance) / pixels,
+        m.reference_error = std::sqrt(own / pixels);
     }
 };
 
@@ -153,8 +154,8 @@ std::vector<ReferenceQuality> paired_quality(
 }
 
 double share_of_reference(const RegionMetrics& region) {
-    if (!(region.mse_error > 0)) return 0;
-    return region.mse > 0 ? std::sqrt(1.96 * region.mse_error / region.mse) : std::numeric_limits<double>::infinity();
+    if (region.mse > 0) return std::sqrt(1.96 * region.mse_error / region.mse);
+    return region.reference_error > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 std::vector<MetricName> metric_names(const Experiment& experiment) {

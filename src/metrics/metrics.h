@@ -116,9 +116,9 @@ struct ReferenceQuality {
     std::optional<double> quadrature_error;    // rms of the quadrature's own stated error; none if it was not computed
     std::optional<double>
         max_relative_rmse_change;  // largest relative change of any arm's RMSE if the article's reference is used
-    // Of the reference that the metrics use: its own error over the smallest RMSE here. Of a paired one, whose error does
-    // not add to an RMSE: the root of the half width of the interval of the squared error over it. In squares, both are
-    // the part of the mean squared error that may be the reference's.
+    // Of the reference that the metrics use: its own error over the smallest RMSE here. Of a paired one, whose error
+    // does not add to an RMSE: the root of the half width of the interval of the squared error over it. In squares,
+    // both are the part of the mean squared error that may be the reference's.
     double error_share = 0;
     std::optional<double> paired_error{};  // rms of a paired reference's own error
 };

@@ -55,10 +55,7 @@ WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight
 class Products {
 public:
     Products(const ShadingPoints& points, bool with_light)
-        : points_(points),
-          with_light_(with_light),
-          memory_(points.kernel_memory()),
-          room_(points, memory_.data()) {}
+        : points_(points), with_light_(with_light), memory_(points.kernel_memory()), room_(points, memory_.data()) {}
 
     double operator()(const PointRun& run, const PointDraw& drawn) {
         const float cos = drawn.wi.z;

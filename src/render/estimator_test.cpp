@@ -119,7 +119,7 @@ TEST(Films, VarianceIsNaNForNaNAndZeroForZeros) {
     const Scene scene(test::small_scene());
     const ShadingPoints shading_points = shading_points_of(scene, {30, 20, 34, 23}, nullptr).front();
     Moments moments;
-    moments.resize(shading_points.pixel.size(), shading_points.disks.size());
+    moments.resize(shading_points);
     moments.spread[0] = moments.g[0] = std::nan("");
     moments.bad[0] = 1;
     Film film(67, 45, 8);

@@ -30,8 +30,8 @@ struct Moments {
     /// Over the samples that met light that varies: g, g * lobe, and both times L by colour channel. Empty without it.
     std::vector<double> around_g, around_g_lobe;
     std::array<std::vector<double>, 3> around, around_lobe;
-    std::vector<double> spread;                              // sum of (X - mean X)^2
-    std::vector<float> largest;                              // largest X
+    std::vector<double> spread;  // sum of (X - mean X)^2
+    std::vector<float> largest;  // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
     /// New entries are 0; kernels write all of them.
     void resize(const ShadingPoints& shading_points);
@@ -58,6 +58,7 @@ struct KernelTable {
     std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count> of_lights;  // [lobe + 1]
     std::array<Kernel, Samplers::count> of_surroundings;                          // for points with surroundings
 
+    /// Returns the kernel for these points.
     Kernel kernel(int sampler, const ShadingPoints& points) const {
         const auto k = static_cast<std::size_t>(sampler);
         return points.around ? of_surroundings[k] : of_lights[k][static_cast<std::size_t>(points.lobe + 1)];

@@ -178,8 +178,8 @@ template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& e
     store(p.bad, out.bad.data() + at);
 }
 
-/// Any lobe, chosen at each call. Where a sample takes rays through trees, the choice costs nothing beside them, and one
-/// kernel for all lobes is compiled in a fifth of the time.
+/// Any lobe, chosen at each call. Where a sample takes rays through trees, the choice costs nothing next to them, and
+/// one kernel for all lobes is compiled in a fifth of the time.
 template <class F> struct AnyLobe {
     static constexpr bool present = true;
     int kind;  // -1: none

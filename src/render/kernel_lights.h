@@ -191,8 +191,7 @@ template <class F> struct Lights {
         const Met nearest = nearest_light(drawn);
         F seen = select(up & (nearest.distance < number<F>(far)), number<F>(1), number<F>(0));
         const WorldRay ray = ray_of(drawn.wi);
-        seen = seen_past_bodies(
-            ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), seen);
+        seen = seen_past_bodies(ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), seen);
         x = add_light(nearest.light, seen, g, lobe, x);
         met.hits = plus_one_where(seen > number<F>(0), met.hits);
         met.any = true;
@@ -233,9 +232,7 @@ protected:
         Vec3<F> o, d;
     };
     [[gnu::always_inline]] WorldRay ray_of(Vec3<F> wi) const { return {position(), frame().to_world(wi)}; }
-    Vec3<F> position() const {
-        return load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at);
-    }
+    Vec3<F> position() const { return load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at); }
     Frame<F> frame() const {
         return {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, at),
             load_lanes<F>(shading_points.bx, shading_points.by, shading_points.bz, at),

@@ -141,9 +141,8 @@ private:
     }
 
     /// Sets seen to 0 where a triangle that does not emit is met first; `triangle` and `nearest` to one that emits.
-    template <class D, class Ray>
-    void look_past_meshes(const D& drawn, const Ray& ray, LaneArray<F>& seen, LaneArray<F>& nearest,
-        LaneIntegers<F>& triangle) const {
+    template <class D, class Ray> void look_past_meshes(
+        const D& drawn, const Ray& ray, LaneArray<F>& seen, LaneArray<F>& nearest, LaneIntegers<F>& triangle) const {
         const LaneArray<F> ox(ray.o.x), oy(ray.o.y), oz(ray.o.z), dx(ray.d.x), dy(ray.d.y), dz(ray.d.z);
         LaneIntegers<F> aimed{UintOf<F>(no_triangle)};
         if constexpr (requires { drawn.triangle; }) aimed = LaneIntegers<F>(drawn.triangle);
@@ -173,7 +172,8 @@ private:
         return g * worth;
     }
 
-    /// The radiance of the triangle, or of the sky in the world's direction d, where `lit`, and no light is met; else 0.
+    /// The radiance of the triangle, or of the sky in the world's direction d, where `lit`, and no light is met; else
+    /// 0.
     template <class D> Vec3<F> radiance(const D& drawn, Vec3<F> d, const LaneArray<F>& lit,
         const LaneIntegers<F>& triangle, MaskOf<F> of_lights) const {
         const LaneArray<F> dx(d.x), dy(d.y), dz(d.z), other(select(of_lights, number<F>(1), number<F>(0)));

@@ -67,8 +67,8 @@ public:
     /// Returns a sampler's density in 1/sr at a direction; for a sampler with two techniques, that of the first.
     double pdf(std::string_view sampler, Vec3d wi) const;
 
-    /// Returns the first n samples of a sampler in order, under the scene's lights and fill, without its sky and meshes; for one with two techniques, 2 n in pairs. `sampler`: a name
-    /// of samplers/all.h.
+    /// Returns the first n samples of a sampler in order, under the scene's lights and fill, without its sky and
+    /// meshes; for one with two techniques, 2 n in pairs. `sampler`: a name of samplers/all.h.
     std::vector<PixelSample> samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const;
 
 private:

@@ -31,8 +31,8 @@ std::array<std::string, 3> channels_of(const Imf::Header& header, const std::str
     for (const std::string& name : names) {
         const Imf::Channel* channel = channels.findChannel(name);
         if (!channel)
-            throw InputError({path, 0, 0},
-                fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part", name));
+            throw InputError(
+                {path, 0, 0}, fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part", name));
         if (channel->xSampling != 1 || channel->ySampling != 1)
             throw InputError({path, 0, 0}, fmt::format("expected a sample of '{}' for every pixel", name));
     }
@@ -92,8 +92,8 @@ std::shared_ptr<const SkyImage> sky_image(int width, int height, std::vector<flo
 std::shared_ptr<const SkyImage> read_sky(const std::string& path) {
     errno = 0;
     if (!std::ifstream(path, std::ios::binary))
-        throw InputError({path, 0, 0},
-            fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
+        throw InputError(
+            {path, 0, 0}, fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
     try {
         return read(path);
     } catch (const InputError&) { throw; } catch (const std::exception& error) {

@@ -8,8 +8,8 @@
 
 namespace crescent::inline render {
 
-/// Throws InputError with the file's name if it cannot be read, is no image of this kind, or is larger than a sky may be;
-/// the size is checked before memory is taken for it.
+/// Throws InputError with the file's name if it cannot be read, is no image of this kind, or is larger than a sky may
+/// be; the size is checked before memory is taken for it.
 std::shared_ptr<const SkyImage> read_sky(const std::string& path);
 
 /// Writes one, for programs that make skies. Throws OutputError.

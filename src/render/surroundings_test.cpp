@@ -40,7 +40,8 @@ MeshObject two_triangles(const lights::Rectangle& r, const Rgb& radiance) {
     return out;
 }
 
-constexpr lights::Rectangle panel{{-0.9, 2.4, 0.6}, {0, 0, -1.2}, {1.8, 0, 0}};  // shines downwards, above what the camera sees
+constexpr lights::Rectangle panel{
+    {-0.9, 2.4, 0.6}, {0, 0, -1.2}, {1.8, 0, 0}};  // shines downwards, above what the camera sees
 
 std::vector<Film> films(const Scene& scene, const char* sampler, std::uint64_t n, const std::string& isa = "") {
     ProgressMonitor monitor;
@@ -78,7 +79,8 @@ double worth(const Scene& scene, const Hit& hit, const Surface& on, Vec3d wi) {
     const double eye = std::sqrt(dot(hit.x - scene.camera().eye, hit.x - scene.camera().eye));
     const double lo = 1e-5 * (nearest < 1e300 ? nearest : eye);
     for (const Occluder& o : scene.occluders())
-        if (o.shape != hit.shape && std::visit(test::Crosses{hit.x, d, lo, (1 - 1e-5) * nearest}, o.body)) radiance = {};
+        if (o.shape != hit.shape && std::visit(test::Crosses{hit.x, d, lo, (1 - 1e-5) * nearest}, o.body))
+            radiance = {};
     const double lobe = on.rho_s > 0 ? lobe_value(on.brdf, on.s, on.alpha, wo, wi) : 0;
     double x = 0;
     for (std::size_t c = 0; c < 3; ++c)

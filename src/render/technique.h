@@ -33,8 +33,8 @@ struct PointRows {
 struct PointDraw {
     Vec3<float> wi{0, 0, 1};
     double pdf = 0;
-    float light = -1;  // the light at which it was aimed, disks first
-    bool met = false;  // it meets that light
+    float light = -1;                                        // the light at which it was aimed, disks first
+    bool met = false;                                        // it meets that light
     std::uint32_t texel = no_texel, triangle = no_triangle;  // of the sky and of emitting triangles, if drawn there
 };
 

@@ -21,7 +21,8 @@ Json tail_json(const Tail& tail) {
     return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}};
 }
 
-/// An RMSE whose estimated square is below 0 is not a number: null. Elsewhere NaN is an invalid number and stays visible.
+/// An RMSE whose estimated square is below 0 is not a number: null. Elsewhere NaN is an invalid number and stays
+/// visible.
 Json number_or_null(double x, bool paired) { return paired && std::isnan(x) ? Json(nullptr) : number(x); }
 
 Json json_of(double x) { return number(x); }
@@ -64,8 +65,7 @@ Json band_json(const SeedSpread& b, bool paired) {
         {"published", optional_number(b.published)}, {"measured", number_or_null(b.measured, paired)},
         {"median", number_or_null(b.band.median, paired)}, {"q05", number_or_null(b.band.q05, paired)},
         {"q95", number_or_null(b.band.q95, paired)}, {"seeds", b.band.seeds},
-        {"interval", interval_json(b.band, paired)},
-        {"published_rank", optional_number(b.published_rank)}};
+        {"interval", interval_json(b.band, paired)}, {"published_rank", optional_number(b.published_rank)}};
 }
 
 Json ladder_json(const Ladder& l, bool paired) {
@@ -77,8 +77,7 @@ Json ladder_json(const Ladder& l, bool paired) {
                                                                  : Json(nullptr);
     return {{"arm", l.arm}, {"region", l.region}, {"s", number(l.s)}, {"n", l.n}, {"rmse", std::move(rmse)},
         {"slope", number_or_null(l.slope, paired)}, {"low", number_or_null(l.low, paired)},
-        {"high", number_or_null(l.high, paired)},
-        {"interval", std::move(interval)}};
+        {"high", number_or_null(l.high, paired)}, {"interval", std::move(interval)}};
 }
 
 Json furnace_json(const FurnaceResult& f) {
@@ -94,7 +93,8 @@ Json reference_json(const ReferenceQuality& r) {
         return {{"s", number(r.s)}, {"region", r.region}, {"paired_error", number(*r.paired_error)},
             {"error_share", number(r.error_share)}};
     return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", optional_number(r.rms_difference)},
-        {"rms_standard_error", optional_number(r.rms_standard_error)}, {"quadrature_error", optional_number(r.quadrature_error)},
+        {"rms_standard_error", optional_number(r.rms_standard_error)},
+        {"quadrature_error", optional_number(r.quadrature_error)},
         {"rmse_unlike", optional_number(r.max_relative_rmse_change)}, {"error_share", number(r.error_share)}};
 }
 
@@ -198,8 +198,10 @@ std::string metrics_json(const ReportInputs& in) {
     Json provenance = provenance_json(in.provenance);
     provenance["experiment"] = experiment_json(in);
     const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
-        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
-        {"bands", list(m.bands, of_rmse)}, {"ladders", list(m.ladders, [&](const Ladder& l) { return ladder_json(l, paired); })},
+        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels},
+        {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
+        {"bands", list(m.bands, of_rmse)},
+        {"ladders", list(m.ladders, [&](const Ladder& l) { return ladder_json(l, paired); })},
         {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
         {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
         {"evidence", evidence_json(in.evidence)}, {"provenance", std::move(provenance)}};

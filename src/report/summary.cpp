@@ -71,8 +71,7 @@ std::string table_row(const SeedSpread& b, bool published, bool paired) {
     if (b.band.seeds < 2) return row;
     row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median, paired), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(
-        figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
+    return row + clip(figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {
@@ -125,6 +124,15 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
     return out;
 }
 
+/// Returns the error of a paired reference in each region, at the experiment's own exponent.
+std::string reference_line(const ReportInputs& in) {
+    std::string out;
+    for (const ReferenceQuality& r : in.metrics.references)
+        if (r.paired_error && r.s == in.experiment.s())
+            out += fmt::format("{}{} {}", out.empty() ? "" : ", ", r.region, figures(*r.paired_error, 2));
+    return out.empty() ? out : "\n" + clip("  the reference's own error (rms): " + out, columns) + "\n";
+}
+
 std::string speed(const Timing& t) {
     if (t.threads == 0) return {};  // nothing was computed: runs were joined
     std::uint64_t samples = 0;
@@ -161,7 +169,7 @@ std::string terminal_summary(
     if (const std::vector<int> missing = in.provenance.missing(); !missing.empty())
         out += fmt::format("seeds {} of {}: a part of the series; missing: {}\n", ranges_text(in.provenance.places),
             in.provenance.series, ranges_text(missing));
-    out += table(in, paint) + films(hashes_shown(in), paint);
+    out += table(in, paint) + reference_line(in) + films(hashes_shown(in), paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format("\n{}\n",
             paint(red,

@@ -109,9 +109,7 @@ const Film* Measured::film(const RunKey& key) const {
     return found == films.end() ? nullptr : &found->second;
 }
 
-const ReferenceFilm* Measured::reference(double s) const {
-    return reference_of(experiment, *this, s);
-}
+const ReferenceFilm* Measured::reference(double s) const { return reference_of(experiment, *this, s); }
 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor) {

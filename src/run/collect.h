@@ -22,10 +22,10 @@ struct Measured {
     Provenance provenance;
     Timing timing;
     ShapeMap shapes;
-    std::vector<std::pair<RunKey, Film>> films;          // of the jobs whose films were kept
+    std::vector<std::pair<RunKey, Film>> films;                  // of the jobs whose films were kept
     std::vector<ReferenceFilm> quadrature, monte_carlo, paired;  // one per exponent; none if not requested
-    Plates plates;                                       // none before write()
-    ExternalSamplers outside;                            // plates evaluate their densities
+    Plates plates;                                               // none before write()
+    ExternalSamplers outside;                                    // plates evaluate their densities
     bool stopped = false;
 
     const Film* film(const RunKey& key) const;       // null: not kept

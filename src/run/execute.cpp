@@ -114,8 +114,7 @@ void add_references(
         if (asked.kind == ReferenceKind::paired) {
             monitor.begin("paired reference", pixels);
             const std::unique_ptr<TileCheckpoint> tiles = tiles_of_pass("paired");
-            prepared.paired = paired_reference(
-                prepared.views, paired_plan(plan.whole), monitor, tiles.get());
+            prepared.paired = paired_reference(prepared.views, paired_plan(plan.whole), monitor, tiles.get());
             return;
         }
         monitor.begin("reference by quadrature", pixels);

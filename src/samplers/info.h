@@ -17,10 +17,11 @@ enum class PdfAxis { none, normal, mirror };
 
 /// A surface and a light on which `crescent check` tests a sampler.
 struct CaseSurface {
-    std::string_view lobe = "";       // a word of lobes/; "": none
-    double sharpness = 32;            // that lobe's s or alpha
-    bool lambert = false;             // with rho_d = 0.5 in addition
-    std::string_view light = "fill";  // "fill", "disk", "overhead disk", "two disks", "sky", "triangles", or fill + these
+    std::string_view lobe = "";  // a word of lobes/; "": none
+    double sharpness = 32;       // that lobe's s or alpha
+    bool lambert = false;        // with rho_d = 0.5 in addition
+    std::string_view light =
+        "fill";  // "fill", "disk", "overhead disk", "two disks", "sky", "triangles", or fill + these
 };
 
 /// The surface and light of one case, the input of a sampler's theory.
@@ -66,9 +67,9 @@ struct SamplerDoc {
     std::string_view draw = "";     // how u becomes a direction
     std::string_view axis = "";     // the direction from which polar angles are measured
     PdfAxis about = PdfAxis::none;
-    bool needs_s = false;                           // an experiment without an exponent cannot run it
-    bool combines = false;                          // it combines several densities
-    std::string_view misses = "";                   // light that it cannot reach, under which it is biased; empty: none
+    bool needs_s = false;          // an experiment without an exponent cannot run it
+    bool combines = false;         // it combines several densities
+    std::string_view misses = "";  // light that it cannot reach, under which it is biased; empty: none
     Reaches reaches = {};
     std::span<const CaseSurface> check_cases = {};  // empty: every lobe, and Lambert, under the fill
     GlTolerance gl = {};

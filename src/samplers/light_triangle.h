@@ -42,8 +42,8 @@ template <class F> struct LightTriangle {
         LaneArray<F> x, y, z, p;
         LaneIntegers<F> triangle;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
-            const TriangleDraw drawn = sample_triangles(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
-                double(ux.at[l]), double(uy.at[l]));
+            const TriangleDraw drawn = sample_triangles(
+                *around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])}, double(ux.at[l]), double(uy.at[l]));
             x.at[l] = static_cast<Scalar>(drawn.w.x), y.at[l] = static_cast<Scalar>(drawn.w.y);
             z.at[l] = static_cast<Scalar>(drawn.w.z), p.at[l] = static_cast<Scalar>(drawn.pdf);
             triangle.at[l] = drawn.triangle;
@@ -58,9 +58,8 @@ template <class F> struct LightTriangle {
         const LaneArray<F> x(d.x), y(d.y), z(d.z), px(position.x), py(position.y), pz(position.z);
         LaneArray<F> p;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l)
-            p.at[l] =
-                static_cast<Scalar>(triangles_pdf(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
-                    {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+            p.at[l] = static_cast<Scalar>(triangles_pdf(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
+                {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
         return {p.pack()};
     }
 };

@@ -44,13 +44,13 @@ template <class F> struct DrawnToSky : Drawn<F> {
     UintOf<F> texel;  // no_texel: none was drawn
 };
 
-/// A direction that was drawn on an emitting triangle, which it meets whatever the rounding of the direction.
+/// A direction that was drawn on an emitting triangle, which it meets for any rounding of the direction.
 template <class F> struct DrawnToTriangle : Drawn<F> {
     UintOf<F> triangle;  // no_triangle: none was drawn
 };
 
-/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1; `texel`
-/// and `triangle` those of samplers which aimed there.
+/// A direction that was drawn by one of several samplers: `disk` is that of one which aimed at a light, else -1;
+/// `texel` and `triangle` those of samplers which aimed there.
 template <class F> struct DrawnByAny : DrawnToDisk<F> {
     static constexpr bool by_any = true;
     UintOf<F> texel{no_texel}, triangle{no_triangle};

@@ -1,11 +1,11 @@
 // sky: a direction of an image sky, by its luminance.
 //   A texel with the probability of its mass Y(L) dw, where dw = 2 pi / width (cos theta_r - cos theta_(r+1)) is its
-//   exact solid angle: u1 chooses a row, u2 a column of it, and what is left of both a direction, uniform in solid angle
-//   within the texel. So p = Y(L) / sum of Y(L) dw over all texels, over the whole sphere: half of a bright horizon is
-//   below the surface, where samples have weight 0.
-// It reaches only the sky: under a fill it is biased by the fill, and by the lights, unless another technique adds them.
-// Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", 12.5, without its interpolation. A scene without a sky
-// has no such direction: nothing is drawn.
+//   exact solid angle: u1 chooses a row, u2 a column of it, and what is left of both a direction, uniform in solid
+//   angle within the texel. So p = Y(L) / sum of Y(L) dw over all texels, over the whole sphere: half of a bright
+//   horizon is below the surface, where samples have weight 0.
+// It reaches only the sky: under a fill it is biased by the fill, and by the lights, unless another technique adds
+// them. Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", 12.5, without its interpolation. A scene without a
+// sky has no such direction: nothing is drawn.
 #pragma once
 
 #include "math/simd/lanes.h"
@@ -15,12 +15,13 @@ namespace crescent::inline samplers {
 
 template <class F> struct SkyByTexel {
     static constexpr std::string_view name = "sky";
-    static constexpr CaseSurface check_cases[] = {{.lambert = true, .light = "sky"},
-        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "sky"}};
+    static constexpr CaseSurface check_cases[] = {
+        {.lambert = true, .light = "sky"}, {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "sky"}};
     static constexpr SamplerDoc manual = {.label = name,
         .summary = "a direction of the image sky, by the luminance of its texels",
         .formula = R"(\frac{L_\omega}{\Phi})",
-        .draw = R"(a texel by its mass $L_\omega\Delta\omega$, then even over its solid angle; $\Phi$ is the sum of all)",
+        .draw =
+            R"(a texel by its mass $L_\omega\Delta\omega$, then even over its solid angle; $\Phi$ is the sum of all)",
         .axis = "the sky",
         .misses = light_arm_misses,
         .reaches = {.fill = false, .lights = false, .triangles = false},
@@ -30,7 +31,8 @@ template <class F> struct SkyByTexel {
     const Surroundings* around;
     Frame<F> frame;
 
-    explicit SkyByTexel(const ShadingPoint<F>& shading_point) : around(shading_point.around), frame(shading_point.frame) {}
+    explicit SkyByTexel(const ShadingPoint<F>& shading_point)
+        : around(shading_point.around), frame(shading_point.frame) {}
 
     [[gnu::noinline]] DrawnToSky<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0);
@@ -55,8 +57,7 @@ template <class F> struct SkyByTexel {
         const LaneArray<F> x(d.x), y(d.y), z(d.z);
         LaneArray<F> p;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l)
-            p.at[l] = static_cast<Scalar>(sky_pdf(*around,
-                {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+            p.at[l] = static_cast<Scalar>(sky_pdf(*around, {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
         return {p.pack()};
     }
 };

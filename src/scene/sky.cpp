@@ -14,8 +14,9 @@ namespace crescent::inline scene {
 
 std::string why_no_sky(const SkyImage& image, double scale) {
     if (image.width < 2 || image.height < 1 || image.width != 2 * image.height || image.width > widest_sky)
-        return fmt::format("expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found "
-                           "{} x {}",
+        return fmt::format(
+            "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found "
+            "{} x {}",
             widest_sky, highest_sky, image.width, image.height);
     bool light = false;
     for (std::size_t k = 0; k < image.rgb.size(); ++k) {
@@ -30,8 +31,7 @@ std::string why_no_sky(const SkyImage& image, double scale) {
     return light ? "" : "every texel is 0: expected a sky with light";
 }
 
-SkyTable::SkyTable(const SkyLight& light)
-    : image_(light.image), scale_(light.scale), turns_(light.rotation / 360) {
+SkyTable::SkyTable(const SkyLight& light) : image_(light.image), scale_(light.scale), turns_(light.rotation / 360) {
     ensure(image_ != nullptr, "the file of a sky is read before its scene is made");
     const int high = height();
     for (int row = 0; 2 * row <= high; ++row) edge_.push_back(2 * sqr(math::sin(pi * row / (2.0 * high))));

@@ -7,7 +7,8 @@
 //   counterclockwise seen from above.
 //
 // A direction is drawn in two steps: a texel with the probability of its mass Y(L) times its solid angle,
-// 2 pi / width (cos theta_r - cos theta_(r+1)), then uniformly in solid angle within it. So p = Y(L) / sum of all masses.
+// 2 pi / width (cos theta_r - cos theta_(r+1)), then uniformly in solid angle within it. So p = Y(L) / sum of all
+// masses.
 #pragma once
 
 #include <cstddef>
@@ -37,8 +38,8 @@ struct SkyImage {
 /// The sky of a scene.
 struct SkyLight {
     std::string file;
-    double rotation = 0;  // degrees about +y
-    double scale = 1;     // of the radiance
+    double rotation = 0;                   // degrees about +y
+    double scale = 1;                      // of the radiance
     std::optional<std::string> content{};  // 16 hexadecimal digits of SkyImage::hash; none: not known
     SourceLocation at{};
     std::shared_ptr<const SkyImage> image{};  // none before the file is read
@@ -86,9 +87,9 @@ private:
     RowEdges edges_of(int row) const;
 
     std::shared_ptr<const SkyImage> image_;
-    double scale_, turns_;      // of the rotation
-    std::vector<double> edge_;  // 1 - cos(pi row / height), down to the last edge above the equator or on it
-    std::vector<double> rows_;  // sum of the masses of all rows up to this one
+    double scale_, turns_;        // of the rotation
+    std::vector<double> edge_;    // 1 - cos(pi row / height), down to the last edge above the equator or on it
+    std::vector<double> rows_;    // sum of the masses of all rows up to this one
     std::vector<float> columns_;  // the same within each row, over the mass of the row
     double total_ = 0;
 };

@@ -1,7 +1,7 @@
-// What is around the shading points of a scene beside its bodies and its lights of one radiance: an image sky, and
+// What is around the shading points of a scene, besides its bodies and its lights of one radiance: an image sky, and
 // meshes, whose triangles hide and may emit. Positions relative to the scene's origin, lengths in m, radiance in
-// W/(sr m^2). Kernels and samplers call these functions for one direction at a time; none is inline, because each kernel
-// is compiled for its own instruction set and all of them share this code.
+// W/(sr m^2). Kernels and samplers call these functions for one direction at a time; none is inline, because each
+// kernel is compiled for its own instruction set and all of them share this code.
 #pragma once
 
 #include <cstdint>

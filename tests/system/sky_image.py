@@ -1,4 +1,4 @@
-"""Writes latitude-longitude images in OpenEXR, uncompressed, for the scripts beside this file; the standard library alone.
+"""Writes latitude-longitude images in OpenEXR, uncompressed, for the scripts next to this file; the standard library alone.
 
     sky_image.py FILE WIDTH [EXPRESSION]
 

@@ -17,8 +17,8 @@ namespace {
 /// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so
 /// that distance decides and not order; one straight above facing down (its frame's axis is -z); and of every other
 /// kind of light its example. Radiances, m.
-/// A sky of 16 x 8 texels, brighter towards the horizon, with one bright texel at 56 deg from up; and five triangles, of
-/// which the nearest hides a part of the others.
+/// A sky of 16 x 8 texels, brighter towards the horizon, with one bright texel at 56 deg from up; and five triangles,
+/// of which the nearest hides a part of the others.
 std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles) {
     auto out = std::make_shared<Surroundings>();
     if (sky) {

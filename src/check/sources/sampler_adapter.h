@@ -188,9 +188,9 @@ inline double luminance(Vec3d c) { return output::luminance(Rgb{c.x, c.y, c.z});
 struct CaseLighting {
     double fill = 1;  // radiance
     std::vector<CaseDiskLight> disks;
-    std::vector<CaseAreaLight> area_lights{};           // that are no disks
-    std::shared_ptr<const Surroundings> around{};       // a sky and emitting triangles; null: none
-    Vec3d position{};                                   // of the surface point in the world of `around`, m
+    std::vector<CaseAreaLight> area_lights{};              // that are no disks
+    std::shared_ptr<const Surroundings> around{};          // a sky and emitting triangles; null: none
+    Vec3d position{};                                      // of the surface point in the world of `around`, m
     Frame<double> frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // of the surface point in that world
     bool even() const { return disks.empty() && area_lights.empty() && !around; }
     /// The nearest light that wi meets: how far it is and its radiance.

@@ -13,9 +13,7 @@ struct RelMseMetric {
         .in_tables = false};
     static constexpr double epsilon = 0.01;  // [Y]^2
     double sum = 0;
-    void add(const FilmPixel& p, const FilmFacts&) {
-        sum += p.squared_error() / (p.reference * p.reference + epsilon);
-    }
+    void add(const FilmPixel& p, const FilmFacts&) { sum += p.squared_error() / (p.reference * p.reference + epsilon); }
     double value(const FilmFacts& f) const { return sum / f.pixels; }
 };
 

@@ -71,8 +71,7 @@ std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views
                 for (const ShadingPoints& points : *groups) {
                     if (e == 0 || points.lobe >= 0) write(views[e], points, plan, &monitor.stop, films[e]);
                     else
-                        for (std::size_t i = 0; i < points.count; ++i)
-                            copy_pixel(films[0], films[e], points.pixel[i]);
+                        for (std::size_t i = 0; i < points.count; ++i) copy_pixel(films[0], films[e], points.pixel[i]);
                 }
             }
         });

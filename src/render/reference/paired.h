@@ -4,8 +4,8 @@
 // so a film of R and |e| holds both. e^2 estimates the variance of R.
 //
 // Each estimate is the balance heuristic (Veach & Guibas 1995, eq. (9)) of the cosine, the lobe's own sampler, and the
-// samplers of what shines: lights by solid angle, the sky, emitting triangles. Each of these has the two dimensions of a
-// Sobol sequence of its own, Owen-scrambled by the pixel, the sampler and the estimate (math/sobol.h).
+// samplers of what shines: lights by solid angle, the sky, emitting triangles. Each of these has the two dimensions of
+// a Sobol sequence of its own, Owen-scrambled by the pixel, the sampler and the estimate (math/sobol.h).
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace crescent::inline reference {
 
 struct PairedPlan {
-    std::uint64_t n = 0;                    // samples per pixel of each estimate, of each sampler
+    std::uint64_t n = 0;                   // samples per pixel of each estimate, of each sampler
     std::array<std::uint32_t, 2> seeds{};  // that no sampler of a film has
 };
 
