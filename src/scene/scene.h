@@ -26,6 +26,7 @@ struct Hit {
 
     bool below = false;  // the camera is below the smooth surface: nothing is reflected, and n is the face
 
+    /// Returns whether a mesh is hit.
     bool is_mesh() const { return instance != no_item; }
 };
 

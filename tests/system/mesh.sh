@@ -51,7 +51,7 @@ for model in tent.obj tent.ply; do
 done
 cmp -s tent-obj.mesh tent-ply.mesh || die "the formats differ"
 
-experiment() { { cat "$tiny" && printf '\n[meshes.tent]\nfile = "%s"\nrho_d = [0.5, 0.4, 0.3]\n%s\n' "$@" ""; } >mesh.toml; }
+experiment() { { cat "$tiny" && printf '\n[meshes.tent]\nfile = "%s"\nrho_d = [0.5, 0.4, 0.3]\n%s\n' "$1" "${2:-}"; } >mesh.toml; }
 run() { expect "$1" "$CRESCENT" run mesh.toml --quiet "${@:2}"; }
 refuses() { # WORDS FILE [MORE]
     experiment "$2" "${3:-}"
