@@ -6,7 +6,8 @@
 One cosine sampler in four forms: examples/plugin/cosine.c as a library, examples/pipe_samplers/cosine_block.c and
 cosine.c as programs that answer in blocks and in lines, and NumPy in a file. Alone is the library's function, called
 on 8192 rows at a time by one thread; for NumPy the function alone, on 65536 rows. A run uses all cores; its rate is
-that of timing.json: drawing, passing rows between processes and estimating. The best of the repeats. With --write the table is put between the lines of the file that say "measured by external_arms.py" and "end of
+that of timing.json: drawing, passing rows between processes and estimating. The best of the repeats. With --write
+the table is put between the lines of the file that say "measured by external_arms.py" and "end of
 external_arms.py".
 """
 import argparse

@@ -41,23 +41,21 @@ def write_mesh(
     if beyond.any():
         at = int(np.argmax(beyond))
         raise ValueError(f"triangles: row {at} is {corners[at].tolist()}, with {len(points)} positions")
-    parts = [points]
-    flags = 0
+    parts = {"positions": points}
     if normals is not None:
         smooth = _rows("normals", normals, 3)
         length = np.linalg.norm(smooth.astype(float), axis=1, keepdims=True)
         if not (length > 0).all():
             raise ValueError(f"normals: row {int(np.argmin(length > 0))} is 0")
-        parts.append((smooth / length).astype("<f4"))
-        flags |= 1
+        parts["normals"] = (smooth / length).astype("<f4")
     if uv is not None:
-        parts.append(_rows("uv", uv, 2))
-        flags |= 2
-    for name, part in zip(("normals", "uv"), parts[1:], strict=False):
+        parts["uv"] = _rows("uv", uv, 2)
+    for name, part in parts.items():
         if len(part) != len(points):
             raise ValueError(f"{name} has {len(part)} rows for {len(points)} positions")
+    flags = ("normals" in parts) + 2 * ("uv" in parts)
     head = struct.pack("<8s6IQ", b"crescent", 0x6873656D, 1, len(points), len(corners), flags, 0, 0)
-    data = b"".join(part.tobytes() for part in parts) + corners.astype("<u4").tobytes()
+    data = b"".join(part.tobytes() for part in parts.values()) + corners.astype("<u4").tobytes()
     Path(path).write_bytes(head + data)
 
 

@@ -119,7 +119,7 @@ def _radiance(made: _Made, emitter: Any) -> list[float] | None:
 
 
 def _matrix(made: _Made, thing: Any) -> Any:
-    return np.array(made.mi.traverse(thing)["to_world"].matrix, float)[:4, :4]
+    return np.array(made.mi.traverse(thing)["to_world"].matrix, float).reshape(4, 4)
 
 
 def _add_mesh(made: _Made, shape: Any, name: str) -> None:
@@ -175,7 +175,7 @@ def _add_sky(made: _Made, emitter: Any) -> None:
     turn = _matrix(made, emitter)[:3, :3]
     degrees = math.degrees(math.atan2(turn[0, 2], turn[0, 0]))
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    if not np.allclose(turn, [[c, 0, s], [0, 1, 0], [-s, 0, c]], atol=1e-4):
+    if not np.allclose(turn, np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]), atol=1e-4):
         made.refuse("envmap: a rotation that is not about the y axis", "only the part about it is used")
     pixels = np.array(params["data"], np.float32)[..., :3]
     resolution = re.search(r"res = \"?\[(\d+), \d+\]", str(emitter))
