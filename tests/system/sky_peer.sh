@@ -1,7 +1,8 @@
 #!/bin/bash
 # Direct light of an image sky, against Mitsuba 3.
 . "$(dirname "$0")/common.sh"
-python=$(command -v "${MITSUBA_PYTHON:-python3}")
+built=$(sed -n 's/^_\?Python_EXECUTABLE:[A-Z]*=//p' "${CRESCENT_BUILD:?the build folder}/CMakeCache.txt" | head -n 1)
+python=$(command -v "${built:-python3}")
 "$python" -c 'import mitsuba, numpy' 2>/dev/null || skip "no Mitsuba 3 here: pip install mitsuba numpy"
 /usr/bin/python3 "$here/sky_image.py" sky.exr 64 \
     '(20, 15, 9) if 0.5 * right + 0.6 * up + 0.62 * front > 0.93 else (0.3 + 0.2 * up, 0.4 + 0.2 * up, 0.6 + 0.3 * up)' ||
