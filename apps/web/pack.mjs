@@ -33,7 +33,7 @@ function sources(api) {
     const file = `experiments/${name}`, body = text(join(experiments, name));
     const figures = /^published = "(.*?)"/m.exec(body);
     const published = figures ? text(join(experiments, figures[1])) : "";
-    const d = api.ask("open", { file, text: body, published, set: [] });
+    const d = api.json("open", { file, text: body, published, set: [] });
     const arms = Object.fromEntries(d.arms.map((arm) => [arm.name, arm.n]));
     const short = name.replace(/\.toml$/, "");
     all[short] = {

@@ -12,7 +12,7 @@ function hold(is, words) { if (!is) throw new Error(words); }
 function opened(set = []) {
   const api = new Api(module);
   api.number("keep_points", 300_000);
-  return { api, info: api.ask("open", { file: experiment, text, set, published: "" }) };
+  return { api, info: api.json("open", { file: experiment, text, set, published: "" }) };
 }
 
 const { api, info } = opened(), again = opened().api;

@@ -10,7 +10,7 @@ function hold(is, words) { if (!is) throw new Error(words); }
 
 const { verdicts } = JSON.parse(readFileSync(native, "utf8")), arm = verdicts[0].arm;
 let compared = 0;
-for (const { case: at, verdicts: of } of api.ask("checked", { sampler: arm, theta: Number(angle) }).cases)
+for (const { case: at, verdicts: of } of api.json("checked", { sampler: arm, theta: Number(angle) }).cases)
   for (const { name, state, say, evidence } of of) {
     const there = verdicts.find((v) => v.case === at && v.name === name);
     hold(there && isDeepStrictEqual({ state, say, evidence }, { state: there.state, say: there.say, evidence: there.evidence }),
