@@ -23,10 +23,10 @@ done
 expect 0 "$FILM_HASHES" --plain "${experiments[@]}"
 mv printed plain
 # A line names its instruction set second; without it, every set and machine prints the same.
-hashes() { awk '/ quadrature |^function /{ print; next } { $2 = ""; print }' "$1" | sort -u; }
+hashes() { awk '/ quadrature | paired |^function /{ print; next } { $2 = ""; print }' "$1" | sort -u; }
 expect 0 "$FILM_HASHES" <plain
 hashes printed >here
-grep -v -e ' quadrature ' -e '^function ' printed | awk '{ $2 = ""; print }' | sort | uniq -c |
+grep -v -e ' quadrature ' -e ' paired ' -e '^function ' printed | awk '{ $2 = ""; print }' | sort | uniq -c |
     awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
     die "films differ between instruction sets"
 [ "$(wc -l <here)" -gt 40 ] || die "too few films: $(cat here)"
