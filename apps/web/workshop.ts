@@ -27,7 +27,9 @@ export interface Checked { state: string; evaluations: number; verdicts: Verdict
 export interface Work { code: string; ground: string }
 
 const size = 320, draws = 1024;
-const longest = { film: 10_000, check: 20_000 }; // ms that the code may take for one job
+// ms that the code may take for one job: at least these, and that many times what a worker took to start, so that a busy
+// machine ends no code.
+const longest = { film: 30_000, check: 60_000 }, startups = { film: 40, check: 80 };
 const yours = "yours";
 /** What a verdict speaks of, as a picture. */
 const pictures: Record<string, string> = { support: "lost", normalised: "ratio", density: "ratio", physics: "f", tail: "f", mean: "f" };
@@ -73,6 +75,7 @@ export class Workshop implements Viewer {
   private films: Pool | undefined;
   private probe: Pool | undefined;
   private first = 0; // lines of the script before the code
+  private startup = 0; // ms that the worker took to start
   private era = 0;
   private looks = 0;
   private timer = 0;
@@ -146,6 +149,7 @@ export class Workshop implements Viewer {
     this.probe = new Pool(this.at.module, source, 1);
     this.probe.ready.then(() => {
       if (era !== this.era) return;
+      this.startup = performance.now() - this.watch;
       this.watch = 0;
       this.say();
       void this.look();
@@ -157,11 +161,12 @@ export class Workshop implements Viewer {
   /** Ends code that takes too long. */
   private guard(): void {
     const busy = Math.max(this.watch > 0 ? performance.now() - this.watch : 0, this.films?.busy ?? 0), checked = this.probe?.busy ?? 0;
-    const limit = busy > longest.film ? longest.film : checked > (this.checking ? longest.check : longest.film) ? (this.checking ? longest.check : longest.film) : 0;
+    const most = (of: "film" | "check"): number => Math.max(longest[of], startups[of] * this.startup);
+    const film = most("film"), check = this.checking ? most("check") : film, limit = busy > film ? film : checked > check ? check : 0;
     if (limit === 0) return;
     this.end();
     this.watch = 0;
-    this.say(`The code did not return within ${limit / 1000} s and was ended: look for a loop that does not end.`, this.loopLine());
+    this.say(`The code did not return within ${Math.round(limit / 1000)} s and was ended: look for a loop that does not end.`, this.loopLine());
   }
   private loopLine(): number {
     const lines = this.editor.code.split("\n"), at = lines.findIndex((line) => /\b(while|for|do)\b/.test(line));

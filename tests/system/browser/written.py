@@ -97,7 +97,7 @@ def tests(page, folder):
                 browser.wait(driver, f"{data}.looked", seconds=30)
                 assert any("connect-src" in line for line in browser.console(driver)), "the policy lets a sampler ask"
                 continue
-            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=30)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=60)
             assert word in said and (not line or said.startswith(f"Line {line}: ")), f"{word} in line {line}: {said}"
             if line:
                 browser.wait(driver, "document.querySelector('.cm-lint-marker-error, .cm-lintRange-error')")
