@@ -241,12 +241,12 @@ double error_of_t(const Mesh& mesh, std::uint32_t triangle, const Ray& ray, doub
     return allowed * reach / std::max(std::fabs(dot(n, d)), 1e-12);
 }
 
-struct Timing {
+struct RayTimes {
     double rays_per_s = 0;
     std::size_t hits = 0;
 };
-template <class Occluded> Timing time_of(const std::vector<Ray>& rays, const Occluded& occluded) {
-    Timing best;
+template <class Occluded> RayTimes time_of(const std::vector<Ray>& rays, const Occluded& occluded) {
+    RayTimes best;
     for (int pass = 0; pass < 3; ++pass) {
         best.hits = 0;
         const double begin = processor_seconds();
@@ -297,11 +297,11 @@ int main(int count, char** words) {
         };
         for (int kind = 0; kind < 4; ++kind) {
             const std::vector<Ray> all = rays_of(named.mesh, kind, rays, 11u + static_cast<unsigned>(kind));
-            const Timing mine = time_of(all, [&](const Ray& r) {
+            const RayTimes mine = time_of(all, [&](const Ray& r) {
                 const Ray in = own(r);
                 return bvh.occluded(in.o, in.d, in.t_max);
             });
-            const Timing theirs = time_of(all, [&](const Ray& r) { return embree.occluded(r); });
+            const RayTimes theirs = time_of(all, [&](const Ray& r) { return embree.occluded(r); });
             std::size_t differ = 0, far = 0;
             for (const Ray& r : all) {
                 const Ray in = own(r);
