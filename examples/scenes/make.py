@@ -1,4 +1,4 @@
-"""Makes five scenes of triangle meshes, with their experiments, in a folder: NumPy and nothing else.
+"""Makes five scenes of triangle meshes, with their experiments, in a folder, with NumPy and crescent.scenes.
 
     make.py FOLDER [SCENE...] [--side N] [--size WIDTHxHEIGHT]
 
@@ -9,46 +9,13 @@ field: 1,000 instances of one plant; room: a room lit by emitting triangles. `cr
 from __future__ import annotations
 
 import argparse
-import struct
 from pathlib import Path
 
 import numpy as np
 
+from crescent.scenes import write_mesh, write_sky
+
 SUNSET = 256  # rows of the sky
-
-
-def write_mesh(path: Path, positions: np.ndarray, triangles: np.ndarray, normals: np.ndarray | None = None) -> None:
-    """Writes the .mesh file, whose layout is in src/scene/mesh/mesh.h; hash 0: not stated."""
-    parts = [np.asarray(positions, "<f4")] + ([] if normals is None else [np.asarray(normals, "<f4")])
-    head = struct.pack("<8s6IQ", b"crescent", 0x6873656D, 1, len(positions), len(triangles), normals is not None, 0, 0)
-    path.write_bytes(head + b"".join(part.tobytes() for part in parts) + np.asarray(triangles, "<u4").tobytes())
-
-
-def write_sky(path: Path, rgb: np.ndarray) -> None:
-    """Writes a latitude-longitude image as uncompressed OpenEXR, its top row first."""
-    height, width, _ = rgb.shape
-    attribute = lambda name, kind, data: name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data  # noqa: E731
-    channels = b"".join(c + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for c in (b"B", b"G", b"R")) + b"\0"
-    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
-    head = struct.pack("<ii", 20000630, 2) + b"".join(
-        [
-            attribute(b"channels", b"chlist", channels),
-            attribute(b"compression", b"compression", b"\0"),
-            attribute(b"dataWindow", b"box2i", window),
-            attribute(b"displayWindow", b"box2i", window),
-            attribute(b"lineOrder", b"lineOrder", b"\0"),
-            attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
-            attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)),
-            attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)),
-            b"\0",
-        ]
-    )
-    row = 8 + 12 * width
-    offsets = struct.pack(f"<{height}Q", *(len(head) + 8 * height + row * y for y in range(height)))
-    rows = (
-        struct.pack("<ii", y, 12 * width) + np.asarray(rgb[y, :, ::-1].T, "<f4").tobytes() for y in range(height)
-    )
-    path.write_bytes(head + offsets + b"".join(rows))
 
 
 def sunset() -> np.ndarray:

@@ -16,8 +16,8 @@ import numpy as np
 __all__ = ["write_mesh", "write_sky"]
 
 
-def _rows(name: str, values: Any, columns: int) -> Any:
-    rows = np.asarray(values, "<f4")
+def _rows(name: str, values: Any, columns: int, kind: str = "<f4") -> Any:
+    rows = np.asarray(values, kind)
     if rows.ndim != 2 or rows.shape[1] != columns:
         raise ValueError(f"{name} has the shape {rows.shape}: expected (n, {columns})")
     if not np.isfinite(rows).all():
@@ -43,8 +43,8 @@ def write_mesh(
         raise ValueError(f"triangles: row {at} is {corners[at].tolist()}, with {len(points)} positions")
     parts = {"positions": points}
     if normals is not None:
-        smooth = _rows("normals", normals, 3)
-        length = np.linalg.norm(smooth.astype(float), axis=1, keepdims=True)
+        smooth = _rows("normals", normals, 3, "<f8")
+        length = np.linalg.norm(smooth, axis=1, keepdims=True)
         if not (length > 0).all():
             raise ValueError(f"normals: row {int(np.argmin(length > 0))} is 0")
         parts["normals"] = (smooth / length).astype("<f4")
