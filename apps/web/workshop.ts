@@ -123,8 +123,13 @@ export class Workshop implements Viewer {
   }
 
   private edited(): void {
+    this.end(); // what ran is not the code in the editor any more: a fault of it must not be shown
     this.verdicts.replaceChildren();
     this.at.changed(this.work);
+    this.restartSoon();
+  }
+
+  private restartSoon(): void {
     window.clearTimeout(this.timer);
     this.timer = window.setTimeout(() => this.restart(), 350);
   }
@@ -175,6 +180,7 @@ export class Workshop implements Viewer {
 
   /** A fault with its line, or none. */
   private say(words = "", line = 0, column = 0): void {
+    if (words) this.verdicts.replaceChildren();
     this.editor.mark(line, words, column);
     this.fault.textContent = words ? `${line > 0 ? `Line ${line}: ` : ""}${words}` : "";
     this.fault.className = words ? "bad" : "";
@@ -183,7 +189,7 @@ export class Workshop implements Viewer {
 
   private failedIn(era: number, error: unknown): void {
     if (era !== this.era) return;
-    this.model.stop();
+    this.end(); // one fault is enough: the other workers would report it again
     const why = error instanceof EngineError ? error : new EngineError("bug", String(error));
     if (why.kind !== "user") return this.say(why.sentence);
     const lines = this.editor.code.split("\n").length, text = why.message.replace(/^Uncaught /, "").replace(/\.?$/, ".");
@@ -202,7 +208,7 @@ export class Workshop implements Viewer {
   /** The draws at the chosen w_o, over the chosen picture. */
   private async look(): Promise<void> {
     const { probe, era, layer } = this, mine = ++this.looks, request = { ...this.request(), wo: [this.wo] };
-    if (!probe) return;
+    if (!probe) return this.restartSoon();
     try {
       const [disk, drawn] = await Promise.all([
         probe.request({ kind: "disk", call: "user_disk", request: { ...request, what: layer, size }, size }),
@@ -272,6 +278,7 @@ export class Workshop implements Viewer {
   // ---- The verdicts.
 
   private async check(): Promise<void> {
+    if (!this.probe) this.restart();
     const { probe, era } = this;
     if (!probe || this.checking) return;
     this.checking = true;
@@ -285,7 +292,6 @@ export class Workshop implements Viewer {
       this.table(result, took);
       this.at.checked(result);
     } catch (error) {
-      this.verdicts.replaceChildren();
       this.failedIn(era, error);
     }
     this.checking = false;
