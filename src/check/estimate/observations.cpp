@@ -99,6 +99,8 @@ private:
     std::vector<Vec3d> w_, f_, true_f_;
     std::vector<std::size_t> at_;  // indices of the draws of w_
     std::vector<double> p_;
+    std::vector<ChartPoint> points_;
+    std::vector<std::uint32_t> leaf_;
 
     void process(std::span<const PrimarySample> u, int set, bool with_f) {
         w_.clear(), at_.clear();
@@ -114,8 +116,11 @@ private:
         }
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
+        points_.resize(w_.size()), leaf_.resize(w_.size());
+        for (std::size_t k = 0; k < w_.size(); ++k) points_[k] = to_chart(w_[k]);
+        plan_.tree.find(points_, leaf_);
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (is_direction(draws_[at_[k]], p_[k])) add_direction(w_[k], p_[k], set, u[at_[k]]);
+            if (is_direction(draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
             else if (set < 0) ++to_.checks.nothing;
     }
 
@@ -248,20 +253,20 @@ private:
     }
 
     /// If rounding leaves few directions, a direction may lie on a cut: the draws are spread over half a step about it.
-    std::size_t leaf_of(Vec3d w, ChartPoint at, const PrimarySample& u) const {
-        const std::size_t l = plan_.tree.find(at);
-        const double step = plan_.tree.nodes()[static_cast<std::size_t>(plan_.tree.leaves()[l].node)].step;
-        if (step <= plan_.step) return l;
+    std::size_t leaf_of(std::size_t k, const PrimarySample& u) const {
+        const double step = plan_.tree.leaves()[leaf_[k]].step;
+        if (step <= plan_.step) return leaf_[k];
         const auto bits = [](double x) { return static_cast<std::uint32_t>(x * 0x1p31); };
         const Vec4u<std::uint32_t> hash = pcg4d(Vec4u<std::uint32_t>{bits(u[0]), bits(u[1]), bits(u[2]), bits(u[3])});
         const double r = step / 2 * std::sqrt(unit_number(hash.x)), angle = two_pi * unit_number(hash.y);
-        const Frame<double> frame = frame_about(w);
-        return plan_.tree.find(to_chart(w + frame.t * (r * math::cos(angle)) + frame.b * (r * math::sin(angle))));
+        const Frame<double> frame = frame_about(w_[k]);
+        return plan_.tree.find(to_chart(w_[k] + frame.t * (r * math::cos(angle)) + frame.b * (r * math::sin(angle))));
     }
 
-    void add_direction(Vec3d w, double p, int set, const PrimarySample& u) {
-        const ChartPoint point = to_chart(w);
-        const std::size_t l = leaf_of(w, point, u);
+    void add_direction(std::size_t k, int set, const PrimarySample& u) {
+        const Vec3d w = w_[k];
+        const double p = p_[k];
+        const std::size_t l = leaf_of(k, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
         const Values v = plan_.values(leaf, w, p);
         if (set >= 0) {
@@ -272,7 +277,7 @@ private:
         ++to_.checks.directions;
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
-        for (std::size_t axis = 0; axis < chart_axes; ++axis) to_.bands[band_of(point, axis)] += v[bridge];
+        for (std::size_t axis = 0; axis < chart_axes; ++axis) to_.bands[band_of(points_[k], axis)] += v[bridge];
         ++to_.counts[l];
         const double density = source_.has_density() ? p : leaf.q;
         to_.mean_p += density;

@@ -227,15 +227,36 @@ void Tree::number_leaves() {
         if (x.child >= 0) {
             const TreeNode& c = nodes_[static_cast<std::size_t>(x.child)];
             up[static_cast<std::size_t>(x.child)] = up[static_cast<std::size_t>(x.child) + 1] = up[i];
-            cuts_.push_back({x.along_phi ? c.rect.phi1 : c.rect.t1, x.child, -1, x.along_phi});
+            cuts_.push_back(
+                {x.along_phi ? c.rect.phi1 : c.rect.t1, static_cast<std::uint32_t>(x.child), x.along_phi, 0});
             continue;
         }
         x.leaf = static_cast<int>(leaves_.size());
-        cuts_.push_back({0, -1, x.leaf, false});
+        cuts_.push_back({NAN, static_cast<std::uint32_t>(i), false, static_cast<std::uint32_t>(x.leaf)});
         Leaf leaf;
         leaf.node = static_cast<int>(i);
         leaf.coarse = up[i];
+        leaf.step = x.step;
         leaves_.push_back(leaf);
+    }
+}
+
+void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const {
+    constexpr std::size_t together = 16;
+    for (std::size_t first = 0; first < at.size(); first += together) {
+        const std::size_t n = std::min(together, at.size() - first);
+        std::array<ChartPoint, together> points;
+        std::array<std::uint32_t, together> node{};
+        for (std::size_t k = 0; k < together; ++k) points[k] = at[first + std::min(k, n - 1)];
+        for (bool moved = true; moved;) {
+            moved = false;
+            for (std::size_t k = 0; k < together; ++k) {
+                const std::uint32_t next = cuts_[node[k]].next(points[k]);
+                moved |= next != node[k];
+                node[k] = next;
+            }
+        }
+        for (std::size_t k = 0; k < n; ++k) leaves[first + k] = cuts_[node[k]].leaf;
     }
 }
 

@@ -37,6 +37,7 @@ struct Leaf {
     double q = 0;       // 1/sr; positive
     double spread = 0;  // area times the standard deviation of p over its points
     double score = 0;   // benefit of more leaves here
+    double step = 0;    // of its node
     bool met = false;   // p > 0 at a point or draw while the tree grew; otherwise q is that of half a draw in the pilot
     bool edge = false;  // it is met, and a neighbour has a q that differs by more than `alike`
 };
@@ -50,21 +51,26 @@ public:
 
     const std::vector<TreeNode>& nodes() const { return nodes_; }
     const std::vector<Leaf>& leaves() const { return leaves_; }
+    /// The leaf that contains a point.
     std::size_t find(ChartPoint at) const {
-        std::size_t i = 0;
-        while (cuts_[i].child >= 0)
-            i = static_cast<std::size_t>(cuts_[i].child) + ((cuts_[i].along_phi ? at.phi : at.t) >= cuts_[i].at);
-        return static_cast<std::size_t>(cuts_[i].leaf);
+        std::uint32_t i = 0;
+        for (std::uint32_t next; (next = cuts_[i].next(at)) != i; i = next) {}
+        return cuts_[i].leaf;
     }
+    /// The leaves of many points. Several paths are followed at once, so that the memory accesses of one do not wait
+    /// for those of another.
+    void find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const;
     const ChartRect& rect(const Leaf& leaf) const { return nodes_[static_cast<std::size_t>(leaf.node)].rect; }
     int depth() const { return depth_; }
     std::size_t rows() const { return rows_; }
 
 private:
+    /// A node as the search needs it. A leaf is its own child, and its cut is NaN.
     struct Cut {
-        double at;
-        int child, leaf;
-        bool along_phi;
+        double cut;
+        std::uint32_t child : 31, along_phi : 1;
+        std::uint32_t leaf;
+        std::uint32_t next(ChartPoint at) const { return child + ((along_phi ? at.phi : at.t) >= cut); }
     };
     std::vector<TreeNode> nodes_;
     std::vector<Leaf> leaves_;
