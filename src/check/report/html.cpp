@@ -165,8 +165,7 @@ std::string verdict_html(const CheckResult& j, const ResultSource& source) {
             "seed{}.</p>\n",
             j.tests, j.alpha, j.screened, j.confirmed,
             j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "") +
-        "<p>" + escape(unseen_text(j)) + " " + escape(nothing_drawn_text(j)) + " " + escape(not_tested_text(j)) +
-        "</p>\n";
+        "<p>" + escape(unseen_text(j)) + " " + escape(nothing_drawn_text(j)) + "</p>\n";
     if (!source.version.empty())
         frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
             escape(source.commit), escape(source.command));

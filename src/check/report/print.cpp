@@ -91,8 +91,7 @@ std::string verdict_table(const CheckResult& result, bool all) {
     for (const Verdict& v : result.verdicts)
         if (all)
             out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.check_case, v.name, word(v.state), describe(v));
-    for (const std::string& last :
-        {implied_text(result), unseen_text(result), nothing_drawn_text(result), not_tested_text(result)})
+    for (const std::string& last : {implied_text(result), unseen_text(result), nothing_drawn_text(result)})
         if (!last.empty()) out += "\n" + last + "\n";
     const std::string asked = result.questions > 0 ? fmt::format("; {} questions were answered", result.questions) : "";
     out += fmt::format(

@@ -267,8 +267,8 @@ std::string nothing_drawn_text(const CheckResult& result) {
         100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
 }
 
-// ---- Texts from the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
-// physics. Rings of 15 degrees are means of the finer rings of the evidence, weighted by solid angle.
+// ---- The text of implied_rings and implied_peak, evidence of density (check/report/implied.cpp). Rings of 15 degrees
+// are means of the finer rings of the evidence, weighted by solid angle.
 
 namespace {
 
@@ -326,18 +326,6 @@ std::string implied_text(const CheckResult& j) {
     return "The density that the draws imply, since there is no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +
         out + "Finer in the JSON: implied_rings, implied_bins.";
-}
-
-std::string not_tested_text(const CheckResult& j) {
-    if (j.state == State::error) return "";
-    std::vector<std::string> all;
-    for (const Verdict& v : j.verdicts) {
-        const auto at = v.evidence.find("not_looked_at");
-        if (at == v.evidence.end()) continue;
-        const std::string what = at->get<std::string>();
-        if (std::find(all.begin(), all.end(), what) == all.end()) all.push_back(what);
-    }
-    return all.empty() ? "" : fmt::format("Not tested: {}.", fmt::join(all, "; "));
 }
 
 }  // namespace crescent::inline results

@@ -46,12 +46,10 @@ std::string summary_of(const CheckResult& result);
 /// ones, then the names of the others and the next step in calls of C++; "" if there are none.
 std::string what_is_wrong(const CheckResult& result, std::size_t most_lines = 8);
 
-// ---- The end of a result's table: the density implied by draws without pdf(w), and tests that were not made.
+// ---- The end of a result's table: the density implied by draws without pdf(w).
 
 /// One line for each w_o of a sampler without pdf(w): the mean of the implied density over rings about n, 1/sr, each
 /// with its standard error, and its maximum; "" if every sampler has a pdf(w).
 std::string implied_text(const CheckResult& result);
-/// "Not tested: reciprocity across the surface, since no index is given (eta=)."; "" if all tests were made.
-std::string not_tested_text(const CheckResult& result);
 
 }  // namespace crescent::inline results
