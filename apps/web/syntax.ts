@@ -1,6 +1,7 @@
 // The code of a sampler as a tree of the part of JavaScript that can be translated into other languages
 // (apps/web/to_cpp.ts, apps/web/to_python.ts). What cannot is kept as text, at the place of its statement.
-import { javascript, SyntaxNode } from "./vendor/codemirror/editor";
+import { editorParts } from "./editor_parts";
+import type { SyntaxNode } from "./vendor/codemirror/editor";
 
 /** What a value is: `apps/web/kinds.ts` finds it. */
 export type Kind =
@@ -219,4 +220,4 @@ class Reader {
 type Parts = DistributiveOmit<Statement, "line" | "source">;
 type DistributiveOmit<T, K extends string> = T extends unknown ? Omit<T, K> : never;
 
-export function read(code: string): Statement[] { return new Reader(code).statements(javascript().language.parser.parse(code).topNode); }
+export function read(code: string): Statement[] { return new Reader(code).statements(editorParts().javascript().language.parser.parse(code).topNode); }
