@@ -5,8 +5,8 @@
 
 Measures what ./page has built: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
 three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last metric, and from a
-slider's move to the first new pixels, the median of twenty moves, and to N = 64 again; ms between frames meanwhile; ms
-of a check of a sampler in JavaScript. --write puts all of it under
+slider's move to the first new pixels, the median of twenty moves, and to N = 64 again; ms between frames while the page
+works; ms of a check of a sampler in JavaScript. --write puts all of it under
 "Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, like the tests of the page.
 """
 import argparse
@@ -19,6 +19,8 @@ import statistics
 import subprocess
 import sys
 import time
+
+from selenium.webdriver.common.keys import Keys
 
 from compare import processor
 
@@ -78,29 +80,88 @@ def moved(page, turns=20, whole=3):
         driver.quit()
 
 
-def frames(page):
-    """Returns ms between frames while the gallery is computed from a move of a slider on: the 99th percentile and the
-    largest; and of a check of a sampler in JavaScript, the median of five."""
-    driver = browser.chromium()
-    try:
-        browser.open_page(driver, page)
+PROBE = ("window.frames_seen = []; let last = 0;"
+         "const turn = (t) => { if (last) window.frames_seen.push(t - last); last = t; requestAnimationFrame(turn); };"
+         "requestAnimationFrame(turn)")
+EDIT = (Keys.SPACE, Keys.BACK_SPACE)
+
+
+def slide(driver):
+    for turn in range(20):
+        move(driver, 400 + 10 * turn)
+        time.sleep(0.1)
+
+
+def turn_wheel(driver):
+    for turn in range(40):
         driver.execute_script(
-            "document.getElementById('controls').open = true; window.frames_seen = []; let last = 0;"
-            "const turn = (t) => { if (last) window.frames_seen.push(t - last); last = t; requestAnimationFrame(turn); };"
-            "requestAnimationFrame(turn)")
-        move(driver, 350)
-        time.sleep(3)
-        browser.wait(driver, "document.documentElement.dataset.took")
-        seen = sorted(driver.execute_script("return window.frames_seen"))
-        browser.open_page(driver, page, "#part=write", until="document.documentElement.dataset.written")
-        checks = []
-        for _ in range(5):
-            driver.execute_script("delete document.documentElement.dataset.checked;"
-                                  "document.getElementById('check-yours').click()")
-            checks.append(int(browser.wait(driver, "document.documentElement.dataset.checked")))
-        return seen[int(0.99 * (len(seen) - 1))], seen[-1], statistics.median(checks)
-    finally:
-        driver.quit()
+            "const film = document.getElementById('main-film'), box = film.getBoundingClientRect();"
+            "film.dispatchEvent(new WheelEvent('wheel', {deltaY: arguments[0], cancelable: true,"
+            " clientX: box.left + 300, clientY: box.top + 100}))", -60 if turn < 20 else 60)
+        time.sleep(0.03)
+
+
+def write(driver):
+    driver.find_element("css selector", ".cm-content").click()
+    for turn in range(20):
+        browser.keys(driver, EDIT[turn % 2])
+        time.sleep(0.1)
+    time.sleep(2)  # it is read 350 ms after the last key, and its films are computed
+
+
+def compute(driver):
+    move(driver, 350)
+    time.sleep(3)
+    browser.wait(driver, browser.FINISHED)
+
+
+PHASES = (("films and metrics are computed", "", browser.FINISHED, compute),
+          ("a slider moves ten times a second", "", browser.FINISHED, slide),
+          ("the wheel zooms", "", browser.FINISHED, turn_wheel),
+          ("a sampler is edited", "#part=write", "document.documentElement.dataset.written", write))
+
+
+def frames(page):
+    """Returns for each phase ms between frames, median, 99th percentile and largest, and the longest task of the page's
+    thread, ms of its processor time; the same of the opening alone; and ms of a check of a sampler in JavaScript, the
+    median of five."""
+    rows, checks = [], []
+    for words, address, until, act in (("the page opens", "", browser.FINISHED, None), *PHASES):
+        driver = browser.chromium(1440, 900, traced="toplevel,blink.user_timing")
+        try:
+            browser.open_page(driver, page, address, until=until)
+            seen = []
+            if act:
+                driver.execute_script("document.getElementById('controls').open = true;" + PROBE)
+                driver.execute_script("performance.mark('begin')")
+                act(driver)
+                seen = sorted(driver.execute_script("return window.frames_seen"))
+            if until != browser.FINISHED:
+                for _ in range(5):
+                    driver.execute_script("delete document.documentElement.dataset.checked;"
+                                          "document.getElementById('check-yours').click()")
+                    checks.append(int(browser.wait(driver, "document.documentElement.dataset.checked")))
+            task = longest_task(browser.traced_events(driver), act)
+            rows.append((words, *((statistics.median(seen), seen[int(0.99 * (len(seen) - 1))], seen[-1]) if seen else ()), task))
+        finally:
+            driver.quit()
+    return rows, statistics.median(checks)
+
+
+def longest_task(events, marked):
+    """ms of processor time of the longest task of the page's thread after the mark `begin`, of all if there is no mark to
+    be set; none if the trace was full before it, as after the long computations of an edited sampler."""
+    threads = {(e["pid"], e["tid"]) for e in events
+               if e["ph"] == "M" and e["name"] == "thread_name" and e["args"]["name"] == "CrRendererMain"}
+    begin = [e["ts"] for e in events if e["name"] == "begin" and e.get("cat") == "blink.user_timing"]
+    if marked and not begin:
+        return None
+    navigated = [(e["pid"], e["ts"]) for e in events if e["name"] == "navigationStart"
+                 and "crescent" in json.dumps(e["args"])]
+    pid, start = max(navigated, key=lambda one: one[1])
+    start = max([start, *begin])
+    return max(e.get("tdur", 0) / 1000 for e in events
+               if e["ph"] == "X" and e["pid"] == pid and (pid, e["tid"]) in threads and e["ts"] >= start)
 
 
 def section(rows, facts, openings, slider, drawn, command):
@@ -108,6 +169,9 @@ def section(rows, facts, openings, slider, drawn, command):
     load = os.getloadavg()[0]
     table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |"
                       for r in rows)
+    phases, checked = drawn
+    framed = "\n".join(f"| {words} | {' | '.join(f'{ms:.0f}' for ms in times) or ' |  | '} | {'' if task is None else f'{task:.0f}'} |"
+                       for words, *times, task in phases)
     return f"""{TITLE}
 Msamples/s of one thread, the best of five alternating runs: the module of the web app and the SSE4 code of the program.
 
@@ -123,9 +187,11 @@ Msamples/s of one thread, the best of five alternating runs: the module of the w
 | from a move of a slider to the first new pixels, median of 20 moves | {slider[0]:.0f} |
 | the same, largest of the 20 | {slider[1]} |
 | from a move of a slider to the three samplers at N = 64, best of 3 | {slider[2]} |
-| between two frames meanwhile, 99th percentile | {drawn[0]:.0f} |
-| the same, the largest | {drawn[1]:.0f} |
-| verdicts on a sampler in JavaScript, four w_o, median of 5 | {drawn[2]:.0f} |
+| verdicts on a sampler in JavaScript, four w_o, median of 5 | {checked:.0f} |
+
+| while | ms between frames: median | 99th percentile | largest | longest task of the page's thread, ms of processor time |
+|---|---|---|---|---|
+{framed}
 
 - A cosine sampler in JavaScript, in the film: {facts['written']:.1f} million draws/s of one thread.
 - {datetime.date.today().isoformat()}, {processor()}, {os.cpu_count()} threads, load {load:.1f} at the end;

@@ -1,15 +1,17 @@
 // The editor of a sampler's code: CodeMirror 6 with the language's colours, and errors at their line.
-import {
-  bracketMatching, defaultKeymap, drawSelection, EditorState, EditorView, highlightActiveLine, HighlightStyle, highlightSpecialChars, history, historyKeymap,
-  indentOnInput, indentUnit, javascript, keymap, lineNumbers, lintGutter, setDiagnostics, syntaxHighlighting, syntaxTree, tags,
-} from "./vendor/codemirror/editor";
+import { editorParts } from "./editor_parts";
+import type { EditorView } from "./vendor/codemirror/editor";
 
-const colours = HighlightStyle.define([
-  { tag: tags["keyword"], color: "var(--code-word)" }, { tag: [tags["number"], tags["bool"], tags["null"]], color: "var(--code-number)" },
-  { tag: [tags["string"], tags["regexp"]], color: "var(--code-text)" }, { tag: tags["comment"], color: "var(--soft)", fontStyle: "italic" },
-]);
+/** The colours of the language. */
+function colours(): object {
+  const { HighlightStyle, tags } = editorParts();
+  return HighlightStyle.define([
+    { tag: tags["keyword"], color: "var(--code-word)" }, { tag: [tags["number"], tags["bool"], tags["null"]], color: "var(--code-number)" },
+    { tag: [tags["string"], tags["regexp"]], color: "var(--code-text)" }, { tag: tags["comment"], color: "var(--soft)", fontStyle: "italic" },
+  ]);
+}
 
-const theme = EditorView.theme({
+const theme = {
   "&": { fontSize: "0.86rem", border: "1px solid var(--soft)", borderRadius: "4px", background: "var(--ground)", color: "var(--ink)" },
   "&.cm-focused": { outline: "3px solid var(--accent)", outlineOffset: "2px" },
   ".cm-scroller": { fontFamily: "ui-monospace, 'DejaVu Sans Mono', monospace", lineHeight: "1.5", maxHeight: "34rem", minHeight: "14rem", overflow: "auto" },
@@ -20,20 +22,22 @@ const theme = EditorView.theme({
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": { background: "color-mix(in srgb, var(--accent) 30%, transparent)" },
   ".cm-matchingBracket": { outline: "1px solid var(--accent)" },
   ".cm-diagnostic": { color: "var(--ink)", background: "var(--ground)" }, ".cm-tooltip": { background: "var(--ground)", border: "1px solid var(--soft)" },
-});
+};
 
 export class Editor {
   private readonly view: EditorView;
   private quiet = false;
 
   constructor(parent: HTMLElement, label: string, private readonly changed: () => void) {
+    const parts = editorParts(), { EditorState, EditorView, keymap } = parts;
     this.view = new EditorView({
       parent,
       state: EditorState.create({
         doc: "",
         extensions: [
-          lineNumbers(), highlightSpecialChars(), history(), drawSelection(), indentOnInput(), bracketMatching(), highlightActiveLine(), lintGutter(),
-          javascript(), syntaxHighlighting(colours), indentUnit.of("  "), keymap.of([...defaultKeymap, ...historyKeymap]), theme,
+          parts.lineNumbers(), parts.highlightSpecialChars(), parts.history(), parts.drawSelection(), parts.indentOnInput(), parts.bracketMatching(),
+          parts.highlightActiveLine(), parts.lintGutter(), parts.javascript(), parts.syntaxHighlighting(colours()), parts.indentUnit.of("  "),
+          keymap.of([...parts.defaultKeymap, ...parts.historyKeymap]), EditorView.theme(theme),
           EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false" }),
           EditorView.updateListener.of((update) => { if (update.docChanged && !this.quiet) this.changed(); }),
         ],
@@ -55,14 +59,14 @@ export class Editor {
   /** The line of the first place that is no JavaScript; 0 if there is none. */
   get brokenLine(): number {
     let from = -1;
-    syntaxTree(this.view.state).iterate({ enter: (node) => { if (node.type.isError && from < 0) from = node.from; } });
+    editorParts().syntaxTree(this.view.state).iterate({ enter: (node) => { if (node.type.isError && from < 0) from = node.from; } });
     if (from < 0) return 0;
     return this.code.slice(0, from).split("\n").length;
   }
 
   /** Marks a line, from 1, with a message; 0: none is marked. */
   mark(line: number, message: string, column = 0): void {
-    const { doc } = this.view.state;
+    const { doc } = this.view.state, { setDiagnostics } = editorParts();
     if (line < 1 || line > doc.lines) return this.view.dispatch(setDiagnostics(this.view.state, []));
     const at = doc.line(line), from = Math.min(at.to, at.from + Math.max(0, column - 1));
     this.view.dispatch(setDiagnostics(this.view.state, [{ from: Math.min(from, Math.max(at.from, at.to - 1)), to: at.to, severity: "error", message }]));

@@ -2,7 +2,7 @@
 // its metrics. Workers compute the tiles; one of them, the film worker, assembles and paints them.
 import { Box, EngineError } from "./api";
 import { Answer, Opening, Paint } from "./jobs";
-import { FilmWorker, Pool } from "./pool";
+import { FilmWorker, mostSamples, Pool } from "./pool";
 
 export interface Arm {
   name: string; sampler: string; n: number[]; techniques: number; summary: string; formula: string; misses: string;
@@ -95,8 +95,7 @@ export class Model {
     const described = (await this.filmWorker.request({ kind: "json", call: "open", request: opening })).response as Described;
     if (era !== this.era) return;
     const shown = arms.map((name) => ({ arm: described.arms.findIndex((a) => a.name === name), name, n: 0, sampleCounts: [], tails: {}, bands: {} }));
-    await this.filmWorker.request({ kind: "call", call: "film_buffer", given: [-1] });
-    for (const [index, s] of shown.entries()) await this.filmWorker.request({ kind: "call", call: "begin", given: [index, s.arm, sampleCounts[0]!] });
+    await Promise.all([this.filmWorker.request({ kind: "call", call: "film_buffer", given: [-1] }), ...shown.map((s, index) => this.begin(index, s.arm, sampleCounts[0]!))]);
     if (era !== this.era) return;
     this.described = described;
     this.shown = shown;
@@ -202,7 +201,8 @@ export class Model {
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
     return this.tiles.parts.length === this.referenceBoxes().length;
   }
-  private referenceBoxes(): Box[] { return this.boxes(referenceCost); }
+  /** Large ones: no code of the user runs, and ten thousand requests would block the page. */
+  private referenceBoxes(): Box[] { return this.pool.tiles(this.described.width, this.described.height, referenceCost, mostSamples); }
 
   /** By quadrature; what is known is copied first. */
   private async reference(era: number): Promise<void> {

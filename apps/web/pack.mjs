@@ -11,8 +11,8 @@ const web = import.meta.dirname ?? dirname(new URL(import.meta.url).pathname);
 const experiments = join(web, "../..", "experiments");
 const text = (path) => readFileSync(path, "utf8");
 
-function bundle(entry) {
-  const flags = ["--bundle", "--minify", "--format=iife", "--target=es2022", "--charset=utf8", "--legal-comments=none", "--log-level=warning"];
+function bundle(entry, ...more) {
+  const flags = [...more, "--bundle", "--minify", "--format=iife", "--target=es2022", "--charset=utf8", "--legal-comments=none", "--log-level=warning"];
   return execFileSync("esbuild", [join(web, entry), ...flags], { encoding: "utf8" }).trim();
 }
 
@@ -48,15 +48,15 @@ const bytes = readFileSync(join(build, "crescent.wasm"));
 const api = await opened(await WebAssembly.compile(bytes));
 const version = api.say("version_of");
 const style = api.say("style").trim() + text(join(web, "page.css")).trim();
-const script = bundle("main.ts"), worker = bundle("worker.ts");
+const script = bundle("main.ts"), worker = bundle("worker.ts"), editor = bundle("vendor/codemirror/editor.js", "--global-name=crescentEditor");
 // Inside a script element only these end it.
 const inert = (words) => words.replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
 const hash = (words) => `'sha256-${createHash("sha256").update(words).digest("base64")}'`;
 const parts = {
-  version, style, script: inert(script), worker: inert(worker),
+  version, style, script: inert(script), worker: inert(worker), editor: inert(editor),
   data: JSON.stringify({ version, sources: sources(api) }).replaceAll("<", "\\u003c"),
   module: gzipSync(bytes, { level: 9 }).toString("base64"),
-  "script-hash": hash(inert(script)), "style-hash": hash(style),
+  "script-hash": `${hash(inert(script))} ${hash(inert(editor))}`, "style-hash": hash(style),
 };
 const page = text(join(web, "index.html")).replace(/\{([a-z-]+)\}/g, (_, name) => {
   if (!(name in parts)) throw new Error(`index.html asks for {${name}}`);

@@ -57,13 +57,14 @@ export class Page implements Viewer {
 
   constructor(private readonly data: Data) {}
 
-  start(module: WebAssembly.Module, worker: string): void {
+  /** The workers start while the module is compiled. Rejects if it cannot be. */
+  async start(compiled: Promise<WebAssembly.Module>, worker: string): Promise<void> {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
+    this.model = new Model(new FilmWorker(compiled, worker), new Pool(compiled, worker, count), this);
+    const module = await compiled, { pool } = this.model;
     startText(module);
     Object.assign(this, { module, worker });
-    const pool = new Pool(module, worker, count);
     pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
-    this.model = new Model(new FilmWorker(module, worker), pool, this);
     this.samplers = samplers();
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.choose(pixel), region: (box) => this.change(drawnRegion, `[${box.join(", ")}]`) }, "main-film");
     byId("film").replaceChildren(this.film.root);

@@ -11,7 +11,8 @@ const boxOf = ({ job }: Waiting): string => (job.kind === "tile" ? Object.values
 
 const underWay = 2; // jobs queued per worker, so that it never waits for the page
 const side = 64; // of a tile, in pixels
-const mostSamples = 2_000_000; // of one job: a new setting has to wait for running jobs
+/** Samples of one job, of one that runs no code of the user: a new setting has to wait for running jobs. */
+export const mostSamples = 2_000_000;
 const patience = 20_000; // ms for a worker to start
 
 const errorOf = ({ kind, text, lines }: Fault): EngineError => new EngineError(kind, text, lines);
@@ -44,8 +45,10 @@ class WorkerClient {
   }
 }
 
+type Compiled = WebAssembly.Module | Promise<WebAssembly.Module>;
+
 /** Starts a worker with an instance of the module. Rejects if the browser refuses, or with the fault of the user's code. */
-function started(module: WebAssembly.Module, url: string, free: () => void): Promise<WorkerClient> {
+function started(module: Compiled, url: string, free: () => void): Promise<WorkerClient> {
   return new Promise((resolve, reject) => {
     const late = setTimeout(() => reject(new EngineError("worker", "a worker did not start")), patience);
     const failed = (error: EngineError): void => { clearTimeout(late); reject(error); };
@@ -61,7 +64,7 @@ function started(module: WebAssembly.Module, url: string, free: () => void): Pro
         if (error) return failed(errorOf(error));
         resolve(new WorkerClient(worker, free));
       };
-      worker.postMessage(module);
+      Promise.resolve(module).then((ready) => worker.postMessage(ready), (error: unknown) => failed(new EngineError("bug", String(error))));
     } catch (error) {
       failed(new EngineError("worker", String(error)));
     }
@@ -71,7 +74,7 @@ function started(module: WebAssembly.Module, url: string, free: () => void): Pro
 /** The worker that assembles films. */
 export class FilmWorker {
   private client: Promise<WorkerClient>;
-  constructor(module: WebAssembly.Module, source: string) {
+  constructor(module: Compiled, source: string) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.client = started(module, url, () => {}).finally(() => URL.revokeObjectURL(url));
     this.client.catch(() => {}); // the pool has none either
@@ -100,7 +103,7 @@ export class Pool {
   readonly ready: Promise<void>; // rejects if there is no worker: requests wait for it
 
   /** `source`: the worker's script; `most`: samples of one job. */
-  constructor(private readonly module: WebAssembly.Module, source: string, count: number, private readonly most = mostSamples) {
+  constructor(private readonly module: Compiled, source: string, count: number, private readonly most = mostSamples) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.ready = Promise.allSettled(Array.from({ length: count }, () => this.startOne(url))).then((all) => {
       URL.revokeObjectURL(url);
@@ -163,9 +166,9 @@ export class Pool {
     });
   }
 
-  /** The picture cut into boxes, one per job, from the middle. `cost`: samples per pixel. */
-  tiles(width: number, height: number, cost: number): Box[] {
-    const pixels = Math.max(1, Math.floor(this.most / cost));
+  /** The picture cut into boxes, one per job, from the middle. `cost`: samples per pixel; `most`: samples of one job. */
+  tiles(width: number, height: number, cost: number, most = this.most): Box[] {
+    const pixels = Math.max(1, Math.floor(most / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
     const all: Box[] = [];
     for (let y0 = 0; y0 < height; y0 += up)

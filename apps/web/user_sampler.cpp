@@ -73,6 +73,7 @@ public:
         return traits;
     }
     bool serial() const override { return true; }
+    bool limited() const override { return false; }  // the limit is an exception, which the module does not have
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         if (u.empty()) return;
         count(u.size());

@@ -334,11 +334,11 @@ export class Workshop implements Viewer {
   private get format(): string { return byId<HTMLSelectElement>("export-format")?.value ?? exports[0]![0]; }
   private export(): void {
     const details = this.root.querySelector<HTMLDetailsElement>("#export")!;
-    if (details.open) this.out.firstElementChild!.textContent = exported(this.format, this.editor.code).text;
+    if (details.open) this.out.firstElementChild!.textContent = exported(this.format, this.editor.code, this.ground).text;
   }
   private async copyExport(): Promise<void> { this.at.speaker.say(await copied(this.out)); }
   private saveExport(): void {
-    const { name, text } = exported(this.format, this.editor.code);
+    const { name, text } = exported(this.format, this.editor.code, this.ground);
     download(name, text);
   }
 }

@@ -7,18 +7,29 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.keys import Keys
 
 
-def chromium(width=1280, height=900, flags=()):
+def chromium(width=1280, height=900, flags=(), traced=""):
+    """traced: categories of a trace, which traced_events() returns."""
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
     for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
                  "--disable-ipc-flooding-protection", "--host-resolver-rules=MAP * ~NOTFOUND",
                  f"--window-size={width},{height}", *flags):
         options.add_argument(flag)
+    if traced:
+        options.add_experimental_option("perfLoggingPrefs", {
+            "traceCategories": traced, "enableNetwork": False, "enablePage": False})
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
     driver.set_script_timeout(180)
     size(driver, width, height)
     return driver
+
+
+def traced_events(driver):
+    """Returns the trace of the page that was left last."""
+    driver.get("about:blank")
+    messages = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
+    return [m["params"] for m in messages if m["method"] == "Tracing.dataCollected"]
 
 
 def size(driver, width, height):

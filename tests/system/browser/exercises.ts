@@ -6,13 +6,16 @@ import { grounds, templates } from "../../../apps/web/templates";
 import { userSampler } from "../../../apps/web/user";
 import { evaluations, four } from "../../../apps/web/workshop_settings";
 
+import * as editor from "../../../apps/web/vendor/codemirror/editor";
+
 export { exported } from "../../../apps/web/export";
 export { templates };
 interface Verdict { name: string; state: string; say: string; hidden: Record<string, number> }
 declare const global: Record<string, unknown>;
+global["crescentEditor"] = editor; // in the page a script of its own
 
 /** The page's answer to this code: its state, and its verdicts. */
-function checked(module: WebAssembly.Module, code: string, ground: string): { state: string; verdicts: Verdict[] } {
+export function checked(module: WebAssembly.Module, code: string, ground: string, wo = four): { state: string; verdicts: Verdict[] } {
   global["self"] = global;
   const take = userSampler();
   const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
@@ -20,7 +23,7 @@ function checked(module: WebAssembly.Module, code: string, ground: string): { st
   const user = take() as { calls: UserCalls; numbers: number; context: boolean };
   const api = new Api(module, user.calls), { lobe, lambert, sharpness, light } = grounds[ground]!;
   api.number("user_takes", user.numbers, user.context ? 1 : 0);
-  return api.json("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo: four, evaluations });
+  return api.json("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo, evaluations });
 }
 
 /** A line for each sampler; throws if one is not as it should be. */

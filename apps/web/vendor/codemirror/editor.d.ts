@@ -26,7 +26,9 @@ export function drawSelection(): Extension;
 export const defaultKeymap: readonly KeyBinding[];
 export const historyKeymap: readonly KeyBinding[];
 export function history(): Extension;
-export function javascript(): Extension;
+/** A node of a syntax tree: of the grammar in @lezer/javascript. */
+export interface SyntaxNode { readonly name: string; readonly from: number; readonly to: number; readonly firstChild: SyntaxNode | null; readonly nextSibling: SyntaxNode | null }
+export function javascript(): Extension & { language: { parser: { parse(code: string): { topNode: SyntaxNode } } } };
 export const HighlightStyle: { define(rules: { tag: unknown; [style: string]: unknown }[]): object };
 export function syntaxHighlighting(style: object): Extension;
 export function bracketMatching(): Extension;
