@@ -210,7 +210,8 @@ Experiment settled_paths(Experiment e) {
     absolute(e.published);
     for (ArmPlan& arm : e.arms) {
         absolute(arm.plugin);
-        if (arm.python && !python_file(*arm.python).empty()) absolute(arm.python);
+        for (std::optional<std::string>* python : {&arm.python, &arm.combination.weights_python})
+            if (*python && !python_file(**python).empty()) absolute(*python);
     }
     return e;
 }
