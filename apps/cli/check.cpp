@@ -140,17 +140,20 @@ int exit_of(State state) {
 
 namespace {
 
-/// An arm of an experiment: the samplers of the other arms are not started.
+/// An arm of an experiment: the samplers of the other arms are not started. `flag` is the one that names it.
+std::vector<CheckCase> cases_of_arm(const CheckFlags& flags, const std::string& name, const char* flag) {
+    const Experiment experiment = load(flags.arm, flags.settings);
+    if (flags.no_code) refuse_code(experiment);
+    return arm_cases(experiment, name, open_external(with_arms_of(experiment, {name}), flags.timeout),
+        {flags.pixels, flags.full, grid_of(flags), flag});
+}
+
 std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
     if (flags.sampler.empty())
         throw InputError({"crescent check " + flags.arm, 0, 0},
             "expected --sampler NAME with an experiment: an arm of it, or a built-in sampler");
-    for (const auto& [flag, given] : {std::pair("--wo", !flags.wo.empty()), {"--against", !flags.against.empty()}})
-        if (given) throw InputError({flag, 0, 0}, "is not for an arm of an experiment");
-    const Experiment experiment = load(flags.arm, flags.settings);
-    if (flags.no_code) refuse_code(experiment);
-    return arm_cases(experiment, flags.sampler, open_external(with_arms_of(experiment, {flags.sampler}), flags.timeout),
-        {flags.pixels, flags.full});
+    check_sides(flags, {});
+    return cases_of_arm(flags, flags.sampler, "--sampler");
 }
 
 bool is_experiment(const CheckFlags& flags) { return flags.arm.ends_with(".toml"); }
@@ -373,9 +376,14 @@ CheckResult unchecked_result(const SamplerError& fault, const CheckFlags& flags,
 
 namespace {
 
-/// Returns B on the cases of A: a built-in sampler by its name, or a program.
+/// Returns B on the cases of A: of an experiment another arm, else a built-in sampler by its name, or a program.
 std::vector<CheckCase> others_of(
     const CheckFlags& flags, std::span<const CheckCase> a, const ProgressMonitor& monitor) {
+    if (is_experiment(flags)) {
+        std::vector<CheckCase> out = cases_of_arm(flags, flags.against, "--against");
+        std::erase_if(out, [](const CheckCase& t) { return t.baseline; });
+        return out;
+    }
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end())
         return sampler_named_against(flags.against, a);

@@ -58,6 +58,7 @@
 #include "metrics/article_checks.h"
 #include "metrics/assertions.h"
 #include "metrics/compute.h"
+#include "metrics/flip.h"
 #include "metrics/metrics.h"
 #include "metrics/monte_carlo_reference.h"
 #include "output/charts.h"

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from . import _arrays
 from ._arrays import Array, Parts
 from ._check import _of_library
-from ._context import ContextCalls, arrays_of
-from ._files import names_a_file, sampler_at
+from ._context import Context, ContextCalls, arrays_of
+from ._files import names_a_file, object_at, sampler_at
 from ._sampler import Sampler
 from .combinations import Combination
 
-#: As _crescent.run takes an arm: its name, draw, pdf, random numbers, what it uses, whether it wants one thread.
-CallableArm = tuple[str, Callable[..., Any], Callable[..., Any] | None, int, list[str], bool]
+#: As _crescent.run takes an arm: its name, draw, pdf, weights, random numbers, what it uses, whether it wants one
+#: thread. A combination has weights alone.
+CallableArm = tuple[
+    str, Callable[..., Any] | None, Callable[..., Any] | None, Callable[..., Any] | None, int, list[str], bool
+]
 
 
 class Samplers(dict[str, Sampler | Combination]):
@@ -47,9 +52,9 @@ def _sampler_of(name: Any, sampler: Any) -> Sampler | Combination:
     )
 
 
-def source_of(sampler: Sampler) -> str:
-    """ "FILE.py:NAME" of the callable that draws; its module if it was not read from a file."""
-    call = inspect.unwrap(sampler.sample)
+def source_of(given: Callable[..., Any]) -> str:
+    """ "FILE.py:NAME" of a callable; its module if it was not read from a file."""
+    call = inspect.unwrap(given)
     name = getattr(call, "__qualname__", type(call).__qualname__)
     try:
         file = inspect.getsourcefile(call if inspect.isroutine(call) else type(call))
@@ -67,7 +72,12 @@ def _without_delta(parts: Parts, name: str) -> Parts:
     return parts
 
 
-def _arm(name: str, sampler: Sampler) -> CallableArm:
+def callable_arm(name: str, sampler: Sampler | Combination) -> CallableArm:
+    """A sampler, or a combination whose weights are a function, as an arm of this name."""
+    if isinstance(sampler, Combination):
+        if not callable(sampler.weights):
+            raise TypeError(f"{name}: expected a function for the weights")
+        return _weighing(name, sampler.weights, sampler.uses)
     title = sampler.title()
     if not sampler.uses:
         s = _of_library(sampler)
@@ -77,6 +87,7 @@ def _arm(name: str, sampler: Sampler) -> CallableArm:
             name,
             lambda wo, u, context: _without_delta(ask(wo, u), title),
             None if pdf is None else lambda wo, wi, context: pdf(wo, wi),
+            None,
             s.u,
             [],
             s.serial,
@@ -93,7 +104,29 @@ def _arm(name: str, sampler: Sampler) -> CallableArm:
         arrays = arrays_of(sampler.uses, context, len(wi))
         return _arrays.column(calls.value(sampler.pdf, wo, wi, kinds, arrays), len(wi), f"{title}: pdf")  # type: ignore[arg-type]
 
-    return name, draw, None if sampler.pdf is None else density, sampler.u, list(sampler.uses), calls.serial
+    return name, draw, None if sampler.pdf is None else density, None, sampler.u, list(sampler.uses), calls.serial
+
+
+def _weighing(name: str, call: Callable[..., Any], uses: Sequence[str]) -> CallableArm:
+    """A function for the weights of a combination, whose rows are tested."""
+
+    def weights(wo: Array, wi: Array, context: Mapping[str, Any]) -> Array:
+        p = context["p"]
+        more = [Context(uses, tuple(context.get("kind", ())), arrays_of(uses, context, len(wi)))] if uses else []
+        w = _arrays.numbers(call(wo, wi, p, *more), f"{name}: weights")
+        if w.shape != p.shape:
+            raise ValueError(f"{name}: weights: shape {w.shape}, expected {p.shape}, a column for each sampler")
+        w = np.asarray(w, np.float64)
+        wrong = ~((np.abs(w.sum(axis=1) - 1) <= 1e-6) & (w >= 0).all(axis=1))
+        if wrong.any():
+            k = int(wrong.argmax())
+            raise ValueError(
+                f"{name}: weights: row {k} is {w[k].tolist()}, whose sum is {w[k].sum():.9g}: expected weights of 0 or "
+                f"more whose sum is one; there wo = {wo[k].tolist()}, wi = {wi[k].tolist()}, p = {p[k].tolist()}"
+            )
+        return w
+
+    return name, None, None, weights, 2, list(uses), False
 
 
 def all_counts(arms: Iterable[Mapping[str, Any]]) -> list[int]:
@@ -103,11 +136,20 @@ def all_counts(arms: Iterable[Mapping[str, Any]]) -> list[int]:
 
 def table_of(sampler: Sampler | Combination) -> dict[str, Any]:
     """The keys of a sampler's arm, without its sample counts."""
-    return sampler.table() if isinstance(sampler, Combination) else {"python": source_of(sampler)}
+    if isinstance(sampler, Sampler):
+        return {"python": source_of(sampler.sample)}
+    weights = {"weights_python": source_of(sampler.weights)} if callable(sampler.weights) else {}
+    return {**sampler.table(), **weights}
 
 
 def callable_arms(samplers: Mapping[str, Sampler | Combination], arms: Mapping[str, Mapping[str, Any]]) -> list[CallableArm]:
-    """The arms of `samplers`, and those of an experiment's arms that name a sampler in Python."""
-    named = {name: sampler_at(arm["python"]) for name, arm in arms.items() if "python" in arm and name not in samplers}
-    callables = {name: sampler for name, sampler in samplers.items() if isinstance(sampler, Sampler)}
-    return [_arm(name, sampler) for name, sampler in {**callables, **named}.items()]
+    """The arms of `samplers`, and those of an experiment's arms that name a sampler or weights in Python."""
+    out = [callable_arm(name, s) for name, s in samplers.items() if isinstance(s, Sampler) or callable(s.weights)]
+    for name, arm in arms.items():
+        if name in samplers:
+            continue
+        if "python" in arm:
+            out.append(callable_arm(name, sampler_at(arm["python"])))
+        if "weights_python" in arm:
+            out.append(_weighing(name, object_at(arm["weights_python"]), ()))
+    return out

@@ -217,7 +217,9 @@ def _is_experiment(sample: Any) -> bool:
     return isinstance(sample, Experiment) or (isinstance(sample, (str, PathLike)) and fspath(sample).endswith(".toml"))
 
 
-def _cases_of_experiment(given: Any, sampler: str | None, pixels: int, full: bool) -> tuple[_crescent.CheckCases, str]:
+def _cases_of_experiment(
+    given: Any, sampler: Any, pixels: int, full: bool, wo_deg: Grid | None, keyword: str = "sampler"
+) -> tuple[_crescent.CheckCases, str]:
     """Returns the cases of an arm at pixels of its scene, and its name."""
     from ._callable_arms import callable_arms
     from .experiments import Experiment, load
@@ -225,12 +227,13 @@ def _cases_of_experiment(given: Any, sampler: str | None, pixels: int, full: boo
     if not _is_experiment(given):
         raise TypeError(f"sampler is given beside {type(given).__name__}: expected an experiment, or the name of its file")
     if not isinstance(sampler, str):
-        raise TypeError(f"sampler is {sampler!r}: expected the name of an arm, of one of e.samplers or a built-in sampler")
+        raise TypeError(f"{keyword} is {sampler!r}: expected the name of an arm, of one of e.samplers or a built-in sampler")
     pixels = whole("pixels", pixels, 0, 4096, "expected a number of pixels, 0 for the grid of w_o")
     e = given if isinstance(given, Experiment) else load(given)
     with_arms = e._with_arms()
     callables = callable_arms(e.samplers, with_arms._tree()["arms"])
-    return _crescent.cases_of_experiment(with_arms._core, sampler, pixels, full, callables), sampler
+    grid = _grid(wo_deg, "upper")
+    return _crescent.cases_of_experiment(with_arms._core, sampler, pixels, full, callables, grid, keyword), sampler
 
 
 def describe(
@@ -286,15 +289,17 @@ def check(
 
     `sample` may also be an experiment, or its file: ``check(e, sampler="mine", pixels=64)`` checks that arm, one of
     ``e.samplers`` or a built-in sampler with the materials and lights of the scene, at so many pixels in view, or with
-    ``pixels=0`` over the grid of w_o on each material.
+    ``pixels=0`` over the grid of w_o on each material. `wo_deg` is then at these pixels or on each material, and
+    `against` another arm of the experiment.
 
     `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, instead of the grid. `alpha`: the probability
     that a correct sampler is reported as wrong, over everything in the call. `against`: a second sampler, compared with
     the first. `progress(what, done, total)` is called several times a second.
     """
-    if sampler is not None or _is_experiment(sample):
-        cases, title = _cases_of_experiment(sample, sampler, pixels, full)
-        given = {"pdf": pdf, "f": f, "wo_deg": wo_deg, "against": against, "settings": settings, **known}
+    of_experiment = sampler is not None or _is_experiment(sample)
+    if of_experiment:
+        cases, title = _cases_of_experiment(sample, sampler, pixels, full, wo_deg)
+        given = {"pdf": pdf, "f": f, "settings": settings, **known}
         for what, value in given.items():
             if value is not None:
                 raise TypeError(f"{what} is not for an arm of an experiment")
@@ -303,7 +308,9 @@ def check(
     else:
         cases, title = _cases_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
-    if isinstance(against, str):
+    if of_experiment and against is not None:
+        other, _ = _cases_of_experiment(sample, against, pixels, full, wo_deg, "against")
+    elif isinstance(against, str):
         other = _crescent.baseline_of(against, cases)
     elif isinstance(against, Sampler):
         against = on_one_surface(against, settings or {}) if against.uses else against

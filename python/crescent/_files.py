@@ -40,8 +40,8 @@ def _module_in(path: Path) -> ModuleType:
     return module
 
 
-def sampler_at(where: str, root: Path | None = None) -> Sampler:
-    """Returns the sampler of "FILE.py:NAME", "module:NAME" or "FILE.py"; a file is searched from `root`."""
+def object_at(where: str, root: Path | None = None) -> Any:
+    """Returns what "FILE.py:NAME" or "module:NAME" is, or the module of "FILE.py"; a file is searched from `root`."""
     name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
     found: Any = _module_in((root or Path()) / name) if name.endswith(".py") else importlib.import_module(name)
     if colon:
@@ -49,6 +49,13 @@ def sampler_at(where: str, root: Path | None = None) -> Sampler:
             near = _crescent.nearest(inside, [n for n in vars(found) if not n.startswith("_")])
             raise ValueError(f"{name} has no '{inside}'" + (f"; did you mean '{near}'?" if near else ""))
         found = getattr(found, inside)
+    return found
+
+
+def sampler_at(where: str, root: Path | None = None) -> Sampler:
+    """Returns the sampler there, see :func:`object_at`."""
+    found = object_at(where, root)
+    name, _, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
     if isinstance(found, Sampler):
         return found
     found = found() if isinstance(found, type) else found

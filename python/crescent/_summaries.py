@@ -65,7 +65,7 @@ def _seconds_a_sample(result: Measured, arm: str, s: float) -> float:
 
 
 def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
-    """The mean of FLIP over a region of the films of the first seed, as `crescent compare` computes it."""
+    """The mean of FLIP over the frame, or a region that the run did not measure, of the films of the first seed."""
     from . import _crescent
 
     film, reference = result.films[arm, n, s], result.references[s]
@@ -79,7 +79,7 @@ def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
 def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Summary:
     tail = _rows(result, "tail_k", arm, n, region, s)
     heavy = bool(tail) and float(tail[0]["value"]) >= 0.5 and metric not in ("tail_k", "flip")
-    if metric == "flip":
+    if metric == "flip" and not _rows(result, "flip", arm, n, region, s):
         values = _flip(result, arm, n, region, s)
     elif metric == "efficiency_n":
         values = 1 / (_values(result, "var", arm, n, region, s) * n)

@@ -8,21 +8,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._intervals import Values, best_of, t_quantile
+from ._metric_names import NAMES, RANKED, UNITS
 
 if TYPE_CHECKING:
     from .experiments import Measured
 
-_NAMES = {"rmse": "RMSE", "rmse_frame": "RMSE of the frame", "var": "Variance", "y_mean": r"Mean $Y$"}
 _SPECIAL = str.maketrans({c: "\\" + c for c in "&%$#_{}"})
 
 
 def _cell(values: Values, digits: int, bold: bool) -> str:
     mean = float(np.mean(values))
     places = max(0, digits - 1 - math.floor(math.log10(abs(mean)))) if mean else digits - 1
+    half = 0.0
+    if values.size > 1:
+        half = t_quantile(0.975, values.size - 1) * float(np.std(values, ddof=1)) / math.sqrt(values.size)
+        if half > 0:  # its first figure at least
+            places = max(places, min(places + 3, -math.floor(math.log10(half))))
     text = f"{mean:.{places}f}"
     out = rf"\mathbf{{{text}}}" if bold else text
     if values.size > 1:
-        half = t_quantile(0.975, values.size - 1) * float(np.std(values, ddof=1)) / math.sqrt(values.size)
         out += rf" \pm {half:.{places}f}"
     return f"${out}$"
 
@@ -42,9 +46,10 @@ def latex(result: Measured, metric: str, region: str | None, s: float, rank: boo
     best: dict[int, set[str]] = {}
     for n in counts:
         of = {a: by[a, n] for a in arms if by[a, n].size}
-        found = best_of(of) if rank else set()
+        found = best_of(of) if rank and metric in RANKED else set()
         best[n] = found if len(found) < len(of) else set()
-    name = _NAMES.get(metric, metric.translate(_SPECIAL)) + (f", region {region}".translate(_SPECIAL) if region else "")
+    name = NAMES.get(metric, metric.translate(_SPECIAL)) + (f", region {region}".translate(_SPECIAL) if region else "")
+    name += f" [{UNITS[metric]}]" if metric in UNITS else ""
     lines = [
         rf"% {result.provenance}".translate({ord("\n"): " "}),
         rf"\begin{{tabular}}{{l{'r' * len(counts)}}}",

@@ -6,10 +6,14 @@ e.samplers["both"] = crescent.mis("mine", "light-area", heuristic="power")
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from ._context import ARRAYS
+
+#: weights(wo, wi, p) -> w, all of n rows: p[n, K] and w[n, K] have a column for each sampler
+WeightFunction = Callable[..., Any]
 Weight = float | str  #: a number, a formula such as "rho_s / (rho_s + rho_d)", or "rest" as the last
 
 
@@ -21,15 +25,17 @@ class Combination:
     of: tuple[str, ...]
     heuristic: str | None = None
     draw: str | None = None
-    weights: tuple[Weight, ...] | None = None
+    weights: tuple[Weight, ...] | WeightFunction | None = None
     probabilities: tuple[Weight, ...] | None = None
     samples: int | tuple[int, ...] | None = None
     candidates: int | None = None
     target: str | None = None
+    uses: tuple[str, ...] = ()  #: what a function for the weights uses, as of a Sampler
 
     def table(self) -> dict[str, Any]:
-        """The keys that are given."""
-        return {key: value for key, value in vars(self).items() if value is not None}
+        """The keys that are given, without a function for the weights."""
+        own = {key: value for key, value in vars(self).items() if key != "uses" and value is not None}
+        return {key: value for key, value in own.items() if not callable(value)}
 
 
 def _names(of: Sequence[str]) -> tuple[str, ...]:
@@ -42,25 +48,40 @@ def _names(of: Sequence[str]) -> tuple[str, ...]:
 
 
 def _weights(given: Sequence[Weight] | None) -> tuple[Weight, ...] | None:
+    if callable(given):
+        raise TypeError("weights is a function: expected numbers or formulas; functions weight mis alone")
     return None if given is None else tuple(given)
 
 
 def mis(
     *of: str,
     heuristic: Literal["balance", "power"] | None = None,
-    weights: Sequence[Weight] | None = None,
+    weights: Sequence[Weight] | WeightFunction | None = None,
     draw: Literal["every", "one"] | None = None,
     samples: int | Sequence[int] | None = None,
     probabilities: Sequence[Weight] | None = None,
+    uses: Sequence[str] = (),
 ) -> Combination:
     """Multiple importance sampling of these samplers.
 
     `heuristic`: "balance" (default) or "power"; `weights` are the user's own in its place, numbers or formulas of the
-    densities p1, p2, ... (1/sr), s, alpha, rho_d, rho_s, cos_o and cos_i, whose sum is one. `draw`: a sample is a
+    densities p1, p2, ... (1/sr), s, alpha, rho_d, rho_s, cos_o and cos_i, whose sum is one; or a function
+    ``weights(wo[n, 3], wi[n, 3], p[n, K]) -> w[n, K]`` of NumPy arrays, with the densities of all K samplers at each
+    direction, whose rows sum to one. It takes a fourth argument with the surface and the lights if `uses` names any,
+    as the callables of a :class:`Sampler` do. `draw`: a sample is a
     direction of "every" sampler (`samples` of each), or of "one" that is chosen with `probabilities`.
     """
     count = tuple(samples) if isinstance(samples, Sequence) else samples
-    return Combination("mis", _names(of), heuristic, draw, _weights(weights), _weights(probabilities), count)
+    own = weights if callable(weights) else _weights(weights)
+    if own is None or not callable(own):
+        if uses:
+            raise TypeError("uses is of a function for the weights: expected weights=function")
+    elif heuristic is not None:
+        raise TypeError("weights and heuristic are given: expected one of them")
+    for name in uses:
+        if name not in ARRAYS:
+            raise ValueError(f"uses has {name!r}: expected one of {', '.join(ARRAYS)}")
+    return Combination("mis", _names(of), heuristic, draw, own, _weights(probabilities), count, uses=tuple(uses))
 
 
 def mixture(*of: str, weights: Sequence[Weight] | None = None) -> Combination:

@@ -135,7 +135,7 @@ class Experiment:
 
     def __init__(self, core: _crescent.Experiment, samplers: Mapping[str, Any] | None = None) -> None:
         self._core = core
-        self.samplers = Samplers()  #: samplers in Python by the name of their arm, which :func:`run` adds
+        self.samplers: Samplers = Samplers()  #: samplers in Python by the name of their arm, which :func:`run` adds
         self.samplers.update(samplers or {})
 
     def _tree(self) -> dict[str, Any]:
@@ -281,8 +281,8 @@ class Measured:
 
     def __init__(self, core: _crescent.RunResult) -> None:
         self._core = core
-        self.films = Films([Film(*film) for film in core.films], core.s)
-        self.references = {s: planes for s, planes in core.references}  #: by s: r, g, b, y, error
+        self.films: Films = Films([Film(*film) for film in core.films], core.s)
+        self.references: dict[float, Mapping[str, NDArray[np.float32]]] = {s: planes for s, planes in core.references}  #: by s: r, g, b, y, error
 
     @property
     def metrics(self) -> dict[str, Any]:
@@ -321,9 +321,9 @@ class Measured:
         return {arm: float(np.median([t for a, t in rows if a == arm])) for arm in arms}
 
     def metric(self, name: str, arm: str, n: int, region: str = "", s: float | None = None) -> Summary:
-        """A metric of :meth:`records`, "tail_k", "bias_sq", "flip" (of the frame's films of the first seed), or
-        "efficiency_n" and "efficiency_time": 1 / (variance of one sample) and 1 / (variance times seconds), as a mean
-        over seeds with its 95 % interval (Student's t)."""
+        """A metric of :meth:`records`, "tail_k", "bias_sq", "flip" (of the first `flip_seeds` seeds; of the frame of the
+        first seed), or "efficiency_n" and "efficiency_time": 1 / (variance of one sample) and 1 / (variance times
+        seconds), as a mean over seeds with its 95 % interval (Student's t)."""
         from ._summaries import summary
 
         return summary(self, name, arm, n, region, self.s if s is None else s)
@@ -347,7 +347,8 @@ class Measured:
         width of their 95 % intervals.
 
         `bold="best"`: arms of which none is significantly worse than the best are bold, if some other arm is (paired t
-        over seeds at 5 %, shared by the arms); with one seed nothing is ranked. None: nothing is bold.
+        over seeds at 5 %, shared by the arms); with one seed, or a metric of which the smallest is not the best, nothing is
+        ranked. None: nothing is bold.
         """
         from ._tables import latex
 

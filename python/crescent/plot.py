@@ -20,7 +20,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._intervals import fitted_slope, log_interval
+from ._arrays import channels
+from ._intervals import fitted_slope, log_interval, t_quantile
+from ._metric_names import NAMES, RADIANCE, UNITS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,8 +52,6 @@ _STYLE: dict[Any, Any] = {
     "savefig.dpi": 300,
     "savefig.bbox": "tight",
 }
-_UNITS = {"y_mean": "W sr$^{-1}$ m$^{-2}$", "rmse": "W sr$^{-1}$ m$^{-2}$", "rmse_frame": "W sr$^{-1}$ m$^{-2}$"}
-_NAMES = {"rmse": "RMSE", "rmse_frame": "RMSE of the frame", "var": "variance", "y_mean": "mean Y", "tail_k": "k-hat"}
 
 
 def style() -> AbstractContextManager[None]:
@@ -114,8 +114,8 @@ def _only_region(r: Measured, metric: str, region: str | None) -> str:
 
 
 def _label(metric: str, region: str) -> str:
-    unit = _UNITS.get(metric, "")
-    return _NAMES.get(metric, metric) + (f", region {region}" if region else "") + (f" [{unit}]" if unit else "")
+    unit = UNITS.get(metric, "")
+    return NAMES.get(metric, metric) + (f", region {region}" if region else "") + (f" [{unit}]" if unit else "")
 
 
 def ladder(
@@ -134,7 +134,7 @@ def ladder(
     region = _only_region(r, metric, region)
     values = _values(r, metric, region, s)
     with style():
-        ax = _axes(ax)
+        ax = _axes(ax, 62.0 + 2.0 * len(values))
         for arm in _arms(r, arms):
             if arm not in values:
                 continue
@@ -143,7 +143,7 @@ def ladder(
             low, high = (5.0, 95.0) if min(map(len, over)) >= 20 else (0.0, 100.0)
             middle = np.array([np.median(v) for v in over])
             slope = fitted_slope(n, over)
-            name = arm if slope is None else f"{arm}: slope {slope.text()}"
+            name = arm if slope is None else f"{arm}: slope {slope.text().replace('-', '−')}"
             ax.plot(n, middle, "o-", ms=3, color=_colour(r, arm), label=name)
             ax.fill_between(
                 n, [np.percentile(v, low) for v in over], [np.percentile(v, high) for v in over],
@@ -157,7 +157,10 @@ def ladder(
         ax.set_xlabel("samples a pixel, N")
         ax.set_ylabel(_label(metric, region))
         ax.grid(True)
-        ax.legend(frameon=False)
+        # Below the axes, where no line is; the distance is in font sizes, for the labels of the axis.
+        ax.legend(
+            frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5, ncols=2, columnspacing=1.2
+        )
     return ax
 
 
@@ -191,8 +194,13 @@ def bars(
         ax = _axes(ax, 12.0 + 7.0 * len(found))
         for y, (arm, v) in enumerate(found):
             ax.barh(y, _geometric(v), color=_colour(r, arm), height=0.7)
+            end = _geometric(v)
             if (interval := log_interval(v)) is not None:
                 ax.plot(interval, [y, y], color="black", lw=1)
+                end = max(end, interval[1])
+            ax.annotate(f"{_geometric(v):.3g}", (end, y), (3, 0), textcoords="offset points", va="center", size=7)
+        ax.margins(x=0.15)  # room for the numbers
+        ax.set_axisbelow(True)
         ax.set_yticks(range(len(found)), [arm for arm, _ in found])
         ax.set_xlabel(f"{_label(metric, region)} at N = {at}")
         ax.set_xlim(left=0)
@@ -222,6 +230,11 @@ def _picture(ax: Axes, image: NDArray[Any], title: str, **how: Any) -> Any:
     return drawn
 
 
+def _scale(ax: Axes, drawn: Any, label: str, extend: str) -> None:
+    """A colour scale as high as the picture."""
+    ax.figure.colorbar(drawn, cax=ax.inset_axes((1.03, 0, 0.04, 1)), label=label, extend=extend)
+
+
 def heat(
     r: Measured,
     arm: str,
@@ -240,9 +253,9 @@ def heat(
     if what == "error":
         if film.s not in r.references:
             raise KeyError(f"the result has no reference at s = {film.s:g}")
-        plane, unit = np.abs(film.y - r.references[film.s]["y"]), "|error of Y| [W sr$^{-1}$ m$^{-2}$]"
+        plane, unit = np.abs(film.y - r.references[film.s]["y"]), f"|error of Y| [{RADIANCE}]"
     elif what == "var":
-        plane, unit = film.var, "variance of Y [(W sr$^{-1}$ m$^{-2}$)$^2$]"
+        plane, unit = film.var, f"variance of Y [({RADIANCE})$^2$]"
     else:
         raise ValueError(f"what is {what!r}: expected 'error' or 'var'")
     image = _cut(plane, box)
@@ -250,7 +263,7 @@ def heat(
         ax = _axes(ax)
         limit = float(np.nanpercentile(image, 99)) if top is None else top
         drawn = _picture(ax, image, f"{arm}, N = {n}", cmap="inferno", vmin=0, vmax=limit or 1.0)
-        ax.figure.colorbar(drawn, ax=ax, label=unit, shrink=0.8, extend="max")
+        _scale(ax, drawn, unit, "max")
     return ax
 
 
@@ -264,7 +277,8 @@ def where_noise_moved(
     tile: int = 8,
     ax: Axes | None = None,
 ) -> Axes:
-    """log2 of the variance of `b` over that of `a`, over tiles of `tile` pixels: blue where `b` has less.
+    """log2 of the variance of `b` over that of `a`, over tiles of `tile` pixels: blue where `b` has less, grey where one
+    has none.
 
     The scale ends at a factor of 64 at most.
     """
@@ -281,7 +295,8 @@ def where_noise_moved(
         ax = _axes(ax)
         limit = min(float(np.nanpercentile(np.abs(ratio), 98)) if np.isfinite(ratio).any() else 1.0, 6.0)
         drawn = _picture(ax, ratio, f"{b} against {a}, N = {n}", cmap="RdBu_r", vmin=-limit, vmax=limit)
-        ax.figure.colorbar(drawn, ax=ax, label=f"log$_2$ variance of {b} / {a}", shrink=0.8, extend="both")
+        ax.set_facecolor("#bfbfbf")  # of tiles without variance
+        _scale(ax, drawn, f"log$_2$ variance of {b} / {a}", "both")
     return ax
 
 
@@ -289,6 +304,14 @@ def _tone(rgb: NDArray[Any], exposure: float) -> NDArray[Any]:
     """Linear Rec. 709 to sRGB (IEC 61966-2-1), clipped to [0, 1]."""
     x = np.clip(rgb * exposure, 0, 1)
     return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
+def _with_interval(over: NDArray[Any]) -> str:
+    """The mean over seeds, with the half width of its 95 % interval."""
+    mean = float(np.mean(over))
+    if over.size < 2:
+        return f"{mean:.3g}"
+    return f"{mean:.3g} ± {t_quantile(0.975, over.size - 1) * float(np.std(over, ddof=1)) / over.size**0.5:.2g}"
 
 
 def crops(
@@ -301,7 +324,8 @@ def crops(
     s: float | None = None,
     exposure: float = 1.0,
 ) -> list[Axes]:
-    """The same crop of the reference and of several arms in a row, each with its metric over seeds below it.
+    """The same crop of the reference and of several arms in a row; below each the mean of its metric over seeds, with
+    the half width of its 95 % interval.
 
     `box`: [x0, y0, x1, y1) in pixels, y upwards.
     """
@@ -315,20 +339,23 @@ def crops(
     if not shown:
         raise KeyError(f"no arm has a film at N = {n} and s = {at:g}")
     reference = r.references.get(at)
+    name = NAMES.get(metric, metric) + (f", region {region}" if region else "")
     count = len(shown) + (reference is not None)
     with style():
         aspect = (box[3] - box[1]) / (box[2] - box[0])
         width = min(2 * COLUMN_MM + 5, 42.0 * count) / 25.4
-        figure, row = plt.subplots(1, count, figsize=(width, width / count * aspect + 0.45), layout="constrained")
+        figure, row = plt.subplots(1, count, figsize=(width, width / count * aspect + 0.6), layout="constrained")
         axes = list(np.atleast_1d(row))
         if reference is not None:
             rgb = np.stack([reference[c] for c in "rgb"], -1)
             _picture(axes[0], _tone(_cut(rgb, box), exposure), "reference")
+            unit = UNITS.get(metric, "")
+            axes[0].set_xlabel(f"{name}" + (f"\n[{unit}]" if unit else ""))
         for ax, arm in zip(axes[count - len(shown) :], shown):
             _picture(ax, _tone(_cut(films[arm, n, at].rgb, box), exposure), f"{arm}, N = {n}")
             over = np.array(values.get(arm, {}).get(n, []))
             if over.size:
-                ax.set_xlabel(f"{_NAMES.get(metric, metric)} {np.mean(over):.3g}")
+                ax.set_xlabel(_with_interval(over) if reference is not None else f"{name}\n{_with_interval(over)}")
     return axes
 
 
@@ -353,21 +380,22 @@ def hemisphere(
     theta = np.radians(wo_deg)
     wo = np.broadcast_to([np.sin(theta), 0.0, np.cos(theta)], wi.shape)
 
-    def over(f: Callable[..., Any]) -> NDArray[Any]:
+    def over(f: Callable[..., Any], what: str) -> NDArray[Any]:
         out = np.full(x.shape, np.nan)
-        out[inside] = np.asarray(f(wo, wi), dtype=float).reshape(len(wi), -1).mean(-1)
+        out[inside] = channels(f(wo[:8], wi[:8]), 8, what).mean(-1)[0]  # a wrong shape of all rows may need much memory
+        out[inside] = channels(f(wo, wi), len(wi), what).mean(-1)
         return out
 
     with style():
         ax = _axes(ax, 70.0)
-        density = over(pdf)
+        density = over(pdf, "pdf")
         drawn = _picture(
             ax, density, title, origin="lower", extent=(-1, 1, -1, 1), cmap="cividis", vmin=0,
             vmax=float(np.nanpercentile(density, 99.9)) or 1.0,
         )  # fmt: skip
-        ax.figure.colorbar(drawn, ax=ax, label="pdf [sr$^{-1}$]", shrink=0.8, extend="max")
+        _scale(ax, drawn, "pdf [sr$^{-1}$]", "max")
         if integrand is not None:
-            aim = over(integrand)
+            aim = over(integrand, "integrand")
             peak = float(np.nanmax(aim))
             if peak > 0:
                 ax.contour(x, y, aim / peak, levels=[0.1, 0.5, 0.9], colors="white", linewidths=0.8)

@@ -125,7 +125,7 @@ constexpr const char* another_shape = "crescent._context let an array of another
 
 /// Calls callable(wo, second, context) for a batch, and take(answer) with the lock held.
 template <class Take> void call_for(const CallableArmPlan& plan, Raised& raised, const nb::object& callable,
-    const ExternalBatch& batch, std::size_t rows, Table second, Take&& take) {
+    const ExternalBatch& batch, std::size_t rows, Table second, Take&& take, std::unique_ptr<Table> more = nullptr) {
     Table wo =
         per_run("wo", batch, rows, {3}, [&](std::size_t r, std::size_t j) { return component(batch.runs[r].wo, j); });
     std::vector<Table> tables = context_of(batch, rows, plan.uses);
@@ -133,6 +133,7 @@ template <class Take> void call_for(const CallableArmPlan& plan, Raised& raised,
     try {
         nb::dict context;
         for (Table& table : tables) context[table.name().c_str()] = table.take();
+        if (more) context[more->name().c_str()] = more->take();
         if (plan.uses.contains("lights")) put_lights(batch.lights, context);
         take(call_python(callable, wo.take(), second.take(), context));
         if (plan.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -140,6 +141,13 @@ template <class Take> void call_for(const CallableArmPlan& plan, Raised& raised,
         raised.keep();
         throw Interrupted{};
     }
+}
+
+Table directions_of(std::span<const Vec3d> wi) {
+    Table out("wi", wi.size(), {3});
+    for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < wi.size(); ++i) out.column(j)[i] = component(wi[i], j);
+    return out;
 }
 
 }  // namespace
@@ -161,14 +169,29 @@ void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) con
 void CallableArm::density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const {
     raised_->check();
     const std::size_t rows = out.size();
-    Table directions("wi", rows, {3});
-    for (std::size_t j = 0; j < 3; ++j)
-        for (std::size_t i = 0; i < rows; ++i) directions.column(j)[i] = component(wi[i], j);
-    call_for(plan_, *raised_, plan_.pdf, batch, rows, std::move(directions), [&](const nb::object& answer) {
+    call_for(plan_, *raised_, plan_.pdf, batch, rows, directions_of(wi), [&](const nb::object& answer) {
         const Column pdf = nb::cast<Column>(answer);
         if (pdf.shape(0) != rows) throw nb::value_error(another_shape);
         for (std::size_t i = 0; i < rows; ++i) out[i] = pdf(i);
     });
+}
+
+void CallableArm::weights(
+    const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<const double> p, std::span<double> out) const {
+    raised_->check();
+    const std::size_t rows = wi.size(), samplers = p.size() / rows;
+    auto densities = std::make_unique<Table>("p", rows, std::vector{samplers});
+    for (std::size_t k = 0; k < samplers; ++k)
+        for (std::size_t i = 0; i < rows; ++i) densities->column(k)[i] = p[i * samplers + k];
+    call_for(
+        plan_, *raised_, plan_.weights, batch, rows, directions_of(wi),
+        [&](const nb::object& answer) {
+            const Rows w = nb::cast<Rows>(answer);
+            if (w.shape(0) != rows || w.shape(1) != samplers) throw nb::value_error(another_shape);
+            for (std::size_t i = 0; i < rows; ++i)
+                for (std::size_t k = 0; k < samplers; ++k) out[i * samplers + k] = w(i, k);
+        },
+        std::move(densities));
 }
 
 }  // namespace crescent::python

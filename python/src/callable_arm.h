@@ -21,6 +21,7 @@ namespace crescent::python {
 struct CallableArmPlan {
     std::string name;
     nb::object draw, pdf;  // pdf may be None
+    nb::object weights{};  // of a combination, weights(wo, wi, {..., "p": [n,K]}) -> [n,K], in their place; or None
     int numbers = 2;
     std::set<std::string> uses{};  // of the quantities above
     bool serial = false;           // it wants one thread, the caller's own
@@ -30,7 +31,8 @@ struct CallableArmPlan {
 /// and is raised again at its end.
 class CallableArm : public ExternalSampler {
 public:
-    explicit CallableArm(CallableArmPlan plan) : plan_(std::move(plan)), has_density_(!plan_.pdf.is_none()) {}
+    explicit CallableArm(CallableArmPlan plan)
+        : plan_(std::move(plan)), has_density_(!plan_.pdf.is_none()), has_weights_(!plan_.weights.is_none()) {}
     /// Receives exceptions of the callables; must be set during a run or a check.
     void set_raised(Raised* raised) const { raised_ = raised; }
     bool serial() const { return plan_.serial; }
@@ -41,22 +43,26 @@ public:
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override;
     bool has_density() const override { return has_density_; }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override;
+    bool has_weights() const override { return has_weights_; }
+    void weights(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<const double> p,
+        std::span<double> out) const override;
 
 private:
     CallableArmPlan plan_;
-    bool has_density_;  // the lock need not be held to tell
+    bool has_density_, has_weights_;  // the lock need not be held to tell
     mutable Raised* raised_ = nullptr;
 };
 
-/// (arm, draw, pdf, numbers, uses, serial) of each arm whose sampler is a callable.
-using CallableArms = std::vector<std::tuple<std::string, nb::object, nb::object, int, std::vector<std::string>, bool>>;
+/// (arm, draw, pdf, weights, numbers, uses, serial) of each arm whose sampler, or whose weights, are a callable.
+using CallableArms =
+    std::vector<std::tuple<std::string, nb::object, nb::object, nb::object, int, std::vector<std::string>, bool>>;
 
 /// The samplers of these arms.
 inline std::map<std::string, std::shared_ptr<const CallableArm>> samplers_of(const CallableArms& callables) {
     std::map<std::string, std::shared_ptr<const CallableArm>> out;
-    for (const auto& [name, draw, pdf, numbers, uses, one_thread] : callables)
+    for (const auto& [name, draw, pdf, weights, numbers, uses, one_thread] : callables)
         out[name] = std::make_shared<CallableArm>(
-            CallableArmPlan{name, draw, pdf, numbers, {uses.begin(), uses.end()}, one_thread});
+            CallableArmPlan{name, draw, pdf, weights, numbers, {uses.begin(), uses.end()}, one_thread});
     return out;
 }
 

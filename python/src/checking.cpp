@@ -53,14 +53,14 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     return {make_user_cases(adapter, full, grid), adapter};
 }
 
-CheckCases of_experiment(
-    const Experiment& experiment, const std::string& sampler, int pixels, bool full, const CallableArms& callables) {
+CheckCases of_experiment(const Experiment& experiment, const std::string& sampler, int pixels, bool full,
+    const CallableArms& callables, const Grid& grid, const std::string& keyword) {
     CheckCases out;
     ExternalSamplers samplers;
     for (const auto& [name, arm] : samplers_of(callables)) samplers[name] = arm, out.arms.push_back(arm);
     const Work here;
     out.all = arm_cases(experiment, sampler, open_external(with_arms_of(experiment, {sampler}), 0, std::move(samplers)),
-        {pixels, full});
+        {pixels, full, grid, "--" + keyword});
     return out;
 }
 
@@ -247,6 +247,7 @@ void add_checking(nb::module_& m) {
         "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "own_random"_a,
         "eta"_a.none(), "importance"_a, "full"_a, "grid"_a);
     m.def("cases_of_experiment", &of_experiment, "experiment"_a, "sampler"_a, "pixels"_a, "full"_a, "callables"_a,
+        "grid"_a, "keyword"_a,
         "An arm of an experiment at pixels of its scene; 0: over the grid of w_o on each material.");
     m.def(
         "cases_of_arm",

@@ -210,7 +210,8 @@ Experiment settled_paths(Experiment e) {
     absolute(e.published);
     for (ArmPlan& arm : e.arms) {
         absolute(arm.plugin);
-        if (arm.python && !python_file(*arm.python).empty()) absolute(arm.python);
+        for (std::optional<std::string>* python : {&arm.python, &arm.combination.weights_python})
+            if (*python && !python_file(**python).empty()) absolute(*python);
     }
     return e;
 }
@@ -228,7 +229,7 @@ nb::object flip_of(const FloatPlane& r0, const FloatPlane& g0, const FloatPlane&
         return FlipImage{static_cast<int>(width), static_cast<int>(height), {red.data(), red.size()},
             {green.data(), green.size()}, {blue.data(), blue.size()}};
     };
-    auto* values = new std::vector<float>(hdr_flip(image(r0, g0, b0), image(r, g, b), 67));
+    auto* values = new std::vector<float>(hdr_flip(image(r0, g0, b0), image(r, g, b), flip_pixels_per_degree));
     const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<float>*>(p); });
     return nb::cast(nb::ndarray<nb::numpy, float>(values->data(), {height, width}, owner));
 }
@@ -280,7 +281,7 @@ void add_experiments(nb::module_& m) {
         .def("__getstate__", [](nb::handle self) { return state_of(self); })
         .def("__setstate__", &restore);
     m.def("flip", &flip_of, "reference_r"_a, "reference_g"_a, "reference_b"_a, "test_r"_a, "test_g"_a, "test_b"_a,
-        "HDR-FLIP of each pixel, linear Rec. 709, at 67 pixels per degree.");
+        "HDR-FLIP of each pixel, linear Rec. 709, at 67.0206 pixels per degree.");
     m.def("counting_metrics", &counting_metrics, "The metrics whose values are whole numbers.");
     m.def(
         "join",

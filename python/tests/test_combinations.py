@@ -44,6 +44,58 @@ def test_mis_of_a_sampler_in_python_with_the_lights_agrees_with_the_reference():
     assert measured.metric("bad", "both", 16).mean == 0
 
 
+def cubes(wo, wi, p):
+    return p**3 / (p**3).sum(axis=1, keepdims=True)
+
+
+def test_mis_with_a_function_for_its_weights_has_the_film_of_the_same_formulas(tmp_path):
+    names = ("mine", "cosine", "light-area")
+    total = "(p1^3 + p2^3 + p3^3)"
+    e = with_samplers(mine=MINE)
+    e.samplers["formulas"] = crescent.mis(*names, weights=[f"p1^3 / {total}", f"p2^3 / {total}", f"p3^3 / {total}"])
+    e.samplers["function"] = crescent.mis(*names, weights=cubes)
+    e.samplers["of-one"] = crescent.mis(*names, weights=cubes, draw="one", probabilities=[0.25, 0.5, "rest"])
+    measured = crescent.run(e, seeds=(1, 1))
+    assert difference(measured.films["formulas", 16], measured.films["function", 16]) < 1e-3
+    assert agrees(measured, "function", 16) and agrees(measured, "of-one", 16)
+    assert crescent.check(e, sampler="function", pixels=2).state != "wrong"
+
+
+def test_a_function_for_the_weights_uses_the_surface_and_its_rows_sum_to_one():
+    e = with_samplers()
+
+    def by_exponent(wo, wi, p, ctx):
+        share = np.where(ctx.s > 1, 0.25, 0.75)[:, None] * [1, 0] + [0, 1] * np.where(ctx.s > 1, 0.75, 0.25)[:, None]
+        return share * p / (share * p).sum(axis=1, keepdims=True)
+
+    e.samplers["both"] = crescent.mis("cosine", "light-area", weights=by_exponent, uses=("s",))
+    assert agrees(crescent.run(e, seeds=(1, 1)), "both", 16)
+    balance = e.hash
+    e.samplers["both"] = crescent.mis("cosine", "light-area")
+    assert e.hash != balance
+    for weights, words in (
+        (lambda wo, wi, p: 0 * p + 0.4, r"both: weights: row 0 is \[0.4, 0.4\], whose sum is 0.8"),
+        (lambda wo, wi, p: p[:, 0], r"both: weights: shape \(\d+,\), expected"),
+    ):
+        e.samplers["both"] = crescent.mis("cosine", "light-area", weights=weights)
+        with pytest.raises(ValueError, match=words):
+            crescent.run(e, seeds=(1, 1))
+    with pytest.raises(TypeError, match="expected one of them"):
+        crescent.mis("cosine", "phong", heuristic="power", weights=cubes)
+    with pytest.raises(TypeError, match="functions weight mis alone"):
+        crescent.mixture("cosine", "phong", weights=cubes)
+
+
+def test_a_file_names_a_function_for_the_weights(tmp_path):
+    (tmp_path / "own_weights.py").write_text("def equal(wo, wi, p):\n    return 0 * p + 0.5\n")
+    arm = '\n[arms.both]\nkind = "mis"\nof = ["cosine", "uniform"]\nweights_python = "own_weights.py:equal"\nn = [16]\n'
+    file = tmp_path / "t.toml"
+    file.write_text(TINY + arm)
+    assert agrees(crescent.run(file, seeds=(1, 1)), "both", 16)
+    with pytest.raises(ValueError, match=r"t\.toml:\d+:\d+: arms\.both\.weights_python: with --no-code"):
+        crescent.run(file, seeds=(1, 1), code=False)
+
+
 def test_a_mixture_with_a_copy_of_phong_has_the_film_of_the_built_in_mixture():
     e = with_samplers({"arms.mixture.n": [64]}, mine=MINE)
     e.samplers["half"] = crescent.mixture("mine", "cosine", weights=["min(rho_s / (rho_s + rho_d), 0.9)", "rest"])
@@ -97,6 +149,23 @@ def test_a_sampler_is_checked_at_pixels_and_on_the_grid():
     wrong = crescent.Sampler(phong, lambda wo, wi, ctx: 2 * phong_pdf(wo, wi, ctx), uses=("s",))
     e.samplers["mine"] = wrong
     assert crescent.check(e, sampler="mine", pixels=2).state == "wrong"
+
+
+def test_an_arm_is_checked_at_given_w_o_and_against_another_arm():
+    e = with_samplers(mine=MINE)
+    e.samplers["flat"] = crescent.Sampler(cosine, cosine_pdf)
+    result = crescent.check(e, sampler="flat", pixels=2, wo_deg=[30, (60, 250)])
+    assert result.state != "wrong", str(result)
+    assert {v.case.split(",")[0] for v in result.verdicts} == {"w_o 30 deg az 0", "w_o 60 deg az 250"}
+    assert len({v.case for v in result.verdicts}) == 4
+    same = crescent.check(e, sampler="mine", against="phong", wo_deg=30, pixels=1, expect_same=True)
+    assert same.of("same_distribution")[0].state == "right", str(same)
+    other = crescent.check(e, sampler="mine", against="cosine", wo_deg=30, pixels=1, expect_same=True)
+    assert other.state == "wrong"
+    with pytest.raises(ValueError, match="--against cosin.*did you mean 'cosine'"):
+        crescent.check(e, sampler="mine", against="cosin")
+    with pytest.raises(ValueError, match="under the surface"):
+        crescent.check(e, sampler="mine", wo_deg=150)
 
 
 def test_check_names_the_arms_that_there_are():

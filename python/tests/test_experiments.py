@@ -336,3 +336,27 @@ def test_the_density_of_a_warp_by_differences():
     assert np.allclose(crescent.pdf_of(sky)(None, u)[1], 1 / (4 * np.pi), rtol=1e-4)
     with pytest.raises(ValueError, match="u: shape"):
         crescent.pdf_of(cosine)(None, np.full((4, 3), 0.5))
+
+
+def test_flip_is_measured_of_the_first_seeds_and_joined(tmp_path):
+    e = crescent.parse(TINY.replace("seeds = 2", "seeds = 3\nflip_seeds = 2"))
+    whole = crescent.run(e)
+    rows = [r for r in whole.records() if r["meter"] == "flip"]
+    seeds = list(dict.fromkeys(r["seed"] for r in whole.records()))
+    assert {r["seed"] for r in rows} == set(seeds[:2]) and all(0 <= r["value"] <= 1 for r in rows)
+    assert len({(r["arm"], r["region"], r["seed"]) for r in rows}) == len(rows), "one sample count"
+    row = next(r for r in rows if r["seed"] == seeds[0])
+    found = whole.metric("flip", row["arm"], row["n"], row["region"], row["s"])
+    assert len(found.values) == 2 and found.half is not None
+    x0, y0, x1, y1 = whole.boxes[row["region"]]
+    film, reference = whole.films[row["arm"], row["n"], row["s"]], whole.references[row["s"]]
+    planes = [np.ascontiguousarray(of[c]) for of in (reference, film.planes) for c in "rgb"]
+    everywhere = crescent._crescent.flip(*planes)
+    assert row["value"] == pytest.approx(everywhere[y0 : y1 + 1, x0 : x1 + 1].mean(dtype=float), rel=1e-6)
+    bands = {b["meter"]: b["seeds"] for b in whole.metrics["bands"]}
+    assert bands[f"flip.{row['region']}"] == 2
+    for k in (1, 3):
+        crescent.run(e, seeds=(k, min(k + 1, 3)), out=tmp_path / str(k))
+    joined = crescent.join([tmp_path / "1", tmp_path / "3"])
+    assert [r for r in joined.records() if r["meter"] == "flip"] == rows
+    assert joined.metrics["bands"] == whole.metrics["bands"]

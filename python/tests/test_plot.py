@@ -104,3 +104,26 @@ def test_unknown_names_are_errors_with_what_there_is(result):
         plot.bars(result, arms=["nobody"])
     with pytest.raises(ValueError, match="expected x0 < x1"):
         plot.heat(result, *next((f.arm, f.n) for f in result.films.values()), box=[0, 0, 0, 1])
+
+
+def test_a_legend_covers_no_line(result):
+    ax = plot.ladder(result)
+    ax.figure.canvas.draw()
+    assert ax.get_legend().get_window_extent().y1 <= ax.get_xaxis().label.get_window_extent().y0
+
+
+def test_a_colour_scale_is_no_higher_than_the_picture(result):
+    film = next(iter(result.films.values()))
+    ax = plot.heat(result, film.arm, film.n, what="var")
+    ax.figure.canvas.draw()
+    picture, scale = ax.get_window_extent(), ax.child_axes[0].get_window_extent()
+    assert picture.y0 - 1 < scale.y0 and scale.y1 < picture.y1 + 1
+
+
+def test_the_smallest_is_ranked_only_where_it_is_the_best(result):
+    assert r"\mathbf" not in result.to_latex("y_mean")
+
+
+def test_a_density_of_another_shape_is_an_error():
+    with pytest.raises(ValueError, match=r"integrand: shape \(8, 8\), expected"):
+        plot.hemisphere(lambda wo, wi: wi[:, 2] / np.pi, lambda wo, wi: wi[:, 2] * wi[:, 2:])

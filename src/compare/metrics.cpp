@@ -15,6 +15,7 @@
 #include "compare/outputs.h"
 #include "math/functions.h"
 #include "math/statistics.h"
+#include "metrics/flip.h"
 #include "output/tone_map.h"
 
 namespace crescent::inline comparison {

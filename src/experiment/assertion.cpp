@@ -201,6 +201,7 @@ const std::vector<QuantityWord>& quantity_words() {
     static const std::vector<QuantityWord> words = {
         CRESCENT_REGION_METRICS(CRESCENT_OF_REGION){
             "tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
+        {"flip", true, QuantityOf::run, "mean HDR-FLIP of a region, at the experiment's seed"},
         CRESCENT_FRAME_METRICS(CRESCENT_OF_FRAME){
             "furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
         {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
@@ -262,8 +263,9 @@ void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path
     if (check)
         if (why = resolve_quantity(check->left, context.e); why.empty())
             why = resolve_quantity(check->right, context.e);
-    if (why.empty() && plan.median && (check->left.word == "tail" || check->right.word == "tail"))
-        why = "expected over = \"seed\": tails are measured at the experiment's seed alone";
+    for (const std::string_view word : {"tail", "flip"})
+        if (why.empty() && plan.median && (check->left.word == word || check->right.word == word))
+            why = fmt::format("expected over = \"seed\": {} is not measured at every seed", word);
     if (!why.empty()) return context.report(path, fmt::format("{}: {}", path, why));
     plan.check = *std::move(check);
 }

@@ -47,6 +47,7 @@ private:
         const CombinationPlan& c = arm.combination;
         const std::array given = {std::pair("of", !c.of.empty()), std::pair("heuristic", c.heuristic.has_value()),
             std::pair("draw", c.draw.has_value()), std::pair("weights", !c.weights.empty()),
+            std::pair("weights_python", c.weights_python.has_value()),
             std::pair("probabilities", !c.probabilities.empty()), std::pair("samples", !c.samples.empty()),
             std::pair("candidates", c.candidates.has_value()), std::pair("target", c.target.has_value())};
         for (const auto& [key, has] : given)
@@ -93,7 +94,7 @@ private:
     static bool has_density(const ArmPlan& arm) {
         const CombinationPlan& c = arm.combination;
         return c.kind == CombinationKind::mixture ||
-            (c.kind == CombinationKind::mis && c.draw == MisDraw::one && c.weights.empty() &&
+            (c.kind == CombinationKind::mis && c.draw == MisDraw::one && c.weights.empty() && !c.weights_python &&
                 c.heuristic.value_or(MisHeuristic::balance) == MisHeuristic::balance);
     }
 
@@ -141,6 +142,8 @@ private:
     void form(const ArmPlan& arm, const std::string& path) {
         const CombinationPlan& c = arm.combination;
         if (c.heuristic && !c.weights.empty()) report(path + ".weights", "expected weights or a heuristic, found both");
+        if (c.weights_python && (c.heuristic || !c.weights.empty()))
+            report(path + ".weights_python", "expected it without weights and heuristic beside it");
         if (c.kind == CombinationKind::mis && c.draw != MisDraw::one && !c.probabilities.empty())
             report(path + ".probabilities", "expected draw = \"one\" beside it: otherwise every sampler is drawn from");
         if (c.draw == MisDraw::one && !c.samples.empty())

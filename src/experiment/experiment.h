@@ -188,6 +188,7 @@ struct Experiment : SceneData {
     double exposure = 1;
     std::optional<Theme> theme;  // of plates; none: dark
     double firefly_k = 4;
+    int flip_seeds = 0;          // how many seeds FLIP is measured of, from the first; 0: one
     bool note_evidence = false;  // whether the article's explanations are tested by measurements
     std::vector<ArmPlan> arms;
     std::optional<ExponentControl> exponent;

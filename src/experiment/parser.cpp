@@ -414,7 +414,8 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     if (e.sky && !e.sky->file.empty()) e.sky->file = (folder / e.sky->file).string();
     for (ArmPlan& arm : e.arms) {
         if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
-        if (arm.python && !python_file(*arm.python).empty()) arm.python = (folder / *arm.python).string();
+        for (std::optional<std::string>* python : {&arm.python, &arm.combination.weights_python})
+            if (*python && !python_file(**python).empty()) *python = (folder / **python).string();
     }
     return context;
 }

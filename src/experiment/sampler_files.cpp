@@ -18,7 +18,8 @@ std::string_view python_file(std::string_view sampler) {
 
 std::string sampler_file(const ArmPlan& arm) {
     if (arm.plugin) return *arm.plugin;
-    return arm.python ? std::string(python_file(*arm.python)) : std::string{};
+    const std::optional<std::string>& python = arm.python ? arm.python : arm.combination.weights_python;
+    return python ? std::string(python_file(*python)) : std::string{};
 }
 
 std::string sampler_file_hashes(const Experiment& experiment) {
@@ -35,15 +36,17 @@ std::string sampler_file_hashes(const Experiment& experiment) {
 void refuse_code(const Experiment& experiment) {
     std::vector<Diagnostic> found;
     for (const ArmPlan& arm : experiment.arms) {
-        if (!arm.is_external()) continue;
-        const char* key = arm.exec ? "exec" : arm.plugin ? "plugin" : "python";
+        const std::optional<std::string>& weights = arm.combination.weights_python;
+        if (!arm.is_external() && !weights) continue;
+        const char* key = arm.exec ? "exec" : arm.plugin ? "plugin" : arm.python ? "python" : "weights_python";
         const std::string path = fmt::format("arms.{}.{}", arm.name, key);
         found.push_back({experiment.place_of(path),
             fmt::format("{}: with --no-code, expected a built-in sampler (key 'sampler'); found code to run: '{}'",
                 path,
                 arm.exec         ? *arm.exec
                     : arm.plugin ? *arm.plugin
-                                 : *arm.python)});
+                    : arm.python ? *arm.python
+                                 : *weights)});
     }
     if (!found.empty()) throw InputError(std::move(found));
 }

@@ -23,6 +23,7 @@ double of_run(const ParsedQuantity& q, const RunMetrics* run) {
     const RegionMetrics* region = run->region(q.region);
     if (!region) return unmeasured;
     if (q.word == "tail") return region->tail ? region->tail->k : unmeasured;
+    if (q.word == "flip") return region->flip;
     return metric_value(*run, q.word + "." + q.region);
 }
 

@@ -179,6 +179,8 @@ double metric_value(const RunMetrics& run, const std::string& metric) {
     };
     if (dot == std::string::npos) for_each_metric(run, look);
     else if (const RegionMetrics* region = run.region(metric.substr(dot + 1))) for_each_metric(*region, look);
+    if (const RegionMetrics* region = metric.starts_with("flip.") ? run.region(metric.substr(5)) : nullptr)
+        found = region->flip;
     ensure(found.has_value(), "a metric of the list, of a region that was measured");
     return *found;
 }
@@ -199,6 +201,19 @@ bool heavy(const RunMetrics& run, const std::string& metric) {
     if (dot == std::string::npos) return false;
     const RegionMetrics* region = run.region(metric.substr(dot + 1));
     return region && region->tail && region->tail->heavy();
+}
+
+/// Adds FLIP in each region that has it at two seeds at least.
+void add_flips(const std::vector<RunMetrics>& runs, const RunMetrics& run, std::vector<SeedSpread>& out) {
+    for (const RegionMetrics& region : run.regions) {
+        const std::string metric = "flip." + region.region;
+        std::vector<double> values = over_seeds(runs, run.key, metric);
+        std::erase_if(values, [](double v) { return std::isnan(v); });
+        if (values.size() < 2) continue;
+        const Band band{quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
+            static_cast<int>(values.size()), false};
+        out.push_back({run.key, metric, region.flip, band, {}, {}});
+    }
 }
 
 }  // namespace
@@ -234,6 +249,7 @@ std::vector<SeedSpread> bands(
             }
             out.push_back(std::move(b));
         }
+        add_flips(runs, run, out);
     }
     return out;
 }

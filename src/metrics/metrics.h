@@ -15,7 +15,7 @@
 
 namespace crescent::inline metrics {
 
-inline constexpr double not_paired = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double not_paired = std::numeric_limits<double>::quiet_NaN(), not_measured = not_paired;
 
 #define CRESCENT_FIELD(name, Type) MetricOf<Type> name{};
 /// The metrics of one film in one region: a field for each metric of the list.
@@ -28,6 +28,8 @@ struct RegionMetrics {
     // standard error, from that of the reference; the reference's own root mean square error.
     double mse = not_paired, mse_error = not_paired, reference_error = not_paired;
     bool is_paired() const { return mse == mse; }
+    double flip = not_measured;  // mean HDR-FLIP against the reference, of the seeds that it is measured of; else NaN
+    bool has_flip() const { return flip == flip; }
     /// The 95 % interval of the squared error.
     double mse_low() const { return mse - 1.96 * mse_error; }
     double mse_high() const { return mse + 1.96 * mse_error; }

@@ -130,13 +130,15 @@ private:
 }  // namespace
 
 Combination::Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
-    const SourceLocation& weights_at, const SourceLocation& probabilities_at)
+    const SourceLocation& weights_at, const SourceLocation& probabilities_at,
+    std::shared_ptr<const ExternalSampler> weigh)
     : name_(std::move(name)),
       plan_(std::move(plan)),
       of_(std::move(of)),
       target_(std::move(target)),
       weights_(plan_.weights, of_.size(), plan_.kind == CombinationKind::mis, weights_at),
-      probabilities_(plan_.probabilities, of_.size(), false, probabilities_at) {
+      probabilities_(plan_.probabilities, of_.size(), false, probabilities_at),
+      weigh_(std::move(weigh)) {
     if (plan_.kind == CombinationKind::mixture) mixture_ = mixture_technique(of_, weights_);
     if (!plan_.target) plan_.target = target_product;
     if (plan_.samples.size() == 1) plan_.samples.assign(of_.size(), plan_.samples[0]);
@@ -192,6 +194,37 @@ double Combination::mis_weight(std::size_t k, FormulaInputs in, std::span<const 
     return share[k] > 0 ? 1 / sum : 0;
 }
 
+std::vector<double> Combination::mis_weights(const PointRows& at, std::span<const std::size_t> k,
+    std::span<const Vec3<float>> wi, const std::vector<std::vector<double>>& p) const {
+    const std::size_t samplers = of_.size();
+    std::vector<double> out(wi.size()), here(samplers), densities;
+    std::vector<Vec3<float>> directions;
+    std::vector<std::size_t> mine;
+    std::vector<PointRun> runs;
+    std::size_t row = 0;
+    for (const PointRun& run : at.runs) {
+        FormulaInputs in = formula_inputs(at.points, run);
+        runs.push_back({run.point, run.wo, 0});
+        for (std::size_t i = 0; i < run.rows; ++i, ++row) {
+            for (std::size_t j = 0; j < samplers; ++j) here[j] = p[j][row];
+            const bool calls = weigh_ && here[k[row]] > 0 && std::ranges::all_of(here, [](double v) { return v >= 0; });
+            in.cos_i = double(wi[row].z);
+            if (!calls) {
+                out[row] = mis_weight(k[row], in, here);
+                continue;
+            }
+            mine.push_back(row), directions.push_back(wi[row]), ++runs.back().rows;
+            densities.insert(densities.end(), here.begin(), here.end());
+        }
+        if (runs.back().rows == 0) runs.pop_back();
+    }
+    if (mine.empty()) return out;
+    std::vector<double> w(densities.size());
+    external_weights(*weigh_, {at.points, runs}, directions, densities, w);
+    for (std::size_t i = 0; i < mine.size(); ++i) out[mine[i]] = w[i * samplers + k[mine[i]]];
+    return out;
+}
+
 void Combination::sample(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
     if (plan_.kind == CombinationKind::ris) sample_resampled(at, u, out);
     else if (plan_.kind == CombinationKind::mis && plan_.draw != MisDraw::one) sample_every(at, u, out);
@@ -204,7 +237,6 @@ void Combination::sample_every(const PointRows& at, const NumberBlocks& u, std::
     std::vector<PointDraw> drawn(rows);
     std::vector<Vec3<float>> wi(rows);
     std::vector<std::vector<double>> p(of_.size(), std::vector<double>(rows));
-    std::vector<double> here(of_.size());
     std::size_t next = 0;
     for (std::size_t k = 0; k < of_.size(); ++k)
         for (std::size_t repeat = 0; repeat < samples_of(k); ++repeat, ++next) {
@@ -212,21 +244,11 @@ void Combination::sample_every(const PointRows& at, const NumberBlocks& u, std::
             for (std::size_t i = 0; i < rows; ++i) wi[i] = drawn[i].wi, p[k][i] = drawn[i].pdf;
             for (std::size_t j = 0; j < of_.size(); ++j)
                 if (j != k) of_[j]->density(at, wi, p[j]);
-            std::size_t row = 0;
-            for (const PointRun& run : at.runs) {
-                const FormulaInputs point = formula_inputs(at.points, run);
-                for (std::size_t i = 0; i < run.rows; ++i, ++row) {
-                    if (drawn[row].pdf == 0) {
-                        out[row * count + next] = direction_of(drawn[row], 0, 0);
-                        continue;
-                    }
-                    for (std::size_t j = 0; j < of_.size(); ++j) here[j] = p[j][row];
-                    FormulaInputs in = point;
-                    in.cos_i = double(wi[row].z);
-                    const double w = mis_weight(k, in, here) / static_cast<double>(samples_of(k));
-                    out[row * count + next] = direction_of(drawn[row], drawn[row].pdf, w);
-                }
-            }
+            const std::vector<double> w = mis_weights(at, std::vector<std::size_t>(rows, k), wi, p);
+            for (std::size_t row = 0; row < rows; ++row)
+                out[row * count + next] = drawn[row].pdf == 0
+                    ? direction_of(drawn[row], 0, 0)
+                    : direction_of(drawn[row], drawn[row].pdf, w[row] / static_cast<double>(samples_of(k)));
         }
 }
 
@@ -244,21 +266,15 @@ void Combination::sample_one(const PointRows& at, const NumberBlocks& u, std::sp
     std::vector<PointDraw> drawn(choices.part.size());
     std::vector<std::vector<double>> p;
     draw_chosen(of_, at, given, numbers, choices, drawn, p);
-    std::vector<double> here(of_.size());
+    std::vector<Vec3<float>> wi;
+    for (const PointDraw& draw : drawn) wi.push_back(draw.wi);
+    const std::vector<double> w = mis_weights(at, choices.part, wi, p);
     std::size_t row = 0;
-    for (std::size_t r = 0; r < at.runs.size(); ++r) {
-        FormulaInputs in = formula_inputs(at.points, at.runs[r]);
-        for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) {
-            if (drawn[row].pdf == 0) {
-                out[row] = direction_of(drawn[row], 0, 0);
-                continue;
-            }
-            const std::size_t k = choices.part[row];
-            for (std::size_t j = 0; j < of_.size(); ++j) here[j] = p[j][row];
-            in.cos_i = double(drawn[row].wi.z);
-            out[row] = direction_of(drawn[row], drawn[row].pdf, mis_weight(k, in, here) / c[r * of_.size() + k]);
-        }
-    }
+    for (std::size_t r = 0; r < at.runs.size(); ++r)
+        for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row)
+            out[row] = drawn[row].pdf == 0
+                ? direction_of(drawn[row], 0, 0)
+                : direction_of(drawn[row], drawn[row].pdf, w[row] / c[r * of_.size() + choices.part[row]]);
 }
 
 void Combination::sample_resampled(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const {
@@ -309,7 +325,7 @@ void Combination::sample_resampled(const PointRows& at, const NumberBlocks& u, s
 
 std::shared_ptr<const Technique> Combination::technique() const {
     if (mixture_) return mixture_;
-    const bool balance = plan_.weights.empty() && plan_.heuristic != MisHeuristic::power;
+    const bool balance = plan_.weights.empty() && !weigh_ && plan_.heuristic != MisHeuristic::power;
     if (plan_.kind == CombinationKind::mis && plan_.draw == MisDraw::one && balance)
         return mixture_technique(of_, probabilities_);
     return nullptr;

@@ -35,9 +35,11 @@ struct SampleCost {
 class Combination : public ExternalSampler {
 public:
     /// `target`: the density of ris with a sampler as target; else null. `at`: of the arm's weights and probabilities
-    /// in the experiment. Throws InputError if they cannot be read.
+    /// in the experiment. `weigh`: gives the weights of mis in their place, or null. Throws InputError if they cannot
+    /// be read.
     Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
-        const SourceLocation& weights_at, const SourceLocation& probabilities_at);
+        const SourceLocation& weights_at, const SourceLocation& probabilities_at,
+        std::shared_ptr<const ExternalSampler> weigh = nullptr);
 
     std::string name() const override { return name_; }
     int numbers() const override { return 2; }
@@ -59,6 +61,11 @@ public:
     /// Its samplers, and the weight of a direction of sampler k, w_k, from the densities of all at it.
     const Techniques& parts() const { return of_; }
     double mis_weight(std::size_t k, FormulaInputs in, std::span<const double> p) const;
+    /// Whether they come from a function, which mis_weight() does not call.
+    bool has_weight_function() const { return weigh_ != nullptr; }
+    /// The same for each row, whose direction is of sampler k[row]; the densities are p[sampler][row].
+    std::vector<double> mis_weights(const PointRows& at, std::span<const std::size_t> k,
+        std::span<const Vec3<float>> wi, const std::vector<std::vector<double>>& p) const;
 
 private:
     void sample_every(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
@@ -75,6 +82,7 @@ private:
     std::shared_ptr<const Technique> target_;
     WeightList weights_, probabilities_;
     std::shared_ptr<const Technique> mixture_;  // of a mixture
+    std::shared_ptr<const ExternalSampler> weigh_;
 };
 
 /// Has the form of a kernel of the table.

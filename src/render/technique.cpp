@@ -60,6 +60,29 @@ private:
     }
 };
 
+/// Calls work(batch, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
+template <class Work> void in_batches(const ExternalSampler& sampler, const PointRows& at, Work&& work) {
+    const ShadingPoints& p = at.points;
+    const std::vector<ExternalLight> lights = sampler.uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
+    std::vector<ExternalRun> runs;
+    std::vector<ExternalLightAt> lights_at;
+    std::size_t first = 0, rows = 0;
+    const auto flush = [&] {
+        if (rows > 0) work(ExternalBatch{runs, {}, lights, lights_at}, first, rows);
+        first += rows, rows = 0;
+        runs.clear(), lights_at.clear();
+    };
+    for (const PointRun& run : at.runs)
+        for (std::size_t done = 0; done < run.rows;) {
+            const std::size_t part = std::min(run.rows - done, sampler.batch_rows() - rows);
+            runs.push_back(run_at(p, run.point, widen(run.wo), part));
+            if (!lights.empty()) add_lights_at(p, run.point, lights_at);
+            done += part, rows += part;
+            if (rows == sampler.batch_rows()) flush();
+        }
+    flush();
+}
+
 class ExternalTechnique : public Technique {
 public:
     explicit ExternalTechnique(std::shared_ptr<const ExternalSampler> sampler) : sampler_(std::move(sampler)) {}
@@ -69,7 +92,7 @@ public:
         const auto count = static_cast<std::size_t>(numbers());
         std::vector<Vec3<double>> wi;
         std::vector<double> pdf;
-        in_batches(at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+        in_batches(*sampler_, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
             wi.resize(rows), pdf.resize(rows);
             ExternalBatch with_numbers = batch;
             with_numbers.u = u.subspan(first * count, rows * count);
@@ -79,7 +102,7 @@ public:
     }
     void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
         std::vector<Vec3<double>> directions;
-        in_batches(at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+        in_batches(*sampler_, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
             directions.clear();
             for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
             sampler_->density(batch, directions, out.subspan(first, rows));
@@ -93,29 +116,6 @@ private:
         if (p == 0) return {};
         if (!is_usable(wi, p)) return {{0, 0, 1}, not_usable};
         return {as<float>(wi), p};
-    }
-
-    /// Calls work(batch, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
-    template <class Work> void in_batches(const PointRows& at, Work&& work) const {
-        const ShadingPoints& p = at.points;
-        const std::vector<ExternalLight> lights = sampler_->uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
-        std::vector<ExternalRun> runs;
-        std::vector<ExternalLightAt> lights_at;
-        std::size_t first = 0, rows = 0;
-        const auto flush = [&] {
-            if (rows > 0) work(ExternalBatch{runs, {}, lights, lights_at}, first, rows);
-            first += rows, rows = 0;
-            runs.clear(), lights_at.clear();
-        };
-        for (const PointRun& run : at.runs)
-            for (std::size_t done = 0; done < run.rows;) {
-                const std::size_t part = std::min(run.rows - done, sampler_->batch_rows() - rows);
-                runs.push_back(run_at(p, run.point, widen(run.wo), part));
-                if (!lights.empty()) add_lights_at(p, run.point, lights_at);
-                done += part, rows += part;
-                if (rows == sampler_->batch_rows()) flush();
-            }
-        flush();
     }
 
     std::shared_ptr<const ExternalSampler> sampler_;
@@ -186,6 +186,18 @@ std::shared_ptr<const Technique> external_technique(std::shared_ptr<const Extern
         throw OutputError(
             "'" + sampler->name() + "' has no pdf of a direction, which a combination needs: expected a function pdf");
     return std::make_shared<ExternalTechnique>(std::move(sampler));
+}
+
+void external_weights(const ExternalSampler& sampler, const PointRows& at, std::span<const Vec3<float>> wi,
+    std::span<const double> p, std::span<double> out) {
+    const std::size_t of_row = wi.empty() ? 0 : p.size() / wi.size();
+    std::vector<Vec3<double>> directions;
+    in_batches(sampler, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+        directions.clear();
+        for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
+        sampler.weights(
+            batch, directions, p.subspan(first * of_row, rows * of_row), out.subspan(first * of_row, rows * of_row));
+    });
 }
 
 std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList weights) {

@@ -57,6 +57,9 @@ int most_numbers(const Techniques& parts);
 std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);
 /// Throws OutputError if the sampler cannot evaluate its density.
 std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler);
+/// Writes the sampler's weights for each wi, [row][K], from the densities p, [row][K].
+void external_weights(const ExternalSampler& sampler, const PointRows& at, std::span<const Vec3<float>> wi,
+    std::span<const double> p, std::span<double> out);
 /// p = sum_k weight_k p_k: u[0] chooses a part and is stretched back to (0, 1).
 std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList weights);
 

@@ -40,6 +40,7 @@ Json run_json(const RunMetrics& run, bool paired) {
         Json& at = regions[r.region] = Json::object();
         add_metrics(at, r);
         at["pixels"] = r.pixels;
+        if (r.has_flip()) at["flip"] = number(r.flip);
         if (r.tail) at["tail"] = tail_json(*r.tail);
         if (!r.is_paired()) continue;
         at["rmse"] = number_or_null(r.rmse, true);
@@ -233,6 +234,7 @@ struct Rows {
 void add_region(Rows& rows, const RegionMetrics& r) {
     for_each_metric(r, [&](std::string_view name, const MetricInfo&, auto value) { rows.add(name, r.region, value); });
     rows.add("pixels", r.region, r.pixels);
+    if (r.has_flip()) rows.add("flip", r.region, r.flip);
     if (r.is_paired()) {
         rows.add("mse", r.region, r.mse);
         rows.add("mse_low", r.region, r.mse_low());

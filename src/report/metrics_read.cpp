@@ -53,6 +53,7 @@ RunMetrics run_of(const Json& json) {
         m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
         const auto metrics = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
         metrics(region, m);
+        if (region.contains("flip")) m.flip = number_of(region.at("flip"));
         if (region.contains("mse")) {
             m.mse = number_of(region.at("mse")), m.reference_error = number_of(region.at("reference_error"));
             m.mse_error = number_of(region.at("mse_error"));

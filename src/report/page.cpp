@@ -96,7 +96,7 @@ std::string metric_html(const std::string& metric) {
     const auto dot = metric.find('.');
     const std::string kind = metric.substr(0, dot);
     const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(metric.substr(dot + 1)) + "</sub>";
-    std::string label = escape(kind);
+    std::string label = kind == "flip" ? "FLIP" : escape(kind);
     const auto look = [&](std::string_view name, const MetricInfo& info, auto) {
         if (name == kind && !info.label.empty()) label = info.label;
     };

@@ -222,8 +222,9 @@ constexpr const char* metrics_prose = R"(
 <p>Without a reference, from the samples themselves, the variance of a pixel’s mean, averaged over the region:</p>
 {variance}
 <p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of
-all directions drawn that were below the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of
-the whole frame mixes regions that behave in opposite ways; it is shown only in a footnote.</p>
+all directions drawn that were below the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. <b>FLIP</b> is
+the mean of HDR-FLIP over the region, 0 for a picture that looks like the reference and 1 at most (Andersson et al.
+2021). The RMSE of the whole frame mixes regions that behave in opposite ways; it is shown only in a footnote.</p>
 )";
 
 std::string spelled(std::size_t count) {

@@ -158,6 +158,25 @@ html::Cell metric_cell(const Page& page, const SeedSpread* band) {
     return {out, true};
 }
 
+/// A row for each region in which FLIP was measured.
+void add_flip_rows(const Page& page, const std::vector<Column>& columns, html::Table& table) {
+    for (const Region& region : page.in.experiment.regions) {
+        const std::string metric = "flip." + region.name;
+        std::vector<html::Cell> row{html::heading(metric_html(metric))};
+        bool any = false;
+        for (const Column& column : columns) {
+            const RunMetrics* run = page.find.run(column.arm, column.n, column.s);
+            const RegionMetrics* at = run ? run->region(region.name) : nullptr;
+            const bool measured = at && at->has_flip();
+            any = any || measured;
+            if (const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s))
+                row.push_back(metric_cell(page, band));
+            else row.push_back(html::figure(measured ? figures(at->flip) : ""));
+        }
+        if (any) table.row(row);
+    }
+}
+
 }  // namespace
 
 std::string metrics_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns) {
@@ -174,6 +193,7 @@ std::string metrics_table(const Page& page, const std::string& caption_html, con
         }
         if (any) table.row(row);
     }
+    add_flip_rows(page, columns, table);
     return table.empty() ? "" : table.str();
 }
 

@@ -125,6 +125,7 @@ public:
         const std::size_t parts = combination_->parts().size();
         std::vector<std::vector<double>> p(parts, std::vector<double>(at.size()));
         for (std::size_t k = 0; k < parts; ++k) density_of(*combination_->parts()[k], at, p[k]);
+        if (combination_->has_weight_function()) return weights_of_function(t, at, p, out);
         std::vector<double> here(parts);
         for (std::size_t i = 0; i < at.size(); ++i) {
             for (std::size_t k = 0; k < parts; ++k) here[k] = p[k][i];
@@ -135,6 +136,18 @@ public:
     }
 
 private:
+    void weights_of_function(
+        int t, std::span<const Pair> at, const std::vector<std::vector<double>>& p, std::span<double> out) const {
+        in_batches(at, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
+            std::vector<std::vector<double>> here;
+            for (const std::vector<double>& of : p)
+                here.emplace_back(of.begin() + static_cast<std::ptrdiff_t>(first),
+                    of.begin() + static_cast<std::ptrdiff_t>(first + wi.size()));
+            const std::vector<std::size_t> drawn_by(wi.size(), static_cast<std::size_t>(t));
+            std::ranges::copy(combination_->mis_weights(rows, drawn_by, wi, here), out.begin() + std::ptrdiff_t(first));
+        });
+    }
+
     const Technique& part(int t) const { return *combination_->parts()[static_cast<std::size_t>(t)]; }
     std::shared_ptr<const Combination> combination_;
 };
@@ -215,14 +228,15 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
 
 class Cases {
 public:
-    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside)
+    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside, Grid wo)
         : scene_(experiment),
           experiment_(experiment),
           sampler_(std::move(sampler)),
           outside_(outside),
+          wo_(std::move(wo)),
           shapes_(shape_map(scene_)),
-          limited_(std::ranges::any_of(
-              with_arms_of(experiment, {sampler_}).arms, [](const ArmPlan& arm) { return arm.is_external(); })) {
+          limited_(std::ranges::any_of(with_arms_of(experiment, {sampler_}).arms,
+              [](const ArmPlan& arm) { return arm.is_external() || arm.combination.weights_python; })) {
         count_in_view(experiment, shapes_);
     }
 
@@ -231,6 +245,8 @@ public:
         for (int k = 0; k < count && static_cast<std::size_t>(k) < seen.size(); ++k) {
             const std::uint64_t all = seen.size(), many = std::min<std::uint64_t>(all, std::uint64_t(count));
             const Point point = point_of(seen[(2 * std::uint64_t(k) + 1) * all / (2 * many)]);
+            for (const auto& [theta, azimuth] : wo_) add(point, tilt(theta, azimuth), theta, azimuth);
+            if (!wo_.empty()) continue;
             const Vec3d wo{double(point->wox[0]), double(point->woy[0]), double(point->woz[0])};
             if (!(wo.z > 0)) continue;
             add(point, wo, math::acos(std::min(wo.z, 1.0)) * 180 / pi, turn_of(wo));
@@ -241,7 +257,8 @@ public:
     std::vector<CheckCase> on_grid(bool full) {
         for (const std::uint32_t pixel : middle_of_each_shape()) {
             const Point point = point_of(pixel);
-            for (const auto& [theta, azimuth] : wo_grid(full)) add(point, tilt(theta, azimuth), theta, azimuth);
+            for (const auto& [theta, azimuth] : wo_.empty() ? wo_grid(full) : wo_)
+                add(point, tilt(theta, azimuth), theta, azimuth);
         }
         return std::move(cases_);
     }
@@ -335,6 +352,7 @@ private:
     const Experiment& experiment_;
     std::string sampler_;
     const ExternalSamplers& outside_;
+    Grid wo_;  // empty: that of the pixel, or the grid
     ShapeMap shapes_;
     bool limited_;  // a part of the sampler is a program, a library or Python
     std::vector<CheckCase> cases_, peers_;
@@ -365,11 +383,11 @@ std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string
         for (const ArmPlan& arm : experiment.arms) valid.push_back(arm.name);
         for (const std::string& name : built_in)
             if (std::ranges::find(valid, name) == valid.end()) valid.push_back(name);
-        throw InputError({"--sampler " + sampler, 0, 0},
+        throw InputError({plan.flag + " " + sampler, 0, 0},
             fmt::format("no arm or sampler '{}' in {}: expected one of {}{}", printable(sampler, 64), experiment.file,
                 fmt::join(valid, ", "), did_you_mean(sampler, valid)));
     }
-    Cases cases(experiment, sampler, outside);
+    Cases cases(experiment, sampler, outside, plan.wo);
     return plan.pixels > 0 ? cases.at_pixels(plan.pixels) : cases.on_grid(plan.full);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "check/sources/sampler_adapter.h"
+#include "check/sources/user_cases.h"
 #include "experiment/experiment.h"
 #include "samplers/external_sampler.h"
 
@@ -15,6 +16,8 @@ namespace crescent::inline runs {
 struct ArmCasesPlan {
     int pixels = 0;     // geometry pixels, evenly spread over those in view; 0: the grid of w_o on each material
     bool full = false;  // 16 w_o of the grid in place of 8
+    Grid wo{};          // these w_o, in degrees from the normal and about it, on each material or at each pixel
+    std::string flag = "--sampler";  // that named the sampler, for messages
 };
 
 /// Returns the experiment with these arms and the arms that they combine alone.

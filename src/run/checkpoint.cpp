@@ -23,7 +23,7 @@ namespace crescent::inline runs {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunKey, arm, n, s, seed)
 #define CRESCENT_FIELD(name, Type) , name
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(
-    RegionMetrics, region, pixels, mse, mse_error, reference_error CRESCENT_REGION_METRICS(CRESCENT_FIELD))
+    RegionMetrics, region, pixels, flip, mse, mse_error, reference_error CRESCENT_REGION_METRICS(CRESCENT_FIELD))
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMetrics, key, regions CRESCENT_FRAME_METRICS(CRESCENT_FIELD))
 #undef CRESCENT_FIELD
 

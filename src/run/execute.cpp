@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "metrics/compute.h"
+#include "metrics/flip.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
 #include "render/kernel.h"
@@ -23,6 +24,26 @@ namespace crescent::inline runs {
 
 namespace {
 
+/// Adds FLIP, which costs more than all other metrics, for the first seeds of the series at one sample count: the
+/// experiment's own, at which arms are compared, or the highest.
+void add_flips(const RunPlan& plan, const Job& job, const std::vector<Film>& films, const ReferenceFilm& reference,
+    std::vector<RunMetrics>& out) {
+    const Experiment& experiment = plan.experiment;
+    const std::vector<std::uint32_t> series = seeds_of(plan.whole);
+    const auto place = static_cast<std::size_t>(std::ranges::find(series, job.seed) - series.begin());
+    if (place >= static_cast<std::size_t>(std::max(plan.whole.flip_seeds, 1)) || experiment.regions.empty()) return;
+    const auto image = [](const auto& film) { return FlipImage{film.width, film.height, film.r, film.g, film.b}; };
+    const ArmPlan* arm = experiment.find_arm(job.arm);
+    ensure(arm != nullptr, "a job is of an arm of the experiment");
+    const auto own = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
+    const std::size_t f = own == films.end() ? films.size() - 1 : static_cast<std::size_t>(own - films.begin());
+    const FlipImage test[] = {image(films[f])};
+    std::vector<Box> boxes;
+    for (const Region& region : experiment.regions) boxes.push_back(region.box);
+    const auto flips = mean_hdr_flips(image(reference), test, boxes, flip_pixels_per_degree);
+    for (std::size_t r = 0; r < boxes.size(); ++r) out[f].regions[r].flip = flips[0][r];
+}
+
 std::vector<RunMetrics> metrics_of(
     const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
     const ReferenceFilm* reference = reference_of(plan.experiment, prepared, job.s);
@@ -32,6 +53,7 @@ std::vector<RunMetrics> metrics_of(
         out[r] =
             measure(plan.experiment, {job.arm, films[r].n, job.s, job.seed}, films[r], *reference, prepared.shapes);
     });
+    add_flips(plan, job, films, *reference, out);
     return out;
 }
 

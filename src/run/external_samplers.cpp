@@ -153,8 +153,17 @@ private:
         const bool own_target = target && *target != target_product && *target != target_brdf;
         known = std::make_shared<Combination>(arm.name, arm.combination, std::move(parts),
             own_target ? part(arm, *target, "target") : nullptr, experiment_.place_of(path + ".weights"),
-            experiment_.place_of(path + ".probabilities"));
+            experiment_.place_of(path + ".probabilities"), weight_function(arm, path));
         return known;
+    }
+
+    std::shared_ptr<const ExternalSampler> weight_function(const ArmPlan& arm, const std::string& path) const {
+        if (!arm.combination.weights_python) return nullptr;
+        if (const auto given = samplers_.find(arm.name); given != samplers_.end() && given->second->has_weights())
+            return given->second;
+        throw InputError(experiment_.place_of(path + ".weights_python"),
+            fmt::format("{}.weights_python: expected a run in Python (crescent.run): the program cannot call '{}'",
+                path, *arm.combination.weights_python));
     }
 
     std::shared_ptr<const Technique> part(const ArmPlan& owner, const std::string& name, const char* key) {
@@ -194,7 +203,8 @@ ExternalSamplers open_external(const Experiment& experiment, double timeout_s, E
 }
 
 bool may_change(const Experiment& experiment) {
-    return std::ranges::any_of(experiment.arms, [](const ArmPlan& arm) { return arm.exec || arm.python; });
+    return std::ranges::any_of(
+        experiment.arms, [](const ArmPlan& arm) { return arm.exec || arm.python || arm.combination.weights_python; });
 }
 
 }  // namespace crescent::inline runs

@@ -29,11 +29,12 @@ struct CombinationPlan {
     std::vector<std::string> of{};          // arms, or samplers of samplers/all.h
     std::optional<MisHeuristic> heuristic{};
     std::optional<MisDraw> draw{};
-    std::vector<std::string> weights{};         // a formula for each of `of`, see weight_formula.h
-    std::vector<std::string> probabilities{};   // of draw = "one", likewise
-    std::vector<std::uint64_t> samples{};       // directions of each in one sample of draw = "every"
-    std::optional<std::uint64_t> candidates{};  // of ris
-    std::optional<std::string> target{};        // of ris: target_product, target_brdf, an arm or a sampler
+    std::vector<std::string> weights{};           // a formula for each of `of`, see weight_formula.h
+    std::optional<std::string> weights_python{};  // of mis: a function of Python in their place, "FILE.py:NAME"
+    std::vector<std::string> probabilities{};     // of draw = "one", likewise
+    std::vector<std::uint64_t> samples{};         // directions of each in one sample of draw = "every"
+    std::optional<std::uint64_t> candidates{};    // of ris
+    std::optional<std::string> target{};          // of ris: target_product, target_brdf, an arm or a sampler
 };
 
 /// f L cos of the nearest light, without occlusion; f cos.

@@ -21,6 +21,7 @@ from .. import _crescent
 from .._callable_arms import source_of
 from .._files import names_a_file
 from .._sampler import Sampler
+from ..combinations import Combination
 from ..experiments import Experiment
 from .grid import hint
 
@@ -28,7 +29,7 @@ NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics
 _NOT_OF_THE_SCENE = (
     "title", "seeds", "n", "exposure", "published", "note_evidence", "arms", "plates", "assertions", "furnaces",
 )  # fmt: skip
-_NOT_OF_THE_REFERENCE = ("regions", "firefly_k")
+_NOT_OF_THE_REFERENCE = ("regions", "firefly_k", "flip_seeds")
 
 Code = dict[str, Any]  #: {"files": {name: base64}, "at": "FILE.py:NAME"} of a sampler that is sent
 
@@ -106,20 +107,21 @@ def _of_plugin(where: str) -> tuple[Any, Code]:
     return [hashlib.sha256(data).hexdigest()], _code_of({Path(where).name: data}, Path(where).name)
 
 
-def _of_callable(sampler: Sampler) -> tuple[Any, Code]:
-    """Identity and code of a sampler in memory, which is sent by value."""
+def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
+    """Identity and code of a sampler, or of a combination with its weights, in memory, which is sent by value."""
     import cloudpickle  # type: ignore[import-untyped,unused-ignore]
 
     modules = set()
     texts: list[Any] = []
-    for call in (sampler.sample, sampler.pdf, sampler.f):
-        if call is None:
+    own = (sampler.sample, sampler.pdf, sampler.f) if isinstance(sampler, Sampler) else (sampler.weights,)
+    for call in own:
+        if not callable(call):
             continue
         module = sys.modules.get(getattr(inspect.unwrap(call), "__module__", "") or "")
         file = getattr(module, "__file__", None)
         if module is not None and module.__name__ != "__main__" and file and "site-packages" not in file:
             modules.add(module)
-        where = source_of(sampler)
+        where = source_of(own[0] if callable(own[0]) else call)
         if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
             texts.append(_of_python(where)[0])
             continue
@@ -134,28 +136,32 @@ def _of_callable(sampler: Sampler) -> tuple[Any, Code]:
     finally:
         for module in modules:
             cloudpickle.unregister_pickle_by_value(module)
-    fields = [sampler.u, sampler.domain, sampler.wo, list(sampler.uses)]
+    fields: list[Any] = [list(sampler.uses)]
+    if isinstance(sampler, Sampler):
+        fields = [sampler.u, sampler.domain, sampler.wo, list(sampler.uses)]
     return [texts, fields], {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
 
 
 class Arm:
     """One arm of an experiment: its identity, and the data with which a worker runs it."""
 
-    def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | None, version: str | None) -> None:
+    def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | Combination | None, version: str | None) -> None:
         self.name = name
         self.most: int = max(table["n"])  #: the largest sample count
-        self.sampler = str(table.get("sampler") or table.get("python") or table.get("plugin") or table.get("exec"))
+        named = ("sampler", "python", "plugin", "exec", "weights_python")
+        self.sampler = str(next((table[key] for key in named if table.get(key)), None))
         self.code: Code | None = None
-        self.built_in = not {"python", "plugin", "exec"} & set(table) and given is None
-        kind = next((key for key in ("python", "plugin", "exec") if key in table), "")
+        code = ("python", "plugin", "exec", "weights_python")
+        self.built_in = not set(code) & set(table) and given is None
+        kind = next((key for key in code if key in table), "")
         source: Any = None
         if given is not None:
             source, self.code = _of_callable(given)
-        elif kind == "python":
-            source, self.code = _of_python(table["python"])
+        elif kind in ("python", "weights_python"):
+            source, self.code = _of_python(table[kind])
         elif kind == "plugin":
             source, self.code = _of_plugin(table["plugin"])
-        kept = {k: v for k, v in table.items() if k not in ("python", "plugin")}
+        kept = {k: v for k, v in table.items() if k not in ("python", "plugin", "weights_python")}
         self.id = digest(NUMERICS, name, kept, source if version is None else ["declared", version])
         self.kind = "callable" if given is not None else kind
         self.of: list[str] = []  #: the arms of a combination
@@ -163,7 +169,7 @@ class Arm:
     def set_parts(self, of: Sequence[Arm]) -> None:
         """Sets the arms of a combination, which must be complete."""
         self.of = list(dict.fromkeys(name for arm in of for name in (arm.name, *arm.of)))
-        self.built_in = all(arm.built_in for arm in of)
+        self.built_in = self.built_in and all(arm.built_in for arm in of)
         self.id = digest(self.id, [arm.id for arm in of])
 
 
@@ -179,7 +185,8 @@ def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
     def add(name: str) -> Arm:
         if name not in arms:
             given = e.samplers.get(name)
-            arm = Arm(name, tables[name], given if isinstance(given, Sampler) else None, versions.get(name))
+            code = isinstance(given, Sampler) or (given is not None and callable(given.weights))
+            arm = Arm(name, tables[name], given if code else None, versions.get(name))
             if "kind" in tables[name]:
                 parts = [*tables[name]["of"], *([tables[name]["target"]] if "target" in tables[name] else [])]
                 arm.set_parts([add(part) for part in parts if part in tables])

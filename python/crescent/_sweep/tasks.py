@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _crescent
-from .._callable_arms import _arm
+from .._callable_arms import callable_arm, callable_arms
 from .._check import check
 from .._files import sampler_at
 from .identity import NUMERICS
@@ -73,7 +73,10 @@ def _callables(task: Task) -> list[Any]:
     out = []
     for name, arm in task.get("arms", {}).items():
         if arm["kind"] in ("python", "callable"):
-            out.append(_arm(name, _sampler(arm["code"]) if arm["code"] else sampler_at(arm["sampler"])))
+            out.append(callable_arm(name, _sampler(arm["code"]) if arm["code"] else sampler_at(arm["sampler"])))
+        elif arm["kind"] == "weights_python":
+            at = _code_folder(arm["code"]["files"]) / arm["code"]["at"] if arm["code"] else arm["sampler"]
+            out.extend(callable_arms({}, {name: {"weights_python": str(at)}}))
     return out
 
 

@@ -1,17 +1,18 @@
 // FLIP (Andersson et al. 2020) and HDR-FLIP (Andersson et al. 2021), with their constants: contrast sensitivities as
 // Gaussians, HyAB after Hunt's adjustment, edges and points of lightness. Distances in degrees of view are converted to
 // pixels by ppd, pixels per degree. ColourPlanes are float, sums double.
-#include "compare/metrics.h"
+#include "metrics/flip.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparison {
+namespace crescent::inline metrics {
 
 namespace {
 
@@ -79,22 +80,32 @@ struct Size {
     }
 };
 
+/// Sums kernel[k] * in[k] over the pixels around each one, in the order of k.
 Plane filtered(const Plane& in, Size size, const Kernel& across, const Kernel& down) {
+    const auto width = static_cast<std::size_t>(size.w);
+    const int radius = static_cast<int>(across.size() / 2);
     Plane rows(in.size()), out(in.size());
-    const auto run = [&](const Plane& from, Plane& to, const Kernel& kernel, int dx, int dy) {
-        const int radius = static_cast<int>(kernel.size() / 2);
-        for (int y = 0; y < size.h; ++y)
-            for (int x = 0; x < size.w; ++x) {
-                double sum = 0;
-                for (int k = -radius; k <= radius; ++k)
-                    sum += kernel[static_cast<std::size_t>(k + radius)] *
-                        static_cast<double>(from[size.at(
-                            std::clamp(x + k * dx, 0, size.w - 1), std::clamp(y + k * dy, 0, size.h - 1))]);
-                to[size.at(x, y)] = static_cast<float>(sum);
-            }
+    std::vector<float> padded(width + 2 * static_cast<std::size_t>(radius));
+    std::vector<double> sums(width);
+    const auto add = [&](double weight, const float* values) {
+        for (std::size_t x = 0; x < width; ++x) sums[x] += weight * static_cast<double>(values[x]);
     };
-    run(in, rows, across, 1, 0);
-    run(rows, out, down, 0, 1);
+    const auto store = [&](float* to) {
+        for (std::size_t x = 0; x < width; ++x) to[x] = static_cast<float>(sums[x]);
+        std::ranges::fill(sums, 0);
+    };
+    for (int y = 0; y < size.h; ++y) {
+        const float* row = &in[size.at(0, y)];
+        for (int x = -radius; x < size.w + radius; ++x)
+            padded[static_cast<std::size_t>(x + radius)] = row[std::clamp(x, 0, size.w - 1)];
+        for (std::size_t k = 0; k < across.size(); ++k) add(across[k], &padded[k]);
+        store(&rows[size.at(0, y)]);
+    }
+    for (int y = 0; y < size.h; ++y) {
+        for (std::size_t k = 0; k < down.size(); ++k)
+            add(down[k], &rows[size.at(0, std::clamp(y + static_cast<int>(k) - radius, 0, size.h - 1))]);
+        store(&out[size.at(0, y)]);
+    }
     return out;
 }
 
@@ -120,8 +131,10 @@ struct Sensitivity {
 };
 constexpr Sensitivity achromatic{1, 0.0047}, red_green{1, 0.0053}, blue_yellow[] = {{34.1, 0.04}, {13.5, 0.025}};
 
+int blur_radius(double ppd) { return static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * ppd)); }
+
 Plane blurred(const Plane& in, Size size, std::span<const Sensitivity> parts, double ppd) {
-    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * ppd));
+    const int radius = blur_radius(ppd);
     Plane out(in.size());
     double total = 0;
     std::vector<Kernel> kernels;
@@ -138,10 +151,13 @@ Plane blurred(const Plane& in, Size size, std::span<const Sensitivity> parts, do
     return out;
 }
 
+double feature_deviation(double ppd) { return 0.5 * 0.082 * ppd; }
+int feature_radius(double ppd) { return static_cast<int>(std::ceil(3 * feature_deviation(ppd))); }
+
 /// First or second derivative of a Gaussian; its positive values sum to one, its negative values to minus one.
 Plane feature(const Plane& lightness, Size size, double ppd, bool edge, bool across) {
-    const double sd = 0.5 * 0.082 * ppd;
-    const int radius = static_cast<int>(std::ceil(3 * sd));
+    const double sd = feature_deviation(ppd);
+    const int radius = feature_radius(ppd);
     const auto gauss = [&](double k) { return math::exp(-k * k / (2 * sd * sd)); };
     Kernel smooth = kernel_of(radius, gauss);
     scale(smooth, 1 / sum_of(smooth));
@@ -228,21 +244,83 @@ ColourPlanes tone_mapped(const FlipImage& image, double exposure) {
     return out;
 }
 
+/// What of one picture is compared.
+struct Seen {
+    ColourPlanes perceived;
+    Features features;
+};
+Seen seen(const FlipImage& image, double ppd) {
+    const Size size{image.width, image.height};
+    const ColourPlanes c = opponent(image);
+    return {perceived(c, size, ppd), features(c, size, ppd)};
+}
+Seen seen(const FlipImage& image, double exposure, double ppd) {
+    const ColourPlanes c = tone_mapped(image, exposure);
+    return seen(FlipImage{image.width, image.height, c[0], c[1], c[2]}, ppd);
+}
+
+float difference(const Seen& a, const Seen& b, std::size_t i) {
+    const double colour = remapped(hyab(at(a.perceived, i), at(b.perceived, i)));
+    const auto off = [&](const Plane& x, const Plane& y) {
+        return std::fabs(static_cast<double>(x[i]) - static_cast<double>(y[i]));
+    };
+    const double edges = off(a.features.edges, b.features.edges), points = off(a.features.points, b.features.points);
+    const double shape = std::sqrt(std::max(edges, points) / std::numbers::sqrt2);
+    return static_cast<float>(math::pow(colour, 1 - std::min(shape, 1.0)));
+}
+
+double exposure_of(const FlipExposures& e, int k) {
+    return math::exp2(e.start + k * (e.stop - e.start) / (e.count - 1));
+}
+
+/// HDR-FLIP of each pixel, for each test picture.
+std::vector<std::vector<float>> hdr_flips(
+    const FlipImage& reference, std::span<const FlipImage> tests, const FlipExposures& e, double ppd) {
+    std::vector<std::vector<float>> out(tests.size(), std::vector<float>(reference.r.size()));
+    for (int k = 0; k < e.count; ++k) {
+        std::vector<Seen> all(1 + tests.size());
+        parallel_for(std::size_t{0}, all.size(),
+            [&](std::size_t p) { all[p] = seen(p == 0 ? reference : tests[p - 1], exposure_of(e, k), ppd); });
+        parallel_for(std::size_t{0}, tests.size(), [&](std::size_t t) {
+            for (std::size_t i = 0; i < out[t].size(); ++i)
+                out[t][i] = std::max(out[t][i], difference(all[0], all[t + 1], i));
+        });
+    }
+    return out;
+}
+
+/// A box of a picture, as a picture of its own.
+class Crop {
+public:
+    Crop(const FlipImage& whole, const Box& box) : width_(box.width()), height_(box.height()) {
+        const std::span<const float> from[3] = {whole.r, whole.g, whole.b};
+        const Size size{whole.width, whole.height};
+        for (std::size_t c = 0; c < 3; ++c)
+            for (int y = box.y0; y <= box.y1; ++y) {
+                const auto row = from[c].subspan(size.at(box.x0, y), static_cast<std::size_t>(width_));
+                planes_[c].insert(planes_[c].end(), row.begin(), row.end());
+            }
+    }
+    FlipImage image() const { return {width_, height_, planes_[0], planes_[1], planes_[2]}; }
+
+private:
+    int width_, height_;
+    ColourPlanes planes_;
+};
+
+double mean_over(const std::vector<float>& map, Size size, const Box& box) {
+    double sum = 0;
+    for (int y = box.y0; y <= box.y1; ++y)
+        for (int x = box.x0; x <= box.x1; ++x) sum += static_cast<double>(map[size.at(x, y)]);
+    return sum / (static_cast<double>(box.width()) * box.height());
+}
+
 }  // namespace
 
 std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, double ppd) {
-    const Size size{reference.width, reference.height};
-    const ColourPlanes a = opponent(reference), b = opponent(test);
-    const Features fa = features(a, size, ppd), fb = features(b, size, ppd);
-    const ColourPlanes pa = perceived(a, size, ppd), pb = perceived(b, size, ppd);
-    std::vector<float> out(a[0].size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const double colour = remapped(hyab(at(pa, i), at(pb, i)));
-        const double edges = std::fabs(static_cast<double>(fa.edges[i]) - static_cast<double>(fb.edges[i]));
-        const double points = std::fabs(static_cast<double>(fa.points[i]) - static_cast<double>(fb.points[i]));
-        const double shape = std::sqrt(std::max(edges, points) / std::numbers::sqrt2);
-        out[i] = static_cast<float>(math::pow(colour, 1 - std::min(shape, 1.0)));
-    }
+    const Seen a = seen(reference, ppd), b = seen(test, ppd);
+    std::vector<float> out(reference.r.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = difference(a, b, i);
     return out;
 }
 
@@ -266,16 +344,28 @@ FlipExposures flip_exposures(const FlipImage& reference) {
 }
 
 std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, double ppd) {
-    const FlipExposures e = flip_exposures(reference);
-    std::vector<float> out(reference.r.size());
-    for (int k = 0; k < e.count; ++k) {
-        const double exposure = math::exp2(e.start + k * (e.stop - e.start) / (e.count - 1));
-        const ColourPlanes a = tone_mapped(reference, exposure), b = tone_mapped(test, exposure);
-        const std::vector<float> one = ldr_flip(
-            {reference.width, reference.height, a[0], a[1], a[2]}, {test.width, test.height, b[0], b[1], b[2]}, ppd);
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(out[i], one[i]);
+    return std::move(hdr_flips(reference, {&test, 1}, flip_exposures(reference), ppd).front());
+}
+
+std::vector<std::vector<double>> mean_hdr_flips(
+    const FlipImage& reference, std::span<const FlipImage> tests, std::span<const Box> boxes, double ppd) {
+    const FlipExposures exposures = flip_exposures(reference);
+    const int reach = std::max(blur_radius(ppd), feature_radius(ppd));
+    std::vector<std::vector<double>> out(tests.size());
+    for (const Box& box : boxes) {
+        const Box around{std::max(box.x0 - reach, 0), std::max(box.y0 - reach, 0),
+            std::min(box.x1 + reach, reference.width - 1), std::min(box.y1 + reach, reference.height - 1)};
+        const Crop crop(reference, around);
+        std::vector<Crop> crops;
+        std::vector<FlipImage> images;
+        for (const FlipImage& test : tests) crops.emplace_back(test, around);
+        for (const Crop& test : crops) images.push_back(test.image());
+        const auto maps = hdr_flips(crop.image(), images, exposures, ppd);
+        const Box inside{box.x0 - around.x0, box.y0 - around.y0, box.x1 - around.x0, box.y1 - around.y0};
+        for (std::size_t t = 0; t < tests.size(); ++t)
+            out[t].push_back(mean_over(maps[t], {around.width(), around.height()}, inside));
     }
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent::inline metrics

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/metrics.h"
+#include "metrics/flip.h"
 
-namespace crescent::inline comparison {
+namespace crescent::inline metrics {
 namespace {
 
 /// A test picture by formula, so that another program can compute the same one.
@@ -39,10 +39,29 @@ TEST(Flip, AgreesWithThePublishedProgram) {
     }
 }
 
+/// The mean over a box is that of the whole map: the filters see the pixels around the box, and no others.
+TEST(Flip, OfABoxIsThatOfTheWholePictureThere) {
+    std::vector<float> a[3], b[3];
+    for (int c = 0; c < 3; ++c) a[c] = plane(c, false, 3), b[c] = plane(c, true, 3);
+    const FlipImage reference{90, 60, a[0], a[1], a[2]}, test{90, 60, b[0], b[1], b[2]};
+    const std::vector<float> map = hdr_flip(reference, test, 30);
+    const Box boxes[] = {{40, 20, 52, 29}, {0, 0, 7, 59}, {89, 59, 89, 59}};
+    const FlipImage tests[] = {reference, test};
+    const auto means = mean_hdr_flips(reference, tests, boxes, 30);
+    for (std::size_t k = 0; k < std::size(boxes); ++k) {
+        double sum = 0;
+        for (int y = boxes[k].y0; y <= boxes[k].y1; ++y)
+            for (int x = boxes[k].x0; x <= boxes[k].x1; ++x)
+                sum += static_cast<double>(map[static_cast<std::size_t>(90 * y + x)]);
+        EXPECT_EQ(means[1][k], sum / (boxes[k].width() * boxes[k].height())) << k;
+        EXPECT_EQ(means[0][k], 0) << k;
+    }
+}
+
 TEST(Flip, IsZeroForEqualPictures) {
     const std::vector<float> p = plane(0, false, 0);
     for (const float v : ldr_flip({90, 60, p, p, p}, {90, 60, p, p, p}, 67)) EXPECT_EQ(v, 0);
 }
 
 }  // namespace
-}  // namespace crescent::inline comparison
+}  // namespace crescent::inline metrics

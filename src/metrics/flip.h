@@ -1,0 +1,41 @@
+// FLIP: how different two pictures look when one alternates between them, per pixel in [0, 1]; the only metric of
+// pictures, not of radiance. LDR: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom & Fairchild 2020, "FLIP: A
+// Difference Evaluator for Alternating Images", PACMCGIT 3(2). HDR: Andersson, Nilsson, Shirley & Akenine-Moller 2021,
+// "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics Short Papers.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/scene_data.h"
+
+namespace crescent::inline metrics {
+
+/// A picture in linear Rec.709, row after row; both pictures have their rows in the same order.
+struct FlipImage {
+    int width = 0, height = 0;
+    std::span<const float> r, g, b;
+};
+
+/// Of a viewer 0.7 m from a 0.7 m wide display of 3840 pixels.
+inline constexpr double flip_pixels_per_degree = 67.0206;
+
+/// Channels in [0, 1] (clamped). `pixels_per_degree` of the viewer.
+std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, double pixels_per_degree);
+/// Radiance of any range: the largest LDR-FLIP over the exposures of flip_exposures(), tone-mapped by ACES.
+std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, double pixels_per_degree);
+
+/// Returns the mean of hdr_flip() over each box, for each test picture: out[test][box]. Only the pixels of a box and
+/// those that its filters reach are evaluated.
+std::vector<std::vector<double>> mean_hdr_flips(
+    const FlipImage& reference, std::span<const FlipImage> tests, std::span<const Box> boxes, double pixels_per_degree);
+
+/// The exposures of HDR-FLIP: 2^start .. 2^stop in `count` equal steps.
+struct FlipExposures {
+    double start = 0, stop = 0;
+    int count = 2;
+};
+/// Returns the exposures for a reference, in stops (Andersson et al. 2021, section 3.2).
+FlipExposures flip_exposures(const FlipImage& reference);
+
+}  // namespace crescent::inline metrics
