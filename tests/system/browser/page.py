@@ -55,7 +55,7 @@ def opens_and_measures(driver):
           f"with the reference and all metrics {took} ms, {told['workers']} workers")
     assert int(told["workers"]) >= 1
     assert "published" in browser.text(driver, "#pictures")
-    beside = [e.text for e in driver.find_elements(By.CSS_SELECTOR, ".hash")]
+    beside = driver.execute_script("return [...document.querySelectorAll('.hash')].map((e) => e.innerText)")
     assert len(beside) == 3 and all(line.endswith(": the same bits") for line in beside), beside
     assert len(driver.find_elements(By.CSS_SELECTOR, "#pictures canvas")) == 4
     counts = driver.execute_script(

@@ -2,6 +2,7 @@
 import base64
 import os
 import pathlib
+import time
 
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -44,10 +45,12 @@ def tests(page, folder):
         kind = driver.find_element(By.CSS_SELECTOR, "#reveal [data-kind]")
         assert kind.text, f"{lesson}: nothing is said of '{kind.get_attribute('data-kind')}'"
         assert "lesson has no sentence" not in kind.text, f"{lesson}: '{kind.get_attribute('data-kind')}' has no sentence"
-        left = driver.execute_script(
-            "return [...document.querySelectorAll('#choices select, #knobs [data-path], #lessons section select')]"
-            ".filter((e) => e.checkVisibility()).map((e) => e.dataset.path ?? e.id)"
-            ".filter((name) => !name.startsWith('regions.'))")
+        controls = ("[...document.querySelectorAll('#choices select, #knobs [data-path], #lessons section select')]"
+                    ".filter((e) => e.checkVisibility()).map((e) => e.dataset.path ?? e.id)"
+                    ".filter((name) => !name.startsWith('regions.'))")
+        end = time.monotonic() + 20  # the bench below opens after the answer
+        while (left := driver.execute_script("return " + controls)) != PLAY[lesson] and time.monotonic() < end:
+            time.sleep(0.1)
         assert left == PLAY[lesson], f"{lesson}: to play with are {left}"
         focused = driver.execute_script("return document.activeElement.id")
         assert focused == "reveal", f"{lesson}: the focus is on '{focused}'"
