@@ -1,6 +1,7 @@
 // Reads the files of meshes and their textures, not before a mesh's size is known to be that of a regular file. A mesh
 // must be within 1000 km of the origin, the range of all coordinates. A page has no files: there meshes are refused.
 #include <fmt/format.h>
+#define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include <cmath>

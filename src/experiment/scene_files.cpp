@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fmt/format.h>
+#define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include "base/errors.h"
