@@ -88,7 +88,7 @@ public:
             if (is_wanted(*scene.mMeshes[m])) add(*scene.mMeshes[m]);
     }
 
-    Mesh mesh;
+    Mesh result;
 
 private:
     bool is_wanted(const aiMesh& mesh) const { return wanted_.empty() || name_of(mesh) == wanted_; }
@@ -131,7 +131,7 @@ private:
             if (face.mNumIndices != 3) continue;
             Triangle triangle;
             for (unsigned k = 0; k < 3; ++k) triangle[k] = vertex(part, face, k);
-            mesh.triangles.push_back(triangle);
+            result.triangles.push_back(triangle);
         }
     }
 
@@ -142,11 +142,11 @@ private:
         Vec2<float> uv{};
         if (has_uv_ && part.HasTextureCoords(0)) uv = {part.mTextureCoords[0][i].x, part.mTextureCoords[0][i].y};
         const auto [known, is_new] = known_.try_emplace(
-            Corner{p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y}, static_cast<std::uint32_t>(mesh.positions.size()));
+            Corner{p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y}, static_cast<std::uint32_t>(result.positions.size()));
         if (!is_new) return known->second;
-        mesh.positions.push_back(p);
-        if (has_normals_) mesh.normals.push_back(n);
-        if (has_uv_) mesh.uv.push_back(uv);
+        result.positions.push_back(p);
+        if (has_normals_) result.normals.push_back(n);
+        if (has_uv_) result.uv.push_back(uv);
         return known->second;
     }
 
@@ -197,10 +197,10 @@ Json import(const std::string& file, const std::string& material) {
     if (!scene) throw Failure(importer.GetErrorString());
     const Gatherer gathered(*scene, material);
     Json out = {{"materials", materials_of(*scene)}};
-    if (gathered.mesh.triangles.empty())
+    if (gathered.result.triangles.empty())
         throw Failure(material.empty() ? "found no triangle" : "found no triangle of the material '" + material + "'");
-    out["normals"] = !gathered.mesh.normals.empty(), out["uv"] = !gathered.mesh.uv.empty();
-    write_all(3, mesh_file(gathered.mesh));
+    out["normals"] = !gathered.result.normals.empty(), out["uv"] = !gathered.result.uv.empty();
+    write_all(3, mesh_file(gathered.result));
     return out;
 }
 

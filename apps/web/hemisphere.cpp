@@ -23,7 +23,8 @@ ordered_json largest_in_parts(const PixelSample& s, const OpenPixel& pixel) {
     if (s.weight != 1) out["weight"] = figures(s.weight);
     out["met"] = s.disk >= 0 && static_cast<std::size_t>(s.disk) < pixel.lights().size()
         ? pixel.lights()[static_cast<std::size_t>(s.disk)].name
-        : "fill";
+        : s.around ? "sky or mesh"
+                   : "fill";
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 write_mesh(path, positions, triangles)    a .mesh file
 write_sky(path, rgb)                      a latitude-longitude image
+write_texture(path, texels)               an image for rho_d_texture or alpha_texture of a mesh
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["write_mesh", "write_sky"]
+__all__ = ["write_mesh", "write_sky", "write_texture"]
 
 
 def _rows(name: str, values: Any, columns: int, kind: str = "<f4") -> Any:
@@ -68,6 +69,28 @@ def write_sky(path: str | PathLike[str], rgb: Any) -> None:
     image = np.asarray(rgb, "<f4")
     if image.ndim != 3 or image.shape[2] != 3 or image.shape[1] != 2 * image.shape[0]:
         raise ValueError(f"rgb has the shape {image.shape}: expected (height, 2 height, 3)")
+    _write_exr(path, image)
+
+
+def write_texture(path: str | PathLike[str], texels: Any) -> None:
+    """Writes a texture as OpenEXR, float and uncompressed.
+
+    texels (height, width, 3), linear albedos, or (height, width), roughnesses or grey albedos; from 0 to 1. The first
+    row is the upper one, v from 1 - 1 / height to 1. ValueError says which texel is wrong.
+    """
+    image = np.asarray(texels, "<f4")
+    if image.ndim == 2:
+        image = np.repeat(image[..., None], 3, axis=2)
+    if image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
+        raise ValueError(f"texels has the shape {np.shape(texels)}: expected (height, width) or (height, width, 3)")
+    wrong = ~((image >= 0) & (image <= 1)).all(axis=2)
+    if wrong.any():
+        row, column = (int(k) for k in np.argwhere(wrong)[0])
+        raise ValueError(f"texels: row {row}, column {column} is {image[row, column].tolist()}: expected 0 to 1")
+    _write_exr(path, image)
+
+
+def _write_exr(path: str | PathLike[str], image: Any) -> None:
     height, width, _ = image.shape
 
     def attribute(name: bytes, kind: bytes, data: bytes) -> bytes:

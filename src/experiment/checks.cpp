@@ -87,6 +87,13 @@ void check_material(ParseContext& context, std::size_t surface) {
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
 }
 
+void check_content(ParseContext& context, const std::string& path, const std::optional<std::string>& content) {
+    if (!content || !context.is_valid(path)) return;
+    if (content->size() == 16 && content->find_first_not_of("0123456789abcdef") == std::string::npos) return;
+    context.report(path,
+        fmt::format("{}: expected 16 hexadecimal digits in lower case, found \"{}\"", path, content->substr(0, 64)));
+}
+
 void check_light(ParseContext& context) {
     const auto& disks = context.e.disks;
     const auto& lights = context.e.lights;
@@ -96,14 +103,7 @@ void check_light(ParseContext& context) {
             fmt::format("disks and lights: expected at most {}, found {}", most_lights, all));
     if (const auto& sky = context.e.sky; sky && context.is_valid("sky.file") && sky->file.empty())
         context.report("sky.file", "sky.file: expected the name of a file, found an empty text");
-    const auto is_hexadecimal = [](std::string_view text) {
-        return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-    };
-    if (const auto& sky = context.e.sky;
-        sky && context.is_valid("sky.content") && sky->content && !is_hexadecimal(*sky->content))
-        context.report("sky.content",
-            fmt::format("sky.content: expected 16 hexadecimal digits in lower case, found \"{}\"",
-                sky->content->substr(0, 64)));
+    if (const auto& sky = context.e.sky) check_content(context, "sky.content", sky->content);
     for (const Light& light : lights) check_form(context, "lights." + light.name, light.form);
     const Rgb& fill = context.e.fill;
     const auto is_dark = [](const auto& light) {
@@ -160,11 +160,16 @@ void check_meshes(ParseContext& context) {
         check(mesh.placement, path);
         for (std::size_t i = 0; i < mesh.instances.size(); ++i)
             check(mesh.instances[i], fmt::format("{}.instances.{}", path, i));
-        const std::filesystem::path file = mesh.file;
-        if (context.is_valid(path + ".file") && (file.empty() || file.is_absolute() || leaves_folder(file)))
-            context.report(path + ".file",
-                fmt::format("{}.file: expected a file in the folder of the experiment or below it, found '{}'", path,
-                    mesh.file));
+        const auto check_file = [&](const std::string& key, const std::filesystem::path& file) {
+            if (context.is_valid(key) && (file.empty() || file.is_absolute() || leaves_folder(file)))
+                context.report(key,
+                    fmt::format("{}: expected a file in the folder of the experiment or below it, found '{}'", key,
+                        file.string()));
+        };
+        check_file(path + ".file", mesh.file);
+        if (mesh.rho_d_texture.file) check_file(path + ".rho_d_texture", *mesh.rho_d_texture.file);
+        if (mesh.alpha_texture.file) check_file(path + ".alpha_texture", *mesh.alpha_texture.file);
+        check_content(context, path + ".content", mesh.content);
     }
 }
 

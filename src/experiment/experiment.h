@@ -227,7 +227,8 @@ Experiment with_files(Experiment experiment);
 /// layout.
 std::string canonical_text(const Experiment& experiment);
 /// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their paths, of
-/// the published figures, the meshes and the sky, and of the contents of the files of samplers (sampler_files.h).
+/// the published figures, the meshes with their textures and the sky, and of the contents of the files of samplers
+/// (sampler_files.h).
 /// Computed at each call, so that it is right for an experiment that was made or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 

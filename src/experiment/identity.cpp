@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "experiment/sampler_files.h"
+#include "experiment/scene_files.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
@@ -164,8 +165,12 @@ std::uint64_t hash(const Experiment& experiment) {
     counted.seeds = 1;                                  // a longer series is more of the same experiment
     if (experiment.figures) counted.published.reset();  // their content counts, not their path
     if (experiment.sky && experiment.sky->content) counted.sky->file.clear();
-    for (MeshObject& mesh : counted.meshes)
-        if (mesh.pack) mesh.file = fmt::format("{:016x}", mesh.pack->hash);
+    for (MeshObject& mesh : counted.meshes) {
+        const std::optional<std::string> content = mesh.pack ? content_of(mesh) : mesh.content;
+        if (!content) continue;
+        mesh.file = *content, mesh.content.reset();
+        mesh.rho_d_texture.file.reset(), mesh.alpha_texture.file.reset();
+    }
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);
     text += sampler_file_hashes(experiment);

@@ -1,13 +1,17 @@
-// Reads the files of meshes: each file once, and not before its size is known to be that of a regular file. A mesh must
-// be within 1000 km of the origin, the range of all coordinates. A page has no files: there meshes are refused.
+// Reads the files of meshes and their textures, not before a mesh's size is known to be that of a regular file. A mesh
+// must be within 1000 km of the origin, the range of all coordinates. A page has no files: there meshes are refused.
 #include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
+#include "base/parallel.h"
 #include "experiment/parser.h"
+#include "experiment/scene_files.h"
 
 namespace crescent::inline experiment {
 
@@ -36,6 +40,31 @@ std::string contents_of_regular_file(const std::string& path) {
 }
 #endif
 
+/// The packs of files that some experiment still has, by their contents: two tables that name one file share one, and
+/// an experiment that is read again from its text builds no tree again.
+class PacksInUse {
+public:
+    std::shared_ptr<const MeshPack> read(const std::string& bytes, const std::string& file) {
+        const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+        const std::pair<std::uint64_t, std::uint64_t> key(hash.high64, hash.low64);
+        {
+            const Guard guard(lock_);
+            if (const auto known = packs_.find(key); known != packs_.end())
+                if (std::shared_ptr<const MeshPack> pack = known->second.lock()) return pack;
+        }
+        std::shared_ptr<const MeshPack> pack = read_mesh(bytes, file);
+        const Guard guard(lock_);
+        std::erase_if(packs_, [](const auto& one) { return one.second.expired(); });
+        packs_[key] = pack;
+        return pack;
+    }
+
+private:
+    Mutex lock_;
+    std::map<std::pair<std::uint64_t, std::uint64_t>, std::weak_ptr<const MeshPack>> packs_;
+};
+PacksInUse packs_in_use;
+
 void check_extent(const Experiment& e, const MeshObject& mesh) {
     const Bounds box = mesh.pack->mesh.bounds();
     const Affine own = mesh.placement.transform();
@@ -57,26 +86,50 @@ void check_extent(const Experiment& e, const MeshObject& mesh) {
         check(mesh.instances[i].transform().after(own), fmt::format("{}.instances.{}", path, i));
 }
 
+void check_uv(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& found) {
+    if (!mesh.pack->mesh.uv.empty()) return;
+    for (const auto& [key, texture] :
+        {std::pair("rho_d_texture", &mesh.rho_d_texture), {"alpha_texture", &mesh.alpha_texture}}) {
+        const std::string path = fmt::format("meshes.{}.{}", mesh.name, key);
+        if (texture->image)
+            found.push_back({e.place_of(path),
+                fmt::format("{}: expected a mesh with texture coordinates, found none in '{}'", path, mesh.file)});
+    }
+}
+
 }  // namespace
 
 void read_meshes(Experiment& experiment) {
-    std::map<std::string, std::shared_ptr<const MeshPack>> known;
     std::vector<Diagnostic> found;
     for (MeshObject& mesh : experiment.meshes) {
-        if (mesh.pack) continue;
-        const std::string path = "meshes." + mesh.name + ".file";
-        const std::string file = (std::filesystem::path(experiment.file).parent_path() / mesh.file).string();
-        try {
-            std::shared_ptr<const MeshPack>& pack = known[file];
-            if (!pack) pack = read_mesh(contents_of_regular_file(file), file);
-            mesh.pack = pack;
-            check_extent(experiment, mesh);
-        } catch (const InputError& error) {
-            const Diagnostic& first = error.diagnostics().front();
-            const bool in_mesh = first.at.file == file;
-            found.push_back({in_mesh ? experiment.place_of(path) : first.at,
-                in_mesh ? fmt::format("{}: {}", path, error.what()) : first.message});
-        }
+        const std::string path = "meshes." + mesh.name;
+        /// A mistake in a file that a key names is reported at the key, with the place in the file.
+        const auto at_key = [&](const std::string& key, const auto& work) {
+            try {
+                work();
+            } catch (const InputError& error) {
+                const Diagnostic& first = error.diagnostics().front();
+                const bool located = first.at.file == experiment.file && first.at.line > 0;
+                found.push_back({located ? first.at : experiment.place_of(key),
+                    located ? first.message : fmt::format("{}: {}", key, error.what())});
+            }
+        };
+        if (!mesh.pack)
+            at_key(path + ".file", [&] {
+                const std::string file = (std::filesystem::path(experiment.file).parent_path() / mesh.file).string();
+                mesh.pack = packs_in_use.read(contents_of_regular_file(file), file);
+                check_extent(experiment, mesh);
+            });
+        at_key(path + ".rho_d_texture", [&] { load_texture(mesh.rho_d_texture, TextureOf::rho_d, experiment.file); });
+        at_key(path + ".alpha_texture", [&] { load_texture(mesh.alpha_texture, TextureOf::alpha, experiment.file); });
+        if (!mesh.pack || !found.empty()) continue;
+        check_uv(experiment, mesh, found);
+        const std::string content = content_of(mesh);
+        if (mesh.content && *mesh.content != content)
+            found.push_back({experiment.place_of(path + ".content"),
+                fmt::format("{0}.content: expected a mesh and textures with the content {1}, found {2}", path,
+                    *mesh.content, content)});
+        mesh.content = content;
     }
     throw_if_any(std::move(found));
 }

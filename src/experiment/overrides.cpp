@@ -140,6 +140,9 @@ private:
     void set(const Segments& path, Node value) {
         Node* node = &root_;
         for (std::size_t i = 0; i < path.size(); ++i) {
+            // `content` is the hash of the files of its table: it does not hold for another file.
+            if (i + 1 == path.size() && (path[i] == "file" || path[i].ends_with("_texture")))
+                std::erase_if(node->members, [](const Member& member) { return member.key == "content"; });
             Member* next = node->is_table() || node->is_array() ? step(*node, path[i]) : nullptr;
             if (!next) {
                 if (!node->is_table())

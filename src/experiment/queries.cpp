@@ -17,10 +17,22 @@ std::string film_file(std::string_view arm, double s, double own_s) {
 // ---- Compares the largest channel of rho_d plus rho_s of each surface with 1 (reflectances have no unit), and finds
 // requested article checks that cannot be measured.
 
+namespace {
+
+/// Returns the largest channel of rho_d, with that of its texture.
+double brightest_rho_d(const Experiment& experiment, std::size_t surface) {
+    const double own = std::ranges::max(experiment.material(surface).rho_d);
+    if (surface < experiment.shapes.size()) return own;
+    const auto& image = experiment.meshes[surface - experiment.shapes.size()].rho_d_texture.image;
+    return image ? own * static_cast<double>(std::ranges::max(image->rgb)) : own;
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const Experiment& experiment) {
     std::vector<std::string> out;
     for (std::size_t k = 0; k < experiment.surface_count(); ++k) {
-        const double albedo = std::ranges::max(experiment.material(k).rho_d) + experiment.material(k).rho_s;
+        const double albedo = brightest_rho_d(experiment, k) + experiment.material(k).rho_s;
         if (albedo > 1)
             out.push_back(fmt::format("{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives",
                 experiment.surface_name(k), albedo));

@@ -1,12 +1,22 @@
 // The files of the scene that an experiment names.
 #pragma once
 
-#include "scene/sky.h"
+#include <string>
+
+#include "scene/scene_data.h"
 
 namespace crescent::inline experiment {
 
 /// Reads the image of a sky and sets its content hash. Throws InputError with the file and the texel: no image, a
 /// texel that is negative, not finite or too bright, no light, or another image than the experiment expects.
 void load_sky(SkyLight& sky);
+
+/// Reads a texture that has no image yet, next to the experiment's file `beside`. Throws InputError with the file and
+/// the texel.
+void load_texture(Texture& texture, TextureOf of, const std::string& beside);
+
+/// Returns the hash of a mesh and its textures, whose files must have been read: 16 hexadecimal digits. Without
+/// textures it is that of the .mesh file.
+std::string content_of(const MeshObject& mesh);
 
 }  // namespace crescent::inline experiment

@@ -121,10 +121,17 @@ Section mesh_tables() {
         to<&MeshObject::file>}};
     for (Key& key : placement_keys<MeshObject, &MeshObject::placement>()) keys.push_back(std::move(key));
     for (Key& key : material_keys<MeshObject>()) keys.push_back(std::move(key));
+    keys.push_back({"rho_d_texture", Type::text, none, "", optional, "none",
+        "An OpenEXR image next to this file or in a folder there, whose texels multiply rho_d.",
+        to<&MeshObject::rho_d_texture, &Texture::file>});
+    keys.push_back({"alpha_texture", Type::text, none, "", optional, "none", "The same for alpha: a grey image.",
+        to<&MeshObject::alpha_texture, &Texture::file>});
     keys.push_back({"emission", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]",
         "Radiance of its front sides: its triangles are area lights.", to<&MeshObject::emission>});
     keys.push_back({"two_sided", Type::flag, none, "", defaulted, "false", "Emits from the back too.",
         to<&MeshObject::two_sided>});
+    keys.push_back({"content", Type::text, none, "", optional, "not checked",
+        "Hash of the mesh and its textures, 16 hexadecimal digits; others are refused.", to<&MeshObject::content>});
     const Section instances = {"instances", Multiplicity::list, optional,
         "Where copies of the mesh are, each placed after the mesh's own placement; none: the mesh is there once.",
         in<&MeshObject::instances>, placement_keys<Placement>(), {}};

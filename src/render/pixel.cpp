@@ -55,11 +55,24 @@ struct Locals {
     const std::vector<LocalLight<float>>& others;
 };
 
-/// In the order of the kernels: the nearest light first, then the bodies before it.
-template <class D> int met_by(const ShadingPoints& shading_points, const Locals& locals, const D& drawn) {
+/// What a direction meets first: a light, or light that varies; neither: the fill.
+struct Seen {
+    int disk = -1;
+    bool around = false;
+    Vec3f radiance{};  // of light that varies
+};
+
+/// Returns whether a direction is below the triangle of the surface point.
+bool is_below_face(const ShadingPoints& points, Vec3f wi) {
+    return points.has_faces && dot(at(points.face_x, points.face_y, points.face_z), wi) <= 0;
+}
+
+/// In the order of the kernels: the nearest light first, then the meshes and the bodies before it.
+template <class D> Seen seen_by(const ShadingPoints& shading_points, const Locals& locals, const D& drawn) {
     const auto& [disks, others] = locals;
     const Vec3f wi = drawn.wi;
-    float nearest = 1e30f;
+    constexpr float far = 1e30f;
+    float nearest = far;
     int met = -1;
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const FacingDisk<float> facing(disks[k]);
@@ -73,20 +86,53 @@ template <class D> int met_by(const ShadingPoints& shading_points, const Locals&
         if (!meets_light(others[k], drawn, disks.size() + k, t) || !is_nearer(t, nearest)) continue;
         nearest = t, met = static_cast<int>(disks.size() + k);
     }
-    if (met < 0) return -1;
+    const Surroundings* const around = shading_points.around.get();
+    if (met < 0 && !around) return {};
     const Vec3f t = at(shading_points.tx, shading_points.ty, shading_points.tz),
                 b = at(shading_points.bx, shading_points.by, shading_points.bz);
     const Frame<float> frame = {t, b, at(shading_points.nx, shading_points.ny, shading_points.nz)};
     const Vec3f o = at(shading_points.px, shading_points.py, shading_points.pz), d = frame.to_world(wi);
+    std::uint32_t triangle = no_triangle, texel = no_texel;
+    if (around && has_meshes(*around)) {
+        std::uint32_t aimed = no_triangle;
+        if constexpr (requires { drawn.triangle; }) aimed = drawn.triangle;
+        const MeshesBefore before = meshes_before(*around, o, d, nearest, aimed);
+        if (before.hidden) return {};
+        if (before.triangle != no_triangle) triangle = before.triangle, nearest = before.distance;
+    }
+    const bool met_one = nearest < far;
+    if (!met_one && !has_sky(*around)) return {};
+    const float from = met_one ? nearest : length(o - around->eye);  // as the kernels: lo in units of it
     for (const OccluderF& body : shading_points.occluders)
-        if (body.shape != shading_points.shape[0] && blocked_by(body, o, d, nearest)) return -1;
-    return met;
+        if (body.shape != shading_points.shape[0] &&
+            blocked_by(body, o, d, from * float(1e-5), nearest * float(1 - 1e-5)))
+            return {};
+    if (met_one && triangle == no_triangle) return {met};
+    if constexpr (requires { drawn.texel; }) texel = drawn.texel;
+    float rgb[3] = {0, 0, 0};
+    if (triangle != no_triangle) triangle_radiance(*around, triangle, rgb);
+    else sky_radiance(*around, texel, d, rgb);
+    return {-1, true, {rgb[0], rgb[1], rgb[2]}};
 }
 
 /// f L of the Lambert part and of the lobe, as Y: X = (cos/p) (d + lobe s).
 struct Worth {
     float d, s;
 };
+/// Of light that varies: the sum for one value of the lobe.
+Worth worth(const ShadingPoints& points, Vec3f radiance, float lobe) {
+    const float channel[3] = {radiance.x, radiance.y, radiance.z};
+    float sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float per_radiance = points.around_d[c][0] + lobe * points.around_s[c][0];
+        sum = sum + channel[c] * per_radiance;
+    }
+    return {sum, 0};
+}
+double luminance_of(Vec3f radiance) {
+    return luminance(Rgb{double(radiance.x), double(radiance.y), double(radiance.z)});
+}
+
 Worth worth(const ShadingPoints& shading_points, int disk) {
     if (disk < 0) return {shading_points.fill_d[0], shading_points.fill_s[0]};
     const std::size_t k = static_cast<std::size_t>(disk);
@@ -111,12 +157,15 @@ public:
         PixelSample out;
         out.u = u, out.wi = drawn.wi, out.pdf = drawn.pdf.v, out.cos = drawn.wi.z;
         out.weight = weight, out.technique = technique;
-        if (out.cos <= 0 || out.pdf == 0) return out;
+        if (out.cos <= 0 || is_below_face(shading_points_, out.wi) || out.pdf == 0) return out;
         const float g = weight * (out.cos / out.pdf), lobe = lobe_of(shading_points_, out.wi);
-        out.disk = met_by(shading_points_, lights_, drawn);
-        const Worth w = worth(shading_points_, out.disk);
+        const Seen seen = seen_by(shading_points_, lights_, drawn);
+        out.disk = seen.disk, out.around = seen.around;
+        const Worth w = seen.around ? worth(shading_points_, seen.radiance, lobe) : worth(shading_points_, out.disk);
         out.x = g * (w.d + lobe * w.s);
-        out.light = static_cast<float>(out.disk < 0 ? fill_ : seen_[static_cast<std::size_t>(out.disk)].light);
+        out.light = static_cast<float>(seen.around ? luminance_of(seen.radiance)
+                : out.disk < 0                     ? fill_
+                                                   : seen_[static_cast<std::size_t>(out.disk)].light);
         out.f = static_cast<float>(reflected(shading_points_, w, lobe, double(out.light)));
         return out;
     }
@@ -192,17 +241,30 @@ ShadingPoint<float> OpenPixel::aimed_from() const {
 
 Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
 
-int OpenPixel::disk_met(Vec3d wi) const {
-    return wi.z > 0 ? met_by(shading_points_, {local_, others_}, Drawn<float>{as<float>(wi), {1}}) : -1;
+namespace {
+
+Seen seen_in(const ShadingPoints& points, const Locals& lights, Vec3d wi) {
+    const Vec3f w = as<float>(wi);
+    return wi.z > 0 && !is_below_face(points, w) ? seen_by(points, lights, Drawn<float>{w, {1}}) : Seen{};
+}
+
+}  // namespace
+
+int OpenPixel::disk_met(Vec3d wi) const { return seen_in(shading_points_, {local_, others_}, wi).disk; }
+
+bool OpenPixel::meets_light(Vec3d wi) const {
+    const Seen seen = seen_in(shading_points_, {local_, others_}, wi);
+    return seen.disk >= 0 || seen.around;
 }
 
 double OpenPixel::light(Vec3d wi) const {
-    const int disk = disk_met(wi);
-    return disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
+    const Seen seen = seen_in(shading_points_, {local_, others_}, wi);
+    if (seen.around) return luminance_of(seen.radiance);
+    return seen.disk < 0 ? fill_ : lights_[static_cast<std::size_t>(seen.disk)].light;
 }
 
 double OpenPixel::f(Vec3d wi, int disk) const {
-    if (!(wi.z > 0)) return 0;
+    if (!(wi.z > 0) || is_below_face(shading_points_, as<float>(wi))) return 0;
     const Worth w = worth(shading_points_, disk);
     const double light = disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
     return reflected(shading_points_, w, lobe_of(shading_points_, as<float>(wi)), light);

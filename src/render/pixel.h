@@ -25,8 +25,12 @@ struct PixelSample {
     float pdf = 0, f = 0, light = 0, cos = 0;
     float weight = 1;  // of multiple importance sampling
     float x = 0;
-    int disk = -1;  // index of the light that was met; -1: the fill
+    int disk = -1;        // index of the light that was met; -1: none
+    bool around = false;  // light that varies was met: that of the sky, or of a triangle that emits
     int technique = 0;
+
+    /// Returns whether it met more than the fill.
+    bool meets_light() const { return disk >= 0 || around; }
 };
 
 /// A light as the surface point sees it.
@@ -58,17 +62,19 @@ public:
     const std::vector<PixelLight>& lights() const { return lights_; }
     double fill() const { return fill_; }  // Y
 
-    /// Returns the light that a direction meets before any body; -1: none, it sees the fill.
+    /// Returns the light that a direction meets before any body; -1: none, it sees the fill or light that varies.
     int disk_met(Vec3d wi) const;
+    /// Returns whether a direction meets a light, an emitting triangle or the sky before any body.
+    bool meets_light(Vec3d wi) const;
     /// Returns Y of the light from that direction.
     double light(Vec3d wi) const;
-    /// Returns the BRDF in 1/sr for the light of a disk, or for the fill (-1); 0 below the horizon.
+    /// Returns the BRDF in 1/sr for the light of a disk, or for the fill (-1); 0 below the horizon or the triangle.
     double f(Vec3d wi, int disk = -1) const;
     /// Returns a sampler's density in 1/sr at a direction; for a sampler with two techniques, that of the first.
     double pdf(std::string_view sampler, Vec3d wi) const;
 
-    /// Returns the first n samples of a sampler in order, under the scene's lights and fill, without its sky and
-    /// meshes; for one with two techniques, 2 n in pairs. `sampler`: a name of samplers/all.h.
+    /// Returns the first n samples of a sampler in order; for one with two techniques, 2 n in pairs. `sampler`: a name
+    /// of samplers/all.h.
     std::vector<PixelSample> samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const;
 
 private:

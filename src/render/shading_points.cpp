@@ -66,6 +66,7 @@ ShadingPoints empty_points(const Scene& scene, int lobe) {
     shading_points.lobe = lobe;
     shading_points.around = scene.surroundings();
     shading_points.has_faces = scene.has_meshes();
+    shading_points.has_alpha_textures = scene.has_alpha_textures();
     double total = 0;
     for (const Light& light : scene.lights()) total += light.power();
     const auto share = [&](const Light& light) { return total > 0 ? static_cast<float>(light.power() / total) : 0.0f; };
@@ -113,6 +114,7 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
     diffuse[i] = static_cast<float>(luminance(shading.surface.rho_d));
     rho_s[i] = static_cast<float>(shading.surface.rho_s);
     put(px, py, pz, i, scene.ray_start(hit));
+    if (has_alpha_textures) alpha_texel[i] = static_cast<float>(scene.texels(hit).alpha);
     if (has_faces) put(face_x, face_y, face_z, i, hit.is_mesh() ? frame.to_local(hit.face) : Vec3d{0, 0, 1});
     put(tx, ty, tz, i, frame.t);
     put(bx, by, bz, i, frame.b);
@@ -145,6 +147,7 @@ template <class Work> void ShadingPoints::each_array(Work&& work) {
         fill_s, lambert, rho_s_exact, tint);
     for (std::size_t c = 0; around && c < 3; ++c) all(around_d[c], around_s[c]);
     if (has_faces) all(face_x, face_y, face_z);
+    if (has_alpha_textures) all(alpha_texel);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
     for (LightArrays& k : others) {
         for (std::vector<float>& numbers : k.numbers) all(numbers);
@@ -173,7 +176,8 @@ void ShadingPoints::take_s(const Scene& scene) {
     for (std::size_t i = 0; i < shape.size(); ++i) {
         const Surface surface = scene.surface_of_shape(shape[i]);
         s[i] = static_cast<float>(surface.s);
-        alpha[i] = static_cast<float>(surface.alpha);
+        const double texel = has_alpha_textures ? static_cast<double>(alpha_texel[i]) : 1;
+        alpha[i] = static_cast<float>(surface.alpha * texel);
     }
 }
 
@@ -206,7 +210,7 @@ void ShadingPoints::cull_occluders(const Scene& scene) {
 
 namespace {
 
-/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then cached.
+/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface and texel, whose shading is then cached.
 class Sorter {
 public:
     Sorter(const Scene& scene, const TileBox& tile)
@@ -219,9 +223,10 @@ public:
     }
 
     void add(std::uint32_t pixel, const Hit& hit) {
-        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_ || hit.below != below_) {
+        const Texels texels = scene_.texels(hit);
+        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_ || hit.below != below_ || texels != texels_) {
             shading_.emplace(scene_, scene_.surface(hit));
-            shape_ = hit.shape, reveal_ = hit.reveal, below_ = hit.below;
+            shape_ = hit.shape, reveal_ = hit.reveal, below_ = hit.below, texels_ = texels;
         }
         const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
         auto group = std::find_if(groups.begin(), groups.end(), [&](const ShadingPoints& g) { return g.lobe == lobe; });
@@ -241,6 +246,7 @@ private:
     std::optional<Shading> shading_;
     int shape_ = -1;
     bool reveal_ = false, below_ = false;
+    Texels texels_;
 };
 
 }  // namespace

@@ -78,6 +78,9 @@ struct ShadingPoints {
     // below it carries nothing.
     bool has_faces = false;
     std::vector<float> face_x, face_y, face_z;
+    // What its texture multiplies alpha by; empty in a scene without such textures.
+    bool has_alpha_textures = false;
+    std::vector<float> alpha_texel;
     std::vector<float> fill_d, fill_s;  // like DiskArrays::d, s, for the fill
     std::vector<DiskArrays> disks;
     std::vector<LightArrays> others;  // lights other than disks

@@ -56,6 +56,8 @@ std::string lobe(const Material& m) {
         shortest((by_alpha ? m.alpha : m.s).value_or(0)));
 }
 
+std::string textured(const Texture& texture) { return texture.file ? " × " + html::code(*texture.file) : ""; }
+
 std::string shapes_table(const Page& page) {
     html::Table table("Shapes. Pixels: how many primary rays meet the shape first",
         {words("Shape"), words("Kind"), words("Where"), words("<i>ρ</i><sub>d</sub>"), words("Lobe"),
@@ -74,8 +76,10 @@ std::string shapes_table(const Page& page) {
         if (mesh.pack) where += fmt::format(", {} triangles", mesh.pack->mesh.triangles.size());
         if (!mesh.instances.empty()) where += fmt::format(", {} instances", mesh.instances.size());
         if (mesh.emits()) where += fmt::format(", emits {} W/(sr m²)", rgb(mesh.emission));
-        table.row({html::heading(escape(mesh.name)), words("mesh"), words(where), words(rgb(mesh.material.rho_d)),
-            words(lobe(mesh.material)), words("yes"), html::figure(known ? std::to_string(found->second) : "")});
+        table.row({html::heading(escape(mesh.name)), words("mesh"), words(where),
+            words(rgb(mesh.material.rho_d) + textured(mesh.rho_d_texture)),
+            words(lobe(mesh.material) + textured(mesh.alpha_texture)), words("yes"),
+            html::figure(known ? std::to_string(found->second) : "")});
     }
     return table.empty() ? "" : table.str();
 }

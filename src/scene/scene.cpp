@@ -217,9 +217,36 @@ Surface Scene::surface_of_shape(std::size_t shape) const {
     return surface_of(material, s_);
 }
 
+Texels Scene::texels(const Hit& hit) const {
+    Texels out;
+    if (!hit.is_mesh()) return out;
+    const MeshObject& object = meshes()[static_cast<std::size_t>(hit.shape) - shapes().size()];
+    const RgbImage* const rho_d = object.rho_d_texture.image.get();
+    const RgbImage* const alpha = object.alpha_texture.image.get();
+    if (!rho_d && !alpha) return out;
+    const Mesh& mesh = object.pack->mesh;
+    ensure(!mesh.uv.empty(), "a mesh with a texture has texture coordinates");
+    const Triangle& corners = mesh.triangles[hit.triangle];
+    const auto along = [&](float Vec2<float>::* axis) {
+        const auto at = [&](std::size_t k) { return static_cast<double>(mesh.uv[corners[k]].*axis); };
+        return (1 - hit.u - hit.v) * at(0) + hit.u * at(1) + hit.v * at(2);
+    };
+    const double u = along(&Vec2<float>::x), v = along(&Vec2<float>::y);
+    if (rho_d) out.rho_d = texel_at(*rho_d, u, v);
+    if (alpha) out.alpha = texel_at(*alpha, u, v)[0];
+    return out;
+}
+
+bool Scene::has_alpha_textures() const {
+    return std::ranges::any_of(meshes(), [](const MeshObject& mesh) { return mesh.alpha_texture.image != nullptr; });
+}
+
 Surface Scene::surface(const Hit& hit) const {
     const auto shape = static_cast<std::size_t>(hit.shape);
     Surface out = surface_of_shape(shape);
+    const Texels factor = texels(hit);
+    for (std::size_t c = 0; c < 3; ++c) out.rho_d[c] *= factor.rho_d[c];
+    out.alpha *= factor.alpha;
     if (hit.below) out.rho_d = {}, out.rho_s = 0;
     if (hit.reveal) {
         out.rho_d = albedo_of_reveal(shapes()[shape]).value_or(out.rho_d);

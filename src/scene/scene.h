@@ -29,6 +29,13 @@ struct Hit {
     bool is_mesh() const { return instance != no_item; }
 };
 
+/// Factors of a material, from the textures of its mesh.
+struct Texels {
+    Rgb rho_d = {1, 1, 1};
+    double alpha = 1;
+    bool operator==(const Texels&) const = default;
+};
+
 /// What the camera sees of an experiment's shapes, and the lights. Copies share the data; const members may be called
 /// from any thread.
 class Scene {
@@ -47,10 +54,15 @@ public:
     /// Everything except the exponent is shared.
     Scene with_s(double s) const;
     Surface surface(const Hit& hit) const;
+    /// Returns what the textures multiply the material of a hit by.
+    Texels texels(const Hit& hit) const;
+    /// Returns whether a mesh has a texture of alpha.
+    bool has_alpha_textures() const;
     /// Returns where rays from a hit begin, relative to origin(): on a mesh a little above its triangle, so that the
     /// triangle does not shadow itself (Rays::offset).
     Vec3d ray_start(const Hit& hit) const;
-    /// Returns the properties that are constant over a shape. The sides of a panel share only the lobe's parameters.
+    /// Returns the properties that are constant over a shape, without its textures. The sides of a panel share only the
+    /// lobe's parameters.
     Surface surface_of_shape(std::size_t shape) const;
 
     /// Returns the scene's own exponent, or the one given to with_s().

@@ -16,6 +16,7 @@
 #include "scene/mesh/rays.h"
 #include "scene/shapes/all.h"
 #include "scene/sky.h"
+#include "scene/texture.h"
 
 namespace crescent::inline scene {
 
@@ -139,8 +140,10 @@ struct MeshObject {
     Placement placement;
     std::vector<Placement> instances;  // placed after `placement`; empty: once
     Material material;
-    Rgb emission{};          // radiance of its front sides
-    bool two_sided = false;  // whether it emits from the back too
+    Texture rho_d_texture, alpha_texture;  // factors of the material's rho_d and alpha
+    std::optional<std::string> content;    // 16 hexadecimal digits of content_of(); none: not known
+    Rgb emission{};                        // radiance of its front sides
+    bool two_sided = false;                // whether it emits from the back too
     SourceLocation at;
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }

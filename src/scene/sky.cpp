@@ -12,7 +12,7 @@
 
 namespace crescent::inline scene {
 
-std::string why_no_sky(const SkyImage& image, double scale) {
+std::string why_no_sky(const RgbImage& image, double scale) {
     if (image.width < 2 || image.height < 1 || image.width != 2 * image.height || image.width > widest_sky)
         return fmt::format(
             "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found "

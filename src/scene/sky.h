@@ -20,33 +20,25 @@
 
 #include "base/errors.h"
 #include "base/vec.h"
+#include "scene/texture.h"
 
 namespace crescent::inline scene {
 
 inline constexpr int widest_sky = 8192, highest_sky = 4096;  // texels
 inline constexpr double brightest_sky = 1e9;                 // W/(sr m^2), the limit of every radiance of a file
 
-/// The texels of an image, row by row from the top, r g b each.
-struct SkyImage {
-    int width = 0, height = 0;
-    std::vector<float> rgb;
-    std::uint64_t hash = 0;  // of the content: XXH3 of width, height and the texels
-
-    std::size_t texels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
-};
-
 /// The sky of a scene.
 struct SkyLight {
     std::string file;
     double rotation = 0;                   // degrees about +y
     double scale = 1;                      // of the radiance
-    std::optional<std::string> content{};  // 16 hexadecimal digits of SkyImage::hash; none: not known
+    std::optional<std::string> content{};  // 16 hexadecimal digits of RgbImage::hash; none: not known
     SourceLocation at{};
-    std::shared_ptr<const SkyImage> image{};  // none before the file is read
+    std::shared_ptr<const RgbImage> image{};  // none before the file is read
 };
 
 /// Where an image cannot be a sky: the texel and what is wrong there; "" if it can.
-std::string why_no_sky(const SkyImage& image, double scale);
+std::string why_no_sky(const RgbImage& image, double scale);
 
 inline constexpr std::uint32_t no_texel = 0xffffffff;
 
@@ -86,7 +78,7 @@ private:
     };
     RowEdges edges_of(int row) const;
 
-    std::shared_ptr<const SkyImage> image_;
+    std::shared_ptr<const RgbImage> image_;
     double scale_, turns_;        // of the rotation
     std::vector<double> edge_;    // 1 - cos(pi row / height), down to the last edge above the equator or on it
     std::vector<double> rows_;    // sum of the masses of all rows up to this one

@@ -124,7 +124,7 @@ TEST(Skies, AreRefusedWithTheTexel) {
     for (const float bad : {-1e-30f, std::nanf(""), HUGE_VALF, 2e9f}) EXPECT_THAT(why(bad), HasSubstr("texel (5, 2)"));
     EXPECT_THAT(why(2e6f, 1e3), HasSubstr("texel (5, 2)"));
     EXPECT_THAT(why_no_sky(*test::sky_of(8, std::vector<float>(96)).image, 1), HasSubstr("every texel is 0"));
-    SkyImage square;
+    RgbImage square;
     square.width = square.height = 8, square.rgb.assign(192, 1.0f);
     EXPECT_THAT(why_no_sky(square, 1), HasSubstr("8 x 8"));
 }

@@ -54,7 +54,7 @@ void print_functions() {
 
 /// A sky of 32 x 16 texels over five orders of magnitude.
 SkyLight some_sky() {
-    auto image = std::make_shared<SkyImage>();
+    auto image = std::make_shared<RgbImage>();
     image->width = 32, image->height = 16;
     for (std::uint32_t k = 0; k < 32 * 16; ++k)
         for (std::uint32_t c = 0; c < 3; ++c) {

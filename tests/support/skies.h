@@ -12,7 +12,7 @@ namespace crescent::test {
 
 /// A sky of these texels, twice as wide as high.
 inline SkyLight sky_of(int width, std::vector<float> rgb) {
-    auto image = std::make_shared<SkyImage>();
+    auto image = std::make_shared<RgbImage>();
     image->width = width, image->height = width / 2, image->rgb = std::move(rgb);
     SkyLight light;
     light.image = std::move(image);

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Meshes from files: imports of each format, the content as identity, films of the same bytes on every instruction set,
-# bad files refused with the place, damaged models that do not end the program.
+# textures, parts that join without the files, bad files refused with the place, damaged models that do not end the
+# program.
 . "$(dirname "$0")/common.sh"
 # The rest of this script has a build with assimp; without it, the command says what is missing.
 "$CRESCENT" import nothing.obj --out nothing.mesh >printed 2>said
@@ -74,6 +75,66 @@ sed 's/0 1.5 0/0 1.6 0/' tent.obj >tall.obj
 expect 0 "$CRESCENT" import tall.obj --out other.mesh
 run 0 --out tall
 [ "$(hash_of tall)" != "$(hash_of best)" ] || die "the content of a file is not in the identity"
+
+# Textures: the same, and the mesh needs texture coordinates.
+image() { /usr/bin/python3 "$here/sky_image.py" "$@" || die "cannot make $1"; }
+{ grep '^v' tent.obj && printf 'vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\n' &&
+    printf 'f 1/1 5/5 2/2\nf 2/2 5/5 3/3\nf 3/3 5/5 4/4\nf 4/4 5/5 1/1\n'; } >uv.obj
+expect 0 "$CRESCENT" import uv.obj --out uv.mesh
+image wood.exr 5 '(0.1 + 0.2 * x, 0.5, 0.9 if y else 0.1)' 3
+image rough.exr 3 '(0.1 + 0.2 * x, 0.1 + 0.2 * x, 0.1 + 0.2 * x)' 2
+textures=$'rho_d_texture = "wood.exr"\nalpha_texture = "rough.exr"'
+gloss=$'rho_s = 0.3\nbrdf = "ggx"\nalpha = 0.9\n[reference]\nn = 4'
+experiment uv.mesh "$gloss"
+run 0 --only films --out bare
+experiment uv.mesh "$textures"$'\n'"$gloss"
+run 0 --isa scalar --out scalar
+run 0 --threads 1 --out best
+same_outputs scalar best
+cmp -s bare/films/cosine.exr best/films/cosine.exr && die "a texture changes no film"
+mv wood.exr oak.exr
+experiment uv.mesh "${textures/wood/oak}"$'\n'"$gloss"
+run 0 --only metrics --out other
+[ "$(hash_of other)" = "$(hash_of best)" ] || die "the name of a texture is in the identity"
+image wood.exr 5 '(0.1 + 0.2 * x, 0.6, 0.9 if y else 0.1)' 3
+experiment uv.mesh "$textures"$'\n'"$gloss"
+run 0 --only metrics --out other
+[ "$(hash_of other)" != "$(hash_of best)" ] || die "the content of a texture is not in the identity"
+
+# Parts join with the files and without them; another texture is another experiment.
+mv best one && run 0 --seeds 4 --only metrics --out whole
+run 0 --seeds 4 --seed-range 1:2 --only metrics --out a
+run 0 --seeds 4 --seed-range 3:4 --only metrics --out b
+expect 0 "$CRESCENT" join a b --out joined
+cmp whole/metrics.csv joined/metrics.csv || die "parts with a mesh do not join to the whole"
+mkdir away && mv uv.mesh wood.exr rough.exr mesh.toml away && mv away/mesh.toml .
+expect 0 "$CRESCENT" join a b --out again
+cmp whole/metrics.csv again/metrics.csv || die "parts do not join without the files of a mesh"
+mv away/* .
+mv oak.exr wood.exr
+run 0 --seeds 4 --seed-range 3:4 --only metrics --out b
+expect 2 "$CRESCENT" join a b --out nowhere
+grep -q '"tent".content is' said || die "the content that differs is not named: $(cat said)"
+refuses 'content 0123456789abcdef, found' uv.mesh 'content = "0123456789abcdef"'
+refuses 'hexadecimal' uv.mesh 'content = "tent"'
+
+image nan.exr 4 '(1, nan if (x, y) == (3, 1) else 1, 1)' 2
+image dark.exr 4 '(0, -0.1 if (x, y) == (3, 1) else 1, 1)' 2
+image inf.exr 4 '(inf if (x, y) == (3, 1) else 1, 1, 1)' 2
+image bright.exr 4 '(1, 1, 1.1 if (x, y) == (3, 1) else 1)' 2
+image wide.exr 8193 '(1, 1, 1)' 1
+head -c 200 wood.exr >cut.exr
+for bad in nan dark inf bright; do
+    refuses "mesh.toml:[0-9]*:[0-9]*: meshes.tent.rho_d_texture: .*$bad.exr: texel (3, 1)" uv.mesh "rho_d_texture = \"$bad.exr\""
+done
+refuses 'alpha_texture: .*texel (0, 0).*grey' uv.mesh 'alpha_texture = "wood.exr"'
+refuses 'wide.exr: .*8192 x 8192.*8193 x 1' uv.mesh 'rho_d_texture = "wide.exr"'
+refuses 'cut.exr: .*OpenEXR' uv.mesh 'rho_d_texture = "cut.exr"'
+refuses 'none.exr: .*can be read' uv.mesh 'rho_d_texture = "none.exr"'
+refuses 'mesh.toml:[0-9]*:[0-9]*: .*with texture coordinates' tent-obj.mesh 'rho_d_texture = "wood.exr"'
+for outside in ../wood.exr "$PWD/wood.exr" ''; do
+    refuses 'mesh.toml:[0-9]*:[0-9]*: .*in the folder of the experiment' uv.mesh "alpha_texture = \"$outside\""
+done
 
 head -c 80 tent-obj.mesh >cut.mesh
 { head -c 16 tent-obj.mesh && printf '\x00\xe1\xf5\x05\x00\xe1\xf5\x05' && head -c 1000 /dev/zero; } >huge.mesh

@@ -55,11 +55,11 @@ ArmAtPixel arm_at(const Data& data, const OpenPixel& pixel, const std::string& a
     for (std::size_t k = 0; k < out.samples.size(); ++k) {
         const PixelSample& sample = out.samples[k];
         if (sample.x > out.largest_sample().x) out.largest = k;
-        out.hits += sample.disk >= 0, out.below_horizon += sample.cos <= 0;
+        out.hits += sample.meets_light(), out.below_horizon += sample.cos <= 0;
     }
     out.long_series = long_series;
     std::uint64_t hits = 0;
-    for (const PixelSample& sample : pixel.samples(out.sampler, long_series, key.seed)) hits += sample.disk >= 0;
+    for (const PixelSample& sample : pixel.samples(out.sampler, long_series, key.seed)) hits += sample.meets_light();
     out.hit_share = static_cast<double>(hits) / static_cast<double>(long_series);
     return out;
 }
@@ -90,7 +90,7 @@ PixelStory pixel_story(const Data& data) {
     double under_fill = 0;
     const std::size_t parts = over_hemisphere([&](Vec3d w) {
         const double f = out.pixel->f(w);
-        if (out.pixel->disk_met(w) < 0) under_fill += f * w.z;
+        if (!out.pixel->meets_light(w)) under_fill += f * w.z;
         out.top_f = std::max(out.top_f, f);
     });
     under_fill *= 2 * pi / static_cast<double>(parts) * out.pixel->fill();

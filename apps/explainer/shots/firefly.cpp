@@ -61,7 +61,7 @@ private:
         std::vector<Point> path;
         for (int k = 0; k < drawn; ++k) {
             const double y = axes_.y(arm_.mean[std::size_t(k)]);
-            if (k > 0 && arm_.samples[std::size_t(k)].disk >= 0) path.push_back({axes_.x(k + 1), path.back().y});
+            if (k > 0 && arm_.samples[std::size_t(k)].meets_light()) path.push_back({axes_.x(k + 1), path.back().y});
             path.push_back({axes_.x(k + 1), y});
         }
         const Colour ink = data_.ink(arm_.arm);
@@ -137,7 +137,7 @@ std::vector<Cue> Firefly::cues() const {
     std::vector<Cue> out;
     out.push_back({0.3, Words("The same pixel by ", data_.arm(arm_.arm), ", draw after draw.")});
     out.push_back({giant,
-        Words("Draw ", count(arm_.largest + 1, of), s.disk >= 0 ? " meets the light" : " is the largest",
+        Words("Draw ", count(arm_.largest + 1, of), s.meets_light() ? " meets the light" : " is the largest",
             " and weighs ", figure(double(s.x), 4, of), ".")});
     out.push_back({apart, Words("f, L and cos θ are as they should be.")});
     out.push_back(

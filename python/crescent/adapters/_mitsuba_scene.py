@@ -14,10 +14,13 @@ from typing import Any
 import numpy as np
 
 from ..experiments import Experiment, load
-from ..scenes import write_mesh, write_sky
+from ..scenes import write_mesh, write_sky, write_texture
 
 #: One table of the experiment file: its keys in order.
 Table = dict[str, Any]
+
+
+_not_mapped = " that is no bitmap with filter_type nearest and wrap_mode repeat on a mesh with texture coordinates"
 
 
 class UnsupportedScene(ValueError):
@@ -54,15 +57,49 @@ def _rgb(params: Any, key: str, default: float) -> list[float] | None:
     return [float(v) for v in (np.repeat(value, 3) if value.size == 1 else value[:3])]
 
 
+def _texels(params: Any, key: str) -> Any:
+    """The texels of a bitmap (height, width, channels), linear; None: it is another texture."""
+    if key + ".data" not in params:
+        return None
+    stored = np.array(params[key + ".data"])
+    pixels = stored / np.iinfo(stored.dtype).max if stored.dtype.kind in "ui" else stored.astype(float)
+    if " raw = 0" in str(params.properties[key + ".data"][2]) and stored.dtype.kind in "ui":  # sRGB, IEC 61966-2-1
+        pixels = np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4)
+    return np.clip(pixels, 0, 1)
+
+
+def _is_nearest(mi: Any, params: Any, key: str, texels: Any) -> bool:
+    """Whether Mitsuba looks up the nearest of these texels, repeated: at places inside and outside of [0, 1]^2, because
+    a loaded bitmap does not say how it is filtered."""
+    bitmap, si = params.properties[key + ".data"][2], mi.SurfaceInteraction3f()
+    height, width, channels = texels.shape
+    for u, v in np.random.default_rng(7).uniform(-1, 2, (64, 2)):
+        si.uv = mi.Point2f(float(u), float(v))
+        seen = np.ravel(np.array(bitmap.eval_1(si) if channels == 1 else bitmap.eval(si)))[:channels]
+        if not np.allclose(seen, texels[int(v % 1 * height), int(u % 1 * width)], atol=1e-4):
+            return False
+    return True
+
+
+def _texture(made: _Made, params: Any, key: str, name: str, what: str) -> str | None:
+    """The file of a bitmap as a texture of a mesh; None: it is none that has a counterpart."""
+    texels = _texels(params, key)
+    if texels is None or not _is_nearest(made.mi, params, key, texels):
+        return None
+    file, grey = f"{name}-{what}.exr", texels.shape[2] == 1 or what == "alpha"
+    made.files[file] = lambda path: write_texture(path, texels[..., 0] if grey else texels[..., :3])
+    return file
+
+
 def _mean_of_texture(params: Any, key: str) -> list[float]:
-    pixels = np.array(params[key + ".data"], float)
-    return [float(v) for v in np.atleast_1d(pixels.reshape(-1, pixels.shape[-1]).mean(axis=0))[:3]]
+    texels = _texels(params, key)
+    return [float(v) for v in texels.reshape(-1, texels.shape[-1]).mean(axis=0)[:3]]
 
 
 def _colour(made: _Made, params: Any, key: str, default: float, name: str) -> list[float]:
     colour = _rgb(params, key, default)
     if colour is None:
-        made.refuse(f"{name}: a texture of {key.rsplit('.', 1)[-1]}", "its mean is used")
+        made.refuse(f"{name}: a texture of {key.rsplit('.', 1)[-1]}{_not_mapped}", "its mean is used")
         colour = _mean_of_texture(params, key) if key + ".data" in params else [default] * 3
         colour = colour * 3 if len(colour) == 1 else colour
     return [min(1.0, max(0.0, v)) for v in colour]
@@ -72,8 +109,37 @@ def _number(params: Any, key: str, default: float) -> float:
     return float(np.ravel(np.array(params[key], float))[0]) if key in params else default
 
 
-def _material(made: _Made, bsdf: Any, name: str) -> Table:
-    """The keys rho_d, rho_s, brdf and alpha or s."""
+def _diffuse(made: _Made, params: Any, key: str, name: str, textured: bool) -> Table:
+    """rho_d, and its texture on a mesh that can have one."""
+    file = _texture(made, params, key, name, "rho_d") if textured else None
+    if file:
+        return {"rho_d": [1.0, 1.0, 1.0], "rho_d_texture": file}
+    return {"rho_d": _colour(made, params, key, 0.5, name)}
+
+
+def _roughness(made: _Made, params: Any, prefix: str, name: str, textured: bool) -> Table:
+    """alpha, and its texture on a mesh that can have one."""
+    if prefix + "alpha.data" in params:
+        texels = _texels(params, prefix + "alpha")
+        file = _texture(made, params, prefix + "alpha", name, "alpha") if textured and (texels > 0).all() else None
+        if file:
+            return {"alpha": 1.0, "alpha_texture": file}
+    alpha = []
+    for key in ("alpha", "alpha_u", "alpha_v"):
+        if prefix + key + ".data" in params:
+            made.refuse(f"{name}: a texture of {key}{_not_mapped}", "its mean is used")
+            alpha.append(max(1e-4, _mean_of_texture(params, prefix + key)[0]))
+        else:
+            alpha.append(_number(params, prefix + key + ".value", 0.1))
+    if any(k.startswith(prefix + "alpha_u.") for k in params.keys()):
+        if alpha[1] != alpha[2]:
+            made.refuse(f"{name}: an anisotropic roughness", "the geometric mean is used")
+        return {"alpha": math.sqrt(alpha[1] * alpha[2])}
+    return {"alpha": alpha[0]}
+
+
+def _material(made: _Made, bsdf: Any, name: str, textured: bool) -> Table:
+    """The keys rho_d, rho_s, brdf and alpha or s; textures where the shape has coordinates for them."""
     params, text, kind = made.mi.traverse(bsdf), str(bsdf), _kind(bsdf)
     prefix = ""
     if kind == "TwoSided":
@@ -81,22 +147,19 @@ def _material(made: _Made, bsdf: Any, name: str) -> Table:
         text = text[text.index("=") + 1 :].strip()
         kind = _kind(text)
     if kind == "SmoothDiffuse":
-        return {"rho_d": _colour(made, params, prefix + "reflectance", 0.5, name)}
+        return _diffuse(made, params, prefix + "reflectance", name, textured)
     if kind == "RoughConductor":
         values = np.ravel(np.array(params[prefix + "k.value"], float)) if prefix + "k.value" in params else np.zeros(1)
         eta = np.ravel(np.array(params[prefix + "eta.value"], float)) if prefix + "eta.value" in params else np.zeros(1)
         if eta.any() or (values.any() and not np.allclose(values, 1)):
             made.refuse(f"{name}: the Fresnel factor of a conductor", "it is 1")
         beckmann = "distribution = beckmann" in text
-        alpha = [_number(params, prefix + key, 0.1) for key in ("alpha.value", "alpha_u.value", "alpha_v.value")]
-        if prefix + "alpha_u.value" in params and alpha[1] != alpha[2]:
-            made.refuse(f"{name}: an anisotropic roughness", "the geometric mean is used")
-        wide = alpha[0] if prefix + "alpha.value" in params else math.sqrt(alpha[1] * alpha[2])
         specular = _colour(made, params, prefix + "specular_reflectance", 1.0, name)
-        return {"rho_d": [0.0, 0.0, 0.0], "rho_s": specular, "brdf": "beckmann" if beckmann else "ggx", "alpha": wide}
+        lobe: Table = {"rho_d": [0.0, 0.0, 0.0], "rho_s": specular, "brdf": "beckmann" if beckmann else "ggx"}
+        return lobe | _roughness(made, params, prefix, name, textured)
     if kind == "Phong":
         return {
-            "rho_d": _colour(made, params, prefix + "diffuse_reflectance", 0.5, name),
+            **_diffuse(made, params, prefix + "diffuse_reflectance", name, textured),
             "rho_s": _colour(made, params, prefix + "specular_reflectance", 0.2, name),
             "brdf": "phong",
             "s": _number(params, prefix + "exponent.value", 30.0),
@@ -128,17 +191,22 @@ def _add_mesh(made: _Made, shape: Any, name: str) -> None:
         positions = np.array(params["vertex_positions"], np.float32).reshape(-1, 3)
         triangles = np.array(params["faces"], np.int64).reshape(-1, 3)
         normals = np.array(params["vertex_normals"], np.float32).reshape(-1, 3) if "vertex_normals" in params else None
+        uv = np.array(params["vertex_texcoords"], np.float32).reshape(-1, 2) if "vertex_texcoords" in params else None
+        if uv is not None and len(uv) != len(positions):
+            uv = None
         if normals is not None and (len(normals) != len(positions) or not (np.linalg.norm(normals, axis=1) > 0).all()):
             normals = None
     else:  # a rectangle: [-1, 1]^2 at z = 0, its front towards +z
         to_world = _matrix(made, shape)
         corners = np.array([[-1, -1, 0, 1], [1, -1, 0, 1], [1, 1, 0, 1], [-1, 1, 0, 1]], float)
         positions, normals = (corners @ to_world.T)[:, :3], None
-        triangles = np.array([[0, 1, 2], [0, 2, 3]])
+        triangles, uv = np.array([[0, 1, 2], [0, 2, 3]]), np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
         if np.linalg.det(to_world[:3, :3]) < 0:
             triangles = triangles[:, ::-1]
-    made.files[f"{name}.mesh"] = lambda path: write_mesh(path, positions, triangles, normals)
-    table: Table = {"file": f"{name}.mesh", **_material(made, shape.bsdf(), name)}
+    if uv is not None:  # v runs down in Mitsuba's images
+        uv = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
+    made.files[f"{name}.mesh"] = lambda path: write_mesh(path, positions, triangles, normals, uv)
+    table: Table = {"file": f"{name}.mesh", **_material(made, shape.bsdf(), name, uv is not None)}
     if shape.emitter() is not None:
         radiance = _radiance(made, shape.emitter())
         if radiance is None:
@@ -160,7 +228,8 @@ def _add_sphere(made: _Made, shape: Any, name: str) -> None:
             made.tables[f"lights.{name}"] = {"kind": "sphere", **place, "radiance": radiance}
             return None
         made.refuse(f"{name}: a texture of the emitted radiance", "it emits nothing")
-    made.tables[f"shapes.{name}"] = {"kind": "sphere", **place, "occludes": True, **_material(made, shape.bsdf(), name)}
+    made.tables[f"shapes.{name}"] = {"kind": "sphere", **place, "occludes": True}
+    made.tables[f"shapes.{name}"] |= _material(made, shape.bsdf(), name, False)
     return None
 
 
@@ -239,7 +308,8 @@ def mitsuba_scene(
 
     scene: the path of an XML file, a dictionary as mi.load_dict takes it, or a loaded mi.Scene. Meshes, rectangles and
     spheres; area emitters of one radiance, envmap and constant; the BSDFs diffuse, roughconductor without a Fresnel
-    factor and phong, also two-sided; a perspective sensor. Anything else raises :class:`UnsupportedScene`, which lists
+    factor and phong, also two-sided; on meshes, bitmaps of the nearest texel, repeated, for the diffuse reflectance and
+    alpha; a perspective sensor. Anything else raises :class:`UnsupportedScene`, which lists
     every such part, and nothing is written; with `approximate` each is replaced, with a warning that says by what.
     Mitsuba interpolates between the texels of an envmap; here each texel is constant. `samplers` that the scene has no
     light for are left out.

@@ -19,7 +19,7 @@ namespace {
 std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles) {
     auto out = std::make_shared<Surroundings>();
     if (sky) {
-        auto image = std::make_shared<SkyImage>();
+        auto image = std::make_shared<RgbImage>();
         image->width = 16, image->height = 8;
         for (int row = 0; row < 8; ++row)
             for (int column = 0; column < 16; ++column) {

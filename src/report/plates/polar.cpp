@@ -137,24 +137,40 @@ template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a
 /// Returns the direction `angle` radians from n, in the plane of incidence.
 Vec3d in_incidence(double angle) { return {math::sin(angle), 0, math::cos(angle)}; }
 
-/// Returns how far a pixel is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite if
-/// no light reaches it or R is n.
-double off_the_plane(const OpenPixel& pixel, double tilt) {
+/// Returns directions from a pixel to light that a sampler aims at: to each light that faces the pixel, and of its
+/// first draws to the sky or to emitting triangles the densest.
+std::vector<Vec3d> directions_to_light(const OpenPixel& pixel, const SamplerInfo& sampler) {
+    std::vector<Vec3d> out;
+    if (sampler.reaches.lights)
+        for (const PixelLight& light : pixel.lights())
+            if (light.faces) out.push_back(light.towards);
+    if (!sampler.reaches.sky && !sampler.reaches.triangles) return out;
+    constexpr std::uint64_t draws = 32;
+    const std::vector<PixelSample> samples = pixel.samples(sampler.name, draws, 1);
+    const auto density = [](const PixelSample& s) { return s.around && s.x > 0 ? s.pdf : 0.0f; };
+    const auto densest = std::ranges::max_element(samples, {}, density);
+    if (densest != samples.end() && density(*densest) > 0) out.push_back(widen(densest->wi));
+    return out;
+}
+
+/// Returns how far a pixel is from one with R at `tilt` and light that the sampler aims at in the plane of incidence,
+/// in radians; infinite if no such light reaches it or R is n.
+double off_the_plane(const OpenPixel& pixel, const SamplerInfo& sampler, double tilt) {
     const Vec3d r = pixel.mirror();
     const double out = math::hypot(r.x, r.y);
     double least = std::numeric_limits<double>::infinity();
     if (!(out > 0.01)) return least;
-    for (const PixelLight& light : pixel.lights())
-        if (light.faces && light.towards.z > 0.05)
+    for (const Vec3d& towards : directions_to_light(pixel, sampler))
+        if (towards.z > 0.05)
             least = std::min(least,
                 std::fabs(math::atan2(out, r.z) - tilt) +
-                    std::fabs(math::asin((r.x * light.towards.y - r.y * light.towards.x) / out)));
+                    std::fabs(math::asin((r.x * towards.y - r.y * towards.x) / out)));
     return least;
 }
 
 /// Selects among a few thousand pixels that see the shape whose exponent is the experiment's, or any shape if there is
 /// none.
-std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double tilt) {
+std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, const SamplerInfo& sampler, double s, double tilt) {
     const Scene scene = Scene(e).with_s(s);
     const auto surface = e.surface_of_s();
     const std::ptrdiff_t wanted = surface ? static_cast<std::ptrdiff_t>(*surface) : -1;
@@ -167,7 +183,7 @@ std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double
             const auto hit = scene.primary(i, j);
             if (!hit || (wanted >= 0 && hit->shape != wanted)) continue;
             auto pixel = std::make_shared<const OpenPixel>(scene, i, j);
-            const double off = off_the_plane(*pixel, tilt);
+            const double off = off_the_plane(*pixel, sampler, tilt);
             if (off < least) least = off, best = std::move(pixel);
         }
     return best;
@@ -229,7 +245,7 @@ void Density::find_peak() {
 }
 
 void Density::query_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
-    const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, s, tilt_);
+    const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, *find_arm_info(sampler), s, tilt_);
     if (!pixel) return;
     const Vec3d r = pixel->mirror();
     const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // from n towards R

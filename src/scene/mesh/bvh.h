@@ -30,15 +30,13 @@ inline constexpr double unit_roundoff = 0x1p-24;  // of single precision: the la
 struct Bounds {
     Vec3f low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
 
-    void add(Vec3f p) {
-        const auto least = [](float a, float b) { return b < a ? b : a; };
-        const auto most = [](float a, float b) { return b > a ? b : a; };
-        low = {least(low.x, p.x), least(low.y, p.y), least(low.z, p.z)};
-        high = {most(high.x, p.x), most(high.y, p.y), most(high.z, p.z)};
-    }
+    void add(Vec3f p) { add(Bounds{p, p}); }
+    /// An empty box adds nothing.
     void add(const Bounds& b) {
-        add(b.low);
-        add(b.high);
+        const auto least = [](float x, float y) { return y < x ? y : x; };
+        const auto most = [](float x, float y) { return y > x ? y : x; };
+        low = {least(low.x, b.low.x), least(low.y, b.low.y), least(low.z, b.low.z)};
+        high = {most(high.x, b.high.x), most(high.y, b.high.y), most(high.z, b.high.z)};
     }
 };
 

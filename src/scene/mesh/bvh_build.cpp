@@ -1,6 +1,7 @@
 // Builds a tree over boxes: binned SAH (Wald 2007) into two children, then the children of each node are opened until
-// it has eight, the one of the largest area first. The cost of a leaf counts groups of four, because four triangles are
-// tested at once. Each subtree has a range of the array of its own, so that threads do not change the result.
+// it has eight: the one of the largest area first, but subtrees that fill one node last, and only whole. The cost of a
+// leaf counts groups of four, because four triangles are tested at once. Each subtree has a range of the array of its
+// own, so that threads do not change the result.
 #include "scene/mesh/bvh_tree.h"
 
 #include <algorithm>
@@ -27,6 +28,7 @@ float area(const Bounds& b) {
 struct Split {
     Bounds box;
     std::uint32_t begin = 0, count = 0, left = 0, right = 0;  // left 0: a leaf
+    std::uint32_t leaves = 1;                                 // below it
 };
 
 struct Bin {
@@ -88,6 +90,7 @@ private:
         const auto second = [&] { split(right, middle, end, depth + 1); };
         if (end - begin >= parallel_from) side_by_side(first, second);
         else first(), second();
+        node.leaves = splits_[left].leaves + splits_[right].leaves;
     }
 
     /// Orders a range by the cheapest split between bins and returns where its second part begins; halves the range if
@@ -148,19 +151,32 @@ private:
         return best;
     }
 
+    /// Returns which child of a node becomes two, `count`: none. First those with more leaves than a node has children,
+    /// the widest; then those whose leaves all have room in this node, the ones with the fewest, so that nodes are
+    /// full.
+    std::size_t to_open(const std::array<std::uint32_t, children>& opened, std::size_t count) const {
+        std::size_t widest = count, least = count;
+        for (std::size_t c = 0; c < count; ++c) {
+            const Split& child = splits_[opened[c]];
+            if (!child.left) continue;
+            if (child.leaves > children) {
+                if (widest == count || area(child.box) > area(splits_[opened[widest]].box)) widest = c;
+            } else if (count - 1 + child.leaves <= children) {
+                if (least == count || child.leaves < splits_[opened[least]].leaves) least = c;
+            }
+        }
+        return widest < count ? widest : least;
+    }
+
     /// Writes splits_[at], and all below it, into nodes[to] and new nodes.
     void emit(BvhTree& tree, std::size_t at, std::size_t to) const {
         std::array<std::uint32_t, children> opened{static_cast<std::uint32_t>(at)};
         std::size_t count = 1;
         while (count < children) {
-            std::size_t widest = count;
-            for (std::size_t c = 0; c < count; ++c)
-                if (splits_[opened[c]].left &&
-                    (widest == count || area(splits_[opened[c]].box) > area(splits_[opened[widest]].box)))
-                    widest = c;
-            if (widest == count) break;
-            const Split& inner = splits_[opened[widest]];
-            opened[widest] = inner.left, opened[count++] = inner.right;
+            const std::size_t c = to_open(opened, count);
+            if (c == count) break;
+            const Split& inner = splits_[opened[c]];
+            opened[c] = inner.left, opened[count++] = inner.right;
         }
         for (std::size_t c = 0; c < children; ++c) {
             const Bounds box = c < count ? splits_[opened[c]].box : Bounds{};

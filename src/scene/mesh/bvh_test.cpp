@@ -108,9 +108,41 @@ TEST(Bvh, BuildsTheSameTreeOnAnyNumberOfThreads) {
     EXPECT_EQ(found, std::vector<int>(boxes.size(), 1));
 }
 
+/// Each square of a grid is there twice, as for the two triangles of a quad: a leaf has two squares, leaves do not
+/// overlap, and nodes are more than half full.
+TEST(Bvh, DividesAGridIntoSquares) {
+    constexpr std::size_t side = 128;
+    std::vector<Bounds> boxes;
+    for (std::size_t i = 0; i < side * side; ++i) {
+        const Vec3f corner = {static_cast<float>(i % side), 0, static_cast<float>(i / side)};
+        boxes.insert(boxes.end(), 2, Bounds{corner, corner + Vec3f{1, 0, 1}});
+    }
+    const BvhTree tree = build_tree(boxes);
+    double covered = 0;
+    for (const Leaf& leaf : tree.leaves) {
+        Bounds box;
+        for (const std::uint32_t item : leaf)
+            if (item != no_item) box.add(boxes[item]);
+        covered += static_cast<double>((box.high.x - box.low.x) * (box.high.z - box.low.z));
+    }
+    EXPECT_LT(covered, 1.1 * side * side);
+    EXPECT_LT(tree.leaves.size(), 1.1 * side * side / 2);
+    EXPECT_LT(tree.nodes.size(), tree.leaves.size() / 5);
+}
+
+TEST(Bvh, AnEmptyBoxAddsNothing) {
+    Bounds box;
+    box.add(Vec3f{1, 2, 3});
+    box.add(Bounds{});
+    EXPECT_EQ(box.high.x, 1);
+    EXPECT_EQ(box.low.z, 3);
+}
+
 TEST(Bvh, TakesAtMostAHundredBytesPerTriangle) {
     const Mesh mesh = sphere_mesh(200, 100);
     const auto pack = make_pack(mesh);
+    const auto soup = make_pack(test::soup_mesh(40000, 0.02f, 5));  // three corners of its own for each triangle
+    EXPECT_LE(soup->bytes(), 101 * soup->mesh.triangles.size());
     // Without smooth normals and texture coordinates, which are 10 bytes of a triangle.
     const std::size_t shading = pack->mesh.positions.size() * (sizeof(Vec3f) + sizeof(Vec2<float>));
     EXPECT_LE(pack->bytes() - shading, 100 * pack->mesh.triangles.size());

@@ -43,7 +43,7 @@ inline float axis_of(Vec3f v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.
 inline float largest_of(Vec3f v) { return std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)); }
 
 /// Boxes and what is in them: a node (> 0), a leaf (its complement ~c), or nothing (an empty box).
-struct alignas(64) BvhNode {
+struct alignas(32) BvhNode {
     std::array<std::array<std::array<F4, children / 4>, 3>, 2> side;  // low and high, by axis and child
     std::array<std::int32_t, children> child;
 };

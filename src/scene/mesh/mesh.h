@@ -50,7 +50,7 @@ std::shared_ptr<MeshPack> make_pack(Mesh mesh);
 //   uint32 vertices, triangles
 //   uint32 flags          1: normals, 2: texture coordinates
 //   uint32 reserved       0
-//   uint64 hash           XXH3 of all that follows
+//   uint64 hash           XXH3 of all that follows; 0: not stated, and not checked
 //   float positions[vertices][3]
 //   float normals[vertices][3]     if flagged
 //   float uv[vertices][2]          if flagged

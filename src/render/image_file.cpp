@@ -1,12 +1,11 @@
 // Rows are read into one interleaved array, converted to float by OpenEXR, on this thread.
-#include "render/sky_file.h"
+#include "render/image_file.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
-#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <fmt/format.h>
 
@@ -39,15 +38,26 @@ std::array<std::string, 3> channels_of(const Imf::Header& header, const std::str
     return names;
 }
 
+/// Returns what an image of this size is not; "" if it may be read.
+using WhyNot = std::string (*)(std::int64_t width, std::int64_t height);
+
+std::string why_no_sky_of(std::int64_t width, std::int64_t height) {
+    if (width >= 2 && width <= widest_sky && width == 2 * height) return "";
+    return fmt::format(
+        "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} x {}", widest_sky,
+        highest_sky, width, height);
+}
+
+std::string why_no_texture_of(std::int64_t width, std::int64_t height) {
+    if (width >= 1 && width <= widest_texture && height >= 1 && height <= widest_texture) return "";
+    return fmt::format("expected an image of at most {0} x {0} texels, found {1} x {2}", widest_texture, width, height);
+}
+
 /// The size from the header, before anything else is read.
-std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path) {
+std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path, WhyNot why_not) {
     const auto side = [](int low, int high) { return std::int64_t{high} - low + 1; };
     const std::int64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
-    if (width < 2 || width > widest_sky || width != 2 * height)
-        throw InputError({path, 0, 0},
-            fmt::format("expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} "
-                        "x {}",
-                widest_sky, highest_sky, width, height));
+    if (const std::string why = why_not(width, height); !why.empty()) throw InputError({path, 0, 0}, why);
     return {static_cast<int>(width), static_cast<int>(height)};
 }
 
@@ -56,13 +66,13 @@ std::uint64_t hash_of(int width, int height, const std::vector<float>& rgb) {
     return XXH3_64bits_withSeed(rgb.data(), rgb.size() * sizeof(float), XXH3_64bits(size, sizeof size));
 }
 
-std::shared_ptr<const SkyImage> read(const std::string& path) {
+std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_not) {
     Imf::MultiPartInputFile file(path.c_str(), 0);
     const Imf::Header& header = file.header(0);
     if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
         throw InputError({path, 0, 0}, "expected a flat image, found a deep one");
     const Imath::Box2i window = header.dataWindow();
-    const auto [width, height] = size_of(window, path);
+    const auto [width, height] = size_of(window, path, why_not);
     const std::array<std::string, 3> names = channels_of(header, path);
     std::vector<float> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     Imf::InputPart part(file, 0);
@@ -77,48 +87,29 @@ std::shared_ptr<const SkyImage> read(const std::string& path) {
     part.setFrameBuffer(buffer);
     part.readPixels(window.min.y, window.max.y);
     for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
-    return sky_image(width, height, std::move(rgb));
-}
-
-}  // namespace
-
-std::shared_ptr<const SkyImage> sky_image(int width, int height, std::vector<float> rgb) {
-    auto out = std::make_shared<SkyImage>();
+    auto out = std::make_shared<RgbImage>();
     out->hash = hash_of(width, height, rgb);
     out->width = width, out->height = height, out->rgb = std::move(rgb);
     return out;
 }
 
-std::shared_ptr<const SkyImage> read_sky(const std::string& path) {
+std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
     errno = 0;
     if (!std::ifstream(path, std::ios::binary))
         throw InputError(
             {path, 0, 0}, fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
     try {
-        return read(path);
+        return read_parts(path, why_not);
     } catch (const InputError&) { throw; } catch (const std::exception& error) {
         throw InputError({path, 0, 0}, fmt::format("expected an OpenEXR image: {}", error.what()));
     }
 }
 
-void write_sky(const std::string& path, const SkyImage& image) {
-    try {
-        Imf::Header header(image.width, image.height);
-        Imf::FrameBuffer buffer;
-        constexpr std::size_t pixel = 3 * sizeof(float);
-        const float* const first = image.rgb.data();
-        const char* names[] = {"R", "G", "B"};
-        for (std::size_t c = 0; c < 3; ++c) {
-            header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-            char* at = reinterpret_cast<char*>(const_cast<float*>(first + c));
-            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, at, pixel, pixel * static_cast<std::size_t>(image.width)));
-        }
-        Imf::OutputFile file(path.c_str(), header, 0);
-        file.setFrameBuffer(buffer);
-        file.writePixels(image.height);
-    } catch (const std::exception& error) { throw OutputError("cannot write " + path + ": " + error.what()); }
-}
+}  // namespace
 
-std::string content_hash(const SkyImage& image) { return fmt::format("{:016x}", image.hash); }
+std::shared_ptr<const RgbImage> read_sky(const std::string& path) { return read(path, why_no_sky_of); }
+std::shared_ptr<const RgbImage> read_texture(const std::string& path) { return read(path, why_no_texture_of); }
+
+std::string content_hash(const RgbImage& image) { return fmt::format("{:016x}", image.hash); }
 
 }  // namespace crescent::inline render

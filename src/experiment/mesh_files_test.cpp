@@ -1,0 +1,80 @@
+// The files of meshes: read once, their content as the identity, with and without them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "experiment/experiment.h"
+#include "tests/support/meshes.h"
+
+namespace crescent::inline experiment {
+namespace {
+
+class MeshFiles : public testing::Test {
+protected:
+    MeshFiles() {
+        std::filesystem::create_directories(folder_);
+        write("ball.mesh", test::sphere_mesh(9, 7));
+        write("other.mesh", test::sphere_mesh(8, 7));
+    }
+    ~MeshFiles() override { std::filesystem::remove_all(folder_); }
+
+    void write(const char* name, const Mesh& mesh) const {
+        std::ofstream(folder_ / name, std::ios::binary) << mesh_file(mesh);
+    }
+    Experiment parsed(const std::string& text, const std::vector<std::string>& overrides = {}) const {
+        return parse(text, (folder_ / "e.toml").string(), overrides);
+    }
+
+    const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "crescent_mesh_files";
+    const std::string text_ = R"(
+[image]
+width = 8
+height = 8
+[camera]
+eye = [0, 0, 5]
+target = [0, 0, 0]
+vfov_deg = 40
+[fill]
+radiance = [1, 1, 1]
+[meshes.a]
+file = "ball.mesh"
+rho_d = [0.5, 0.5, 0.5]
+[meshes.b]
+file = "ball.mesh"
+rho_d = [0.5, 0.5, 0.5]
+translate = [1, 0, 0]
+[arms.cosine]
+n = [4]
+)";
+};
+
+TEST_F(MeshFiles, AreReadAndBuiltOnceWhileTheyAreInUse) {
+    const Experiment first = with_files(parsed(text_)), again = with_files(parsed(canonical_text(first)));
+    EXPECT_EQ(first.meshes[0].pack, first.meshes[1].pack);
+    EXPECT_EQ(first.meshes[0].pack, again.meshes[0].pack);
+    write("ball.mesh", test::sphere_mesh(10, 7));
+    EXPECT_NE(with_files(parsed(text_)).meshes[0].pack, first.meshes[0].pack);
+}
+
+TEST_F(MeshFiles, HaveAContentThatStandsForThem) {
+    const Experiment whole = with_files(parsed(text_));
+    ASSERT_TRUE(whole.meshes[0].content);
+    EXPECT_EQ(hash(parsed(canonical_text(whole))), hash(whole));  // without reading the files
+    const Experiment other = with_files(parsed(canonical_text(whole), {"meshes.b.file=other.mesh"}));
+    EXPECT_NE(other.meshes[1].content, whole.meshes[1].content);
+    EXPECT_NE(hash(other), hash(whole));
+    write("ball.mesh", test::sphere_mesh(10, 7));
+    try {
+        with_files(parsed(canonical_text(whole)));
+        FAIL() << "another mesh is read";
+    } catch (const InputError& error) {
+        EXPECT_THAT(
+            error.what(), testing::HasSubstr("meshes.a.content: expected a mesh and textures with the content"));
+        EXPECT_GT(error.diagnostics().front().at.line, 0u);
+    }
+}
+
+}  // namespace
+}  // namespace crescent::inline experiment
