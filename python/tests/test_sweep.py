@@ -369,6 +369,26 @@ def test_a_combination_comes_with_the_samplers_that_it_is_of(tiny, tmp_path):
     )
 
 
+def test_a_function_for_the_weights_travels_and_is_part_of_the_identity(tiny, tmp_path):
+    def swept():
+        made = crescent.sweep(e, over={"ball.s": [8]}, seeds=1, out=tmp_path / "out", workers=1)
+        assert not made.failed
+        rows = [row for row in made.to_arrow().to_pylist() if row["metric"] == "rmse_frame"]
+        return {(row["arm"], row["n"]): row["value"] for row in rows}
+
+    e = crescent.load(tiny)
+    e.samplers["power"] = crescent.mis("cosine", "light-area", heuristic="power")
+    e.samplers["own"] = crescent.mis("cosine", "light-area", weights=lambda wo, wi, p: p / p.sum(1, keepdims=True))
+    first = swept()
+    e.samplers["own"] = crescent.mis("cosine", "light-area", weights=lambda wo, wi, p: p**2 / (p**2).sum(1, keepdims=True))
+    second = swept()
+    for (arm, n), value in second.items():
+        if arm == "own":
+            assert value == pytest.approx(second["power", n], rel=1e-6) and value != first[arm, n]
+        else:
+            assert value == first[arm, n]
+
+
 def children_of(pid):
     """The processes below a process."""
     found = subprocess.run(["ps", "-eo", "pid=,ppid=,args="], text=True, capture_output=True).stdout

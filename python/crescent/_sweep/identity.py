@@ -15,6 +15,7 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import CellType
 from typing import Any
 
 from .. import _crescent
@@ -107,6 +108,15 @@ def _of_plugin(where: str) -> tuple[Any, Code]:
     return [hashlib.sha256(data).hexdigest()], _code_of({Path(where).name: data}, Path(where).name)
 
 
+def _of_function(call: Any) -> list[Any]:
+    """What tells functions of one name in one file apart: the line, and the numbers and texts that they enclose."""
+    function = inspect.unwrap(call)
+    cells = [cell.cell_contents for cell in getattr(function, "__closure__", None) or () if cell != CellType()]
+    kept = [repr(value) for value in cells if isinstance(value, (int, float, str))]
+    code = getattr(function, "__code__", None)
+    return [code and code.co_firstlineno, kept]
+
+
 def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
     """Identity and code of a sampler, or of a combination with its weights, in memory, which is sent by value."""
     import cloudpickle  # type: ignore[import-untyped,unused-ignore]
@@ -123,7 +133,7 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
             modules.add(module)
         where = source_of(own[0] if callable(own[0]) else call)
         if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
-            texts.append(_of_python(where)[0])
+            texts.append([*_of_python(where)[0], _of_function(call)])
             continue
         try:
             texts.append(inspect.getsource(inspect.unwrap(call)))
