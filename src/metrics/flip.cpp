@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/parallel.h"
 #include "math/functions.h"
+#include "math/simd/scalar.h"
 #include "math/statistics.h"
 
 namespace crescent::inline metrics {
@@ -19,8 +19,6 @@ namespace {
 using Plane = std::vector<float>;
 using ColourPlanes = std::array<Plane, 3>;
 using Triple = std::array<double, 3>;
-
-constexpr double pi = std::numbers::pi;
 
 // --- colour spaces: linear Rec.709 -> XYZ (IEC 61966-2-1) -> YyCxCz and CIELAB, white (1, 1, 1) ---------------------
 
