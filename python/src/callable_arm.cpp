@@ -176,7 +176,7 @@ void CallableArm::density(const ExternalBatch& batch, std::span<const Vec3d> wi,
     });
 }
 
-void CallableArm::mis_weights(
+void CallableArm::weigh(
     const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<const double> p, std::span<double> out) const {
     raised_->check();
     const std::size_t rows = wi.size(), samplers = p.size() / rows;

@@ -44,7 +44,7 @@ public:
     bool has_density() const override { return has_density_; }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override;
     bool has_weights() const override { return has_weights_; }
-    void mis_weights(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<const double> p,
+    void weigh(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<const double> p,
         std::span<double> out) const override;
 
 private:

@@ -195,7 +195,7 @@ void external_weights(const ExternalSampler& sampler, const PointRows& at, std::
     in_batches(sampler, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
         directions.clear();
         for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
-        sampler.mis_weights(
+        sampler.weigh(
             batch, directions, p.subspan(first * of_row, rows * of_row), out.subspan(first * of_row, rows * of_row));
     });
 }

@@ -83,11 +83,11 @@ public:
         const ExternalBatch& /*batch*/, std::span<const Vec3<double>> /*wi*/, std::span<double> out) const {
         for (double& p : out) p = 0;
     }
-    /// Whether it weights the samplers of a multiple importance sampling, by mis_weights(), instead of drawing.
+    /// Whether it weights the samplers of a multiple importance sampling, by weigh(), instead of drawing.
     virtual bool has_weights() const { return false; }
     /// Writes the weight of each of K samplers for each wi, [row][K], from their densities p, [row][K]; the batch has
     /// no u. Threads and exceptions as for draw().
-    virtual void mis_weights(const ExternalBatch& /*batch*/, std::span<const Vec3<double>> /*wi*/,
+    virtual void weigh(const ExternalBatch& /*batch*/, std::span<const Vec3<double>> /*wi*/,
         std::span<const double> /*p*/, std::span<double> /*out*/) const {}
     /// Returns itself if it is a combination of samplers (render/combination.h), else null.
     virtual const Combination* as_combination() const { return nullptr; }
