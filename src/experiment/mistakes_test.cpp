@@ -242,7 +242,7 @@ const Mistake checks[] = {
     {"< rmse.H(cosine)", "< furnace(black)", 52, 12, "no furnace 'black': expected one of white"},
     {"< rmse.H(cosine)", "< shape_pixels(bal)", 52, 12, "no shape 'bal'"},
     {"< rmse.H(cosine)", "< plate_bytes(par)", 52, 12, "did you mean 'pair'?"},
-    {"< rmse.H(cosine)\"", "< tail.H(cosine)\"\nok.over = \"median\"", 52, 12, "at the experiment's seed alone"},
+    {"< rmse.H(cosine)\"", "< tail.H(cosine)\"\nok.over = \"median\"", 52, 12, "tail is not measured at every seed"},
     {"ok.check = \"rmse.H(phong) < rmse.H(cosine)\"", "ok.over = \"median\"", 52, 1,
         "missing key 'check' in [assertions.ok]"},
     {"ok.check = \"rmse.H(phong) < rmse.H(cosine)\"", "ok.check = \"bad(phong) == 0\"\nok.over = \"medium\"", 53, 11,
