@@ -114,11 +114,11 @@ private:
             if (source_.estimates) restore_zeros();
             compare_pdf(u);
         }
-        if (with_f) compare_weights(u, set);
-        if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         points_.resize(w_.size()), leaf_.resize(w_.size());
         for (std::size_t k = 0; k < w_.size(); ++k) points_[k] = to_chart(w_[k]);
         plan_.tree.find(points_, leaf_);
+        if (with_f) compare_weights(u, set);
+        if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (is_direction(draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
             else if (set < 0) ++to_.checks.nothing;
@@ -235,7 +235,6 @@ private:
         const bool derived = source_.has_density();
         // The weight may be an estimate too; its mean is tested.
         const bool random = source_.estimates || source_.f_estimates || source_.traits.own_random;
-        const std::size_t leaf = derived ? 0 : plan_.tree.find(to_chart(w_[k]));
         bool wrong = false, untrue = false;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
@@ -245,7 +244,7 @@ private:
             untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
             if (set >= 0) continue;
             to_.mean[channel].add(w * mean_bridge(y, p_[k], plan_.usual[channel], is_bridged(source_)));
-            if (!derived) to_.weight_leaves[leaf][channel].add(w);
+            if (!derived) to_.weight_leaves[leaf_[k]][channel].add(w);
         }
         ++to_.checks.weights;
         if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
@@ -292,12 +291,12 @@ private:
         }
         to_.met.push_back({key_of(w), density});
         LeafIntegral& integral = integrals_.leaves[l];
-        if (p > alike * integral.top) complete(integral, w, v, p);
+        if (p > alike * integral.top) complete(integral, points_[k], v, p);
     }
 
     /// The variance of C for random points is k integral of g^2 = k E[g^2 / p].
-    void complete(LeafIntegral& leaf, Vec3d w, const Values& v, double p) {
-        if (to_.unmet++ < batch_size) to_.unmet_at.push_back({to_chart(w), p});
+    void complete(LeafIntegral& leaf, ChartPoint at, const Values& v, double p) {
+        if (to_.unmet++ < batch_size) to_.unmet_at.push_back({at, p});
         const double draws = to_.independent;
         const auto add = [&](Estimate& e, double h) {
             const double x = leaf.per_point * p * h * h / draws;
