@@ -30,6 +30,11 @@ def t_quantile(p: float, freedom: int) -> float:
     return edge * math.tan((k + part) / steps * (math.pi / 2))
 
 
+def half_width(values: Values, level: float = 0.95) -> float:
+    """Half the width of the interval of the mean of two or more values."""
+    return t_quantile((1 + level) / 2, values.size - 1) * float(np.std(values, ddof=1)) / math.sqrt(values.size)
+
+
 def log_interval(values: Values | Sequence[float], level: float = 0.95) -> tuple[float, float] | None:
     """The interval of the mean of the logarithm over seeds, as values; None with one seed or where a value is not
     positive."""
@@ -37,7 +42,7 @@ def log_interval(values: Values | Sequence[float], level: float = 0.95) -> tuple
     if v.size < 2 or not (v > 0).all():
         return None
     logs = np.log(v)
-    half = t_quantile((1 + level) / 2, v.size - 1) * logs.std(ddof=1) / math.sqrt(v.size)
+    half = half_width(logs, level)
     return float(np.exp(logs.mean() - half)), float(np.exp(logs.mean() + half))
 
 
@@ -62,7 +67,7 @@ def fitted_slope(n: NDArray[np.int64], over: Sequence[Values]) -> Slope | None:
     slopes = ((x - x.mean())[:, None] * (y - y.mean(0))).sum(0) / ((x - x.mean()) ** 2).sum()
     if seeds < 2:
         return Slope(float(slopes[0]), None)
-    half = t_quantile(0.975, seeds - 1) * slopes.std(ddof=1) / math.sqrt(seeds)
+    half = half_width(slopes)
     return Slope(float(slopes.mean()), float(half))
 
 

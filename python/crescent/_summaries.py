@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._intervals import Values, t_quantile
+from ._intervals import Values, half_width
 
 if TYPE_CHECKING:
     from .experiments import Measured
@@ -31,10 +30,7 @@ class Summary:
 
     @property
     def half(self) -> float | None:
-        if len(self.values) < 2:
-            return None
-        spread = float(np.std(self.values, ddof=1)) / math.sqrt(len(self.values))
-        return t_quantile(0.975, len(self.values) - 1) * spread
+        return half_width(np.asarray(self.values)) if len(self.values) > 1 else None
 
     def __str__(self) -> str:
         if self.heavy:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._intervals import Values, best_of, t_quantile
+from ._intervals import Values, best_of, half_width
 from ._metric_names import NAMES, RANKED, UNITS
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def _cell(values: Values, digits: int, bold: bool) -> str:
     places = max(0, digits - 1 - math.floor(math.log10(abs(mean)))) if mean else digits - 1
     half = 0.0
     if values.size > 1:
-        half = t_quantile(0.975, values.size - 1) * float(np.std(values, ddof=1)) / math.sqrt(values.size)
+        half = half_width(values)
         if half > 0:  # its first figure at least
             places = max(places, min(places + 3, -math.floor(math.log10(half))))
     text = f"{mean:.{places}f}"

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import channels
-from ._intervals import fitted_slope, log_interval, t_quantile
+from ._intervals import fitted_slope, half_width, log_interval
 from ._metric_names import NAMES, RADIANCE, UNITS
 
 if TYPE_CHECKING:
@@ -311,7 +311,7 @@ def _with_interval(over: NDArray[Any]) -> str:
     mean = float(np.mean(over))
     if over.size < 2:
         return f"{mean:.3g}"
-    return f"{mean:.3g} ± {t_quantile(0.975, over.size - 1) * float(np.std(over, ddof=1)) / over.size**0.5:.2g}"
+    return f"{mean:.3g} ± {half_width(over):.2g}"
 
 
 def crops(
