@@ -126,10 +126,15 @@ def _mitsuba_scene(mi):
     }
 
 
-def test_a_mitsuba_scene_has_mitsubas_radiance(tmp_path):
-    mi = pytest.importorskip("mitsuba")
-    if not mi.variant():
-        mi.set_variant("llvm_ad_rgb", "scalar_rgb")
+@pytest.fixture
+def mi():
+    library = pytest.importorskip("mitsuba")
+    if not library.variant():
+        library.set_variant("llvm_ad_rgb", "scalar_rgb")
+    return library
+
+
+def test_a_mitsuba_scene_has_mitsubas_radiance(mi, tmp_path):
     given = _mitsuba_scene(mi)
     e = crescent.adapters.mitsuba.scene(given, tmp_path / "made", n=(16,))
     assert [name for name in ("cosine", "sky", "light-triangle") if f"arms.{name}" in e] == [
@@ -166,10 +171,7 @@ def _textured(mi, filter_type="nearest", wrap_mode="repeat"):
     return scene
 
 
-def test_textures_have_mitsubas_radiance(tmp_path):
-    mi = pytest.importorskip("mitsuba")
-    if not mi.variant():
-        mi.set_variant("llvm_ad_rgb", "scalar_rgb")
+def test_textures_have_mitsubas_radiance(mi, tmp_path):
     given = _textured(mi)
     e = crescent.adapters.mitsuba.scene(given, tmp_path / "made", n=(16,))
     assert e["meshes.floor.rho_d_texture"] == "floor-rho_d.exr"
@@ -188,10 +190,7 @@ def test_textures_have_mitsubas_radiance(tmp_path):
 
 
 @pytest.mark.parametrize(("filter_type", "wrap_mode"), [("bilinear", "repeat"), ("nearest", "clamp")])
-def test_other_textures_are_refused(tmp_path, filter_type, wrap_mode):
-    mi = pytest.importorskip("mitsuba")
-    if not mi.variant():
-        mi.set_variant("llvm_ad_rgb", "scalar_rgb")
+def test_other_textures_are_refused(mi, tmp_path, filter_type, wrap_mode):
     given = _textured(mi, filter_type, wrap_mode)
     with pytest.raises(crescent.adapters.UnsupportedScene, match="filter_type nearest") as refused:
         crescent.adapters.mitsuba.scene(given, tmp_path / "made")
@@ -201,10 +200,7 @@ def test_other_textures_are_refused(tmp_path, filter_type, wrap_mode):
     assert 0.2 < e["meshes.floor.rho_d"][0] < 0.5 and 0.4 < e["meshes.wall.alpha"] < 0.6
 
 
-def test_what_has_no_counterpart_is_listed(tmp_path):
-    mi = pytest.importorskip("mitsuba")
-    if not mi.variant():
-        mi.set_variant("llvm_ad_rgb", "scalar_rgb")
+def test_what_has_no_counterpart_is_listed(mi, tmp_path):
     given = _mitsuba_scene(mi) | {
         "pipe": {"type": "cylinder"},
         "coat": {"type": "cube", "bsdf": {"type": "plastic"}},
