@@ -49,7 +49,7 @@ public:
 
 private:
     CallableArmPlan plan_;
-    bool has_density_, has_weights_;  // the lock need not be held to tell
+    bool has_density_, has_weights_;  // readable without the lock
     mutable Raised* raised_ = nullptr;
 };
 

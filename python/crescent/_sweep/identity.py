@@ -109,7 +109,7 @@ def _of_plugin(where: str) -> tuple[Any, Code]:
 
 
 def _of_function(call: Any) -> list[Any]:
-    """What tells functions of one name in one file apart: the line, and the numbers and texts that they enclose."""
+    """What distinguishes functions of one name in one file: the line, and the numbers and texts that they enclose."""
     function = inspect.unwrap(call)
     cells = [cell.cell_contents for cell in getattr(function, "__closure__", None) or () if cell != CellType()]
     kept = [repr(value) for value in cells if isinstance(value, (int, float, str))]
