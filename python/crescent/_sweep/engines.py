@@ -177,7 +177,14 @@ class DaskEngine:
 
         for name in ("distributed", "distributed.client", "distributed.scheduler", "tornado", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
-        dask.config.set({"distributed.comm.timeouts.connect": "5s", "distributed.admin.tick.limit": "60s"})
+        dask.config.set({
+            "distributed.comm.timeouts.connect": "5s",
+            "distributed.admin.tick.limit": "60s",
+            # Logs for debugging and for the dashboard; at their defaults they hold about 1 kB of each task.
+            "distributed.admin.low-level-log-length": 20,
+            "distributed.admin.log-length": 200,
+            "distributed.scheduler.dashboard.tasks.task-stream-length": 1000,
+        })  # fmt: skip
         if self._engine == "local":
             count = self._workers or usable_cores()
             self._cluster = distributed.LocalCluster(
