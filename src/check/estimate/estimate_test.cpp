@@ -1,6 +1,8 @@
 // Streams, Sobol nets, the chart, the tree and the integrals, compared with closed forms.
 #include <gtest/gtest.h>
+#include <functional>
 #include <set>
+#include <type_traits>
 
 #include "check/estimate/observations.h"
 
@@ -24,6 +26,36 @@ struct CosinePower : SamplerAdapter {
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = value(at[i].wi.z);
     }
     double value(double z) const { return z > 0 ? (s + 1) / (2 * pi_value) * std::pow(z, s) : 0; }
+};
+
+/// Half vectors by GGX in arithmetic of type F, for one roughness; p = D m.z / (4 w_o.m).
+template <class F> struct HalfVector : SamplerAdapter {
+    static constexpr F alpha2 = F(0.04);
+    std::string name() const override { return "GGX"; }
+    Traits traits() const override {
+        Traits t;
+        t.bits = std::is_same_v<F, float> ? 24 : 53;
+        return t;
+    }
+    static F pdf_of(Vec3<F> o, Vec3<F> i) {
+        const Vec3<F> m = normalize(o + i);
+        const F c = dot(o, m), t = m.z * m.z * (alpha2 - 1) + 1;
+        return c > 0 && m.z > 0 ? alpha2 * m.z / (F(pi_value) * t * t * 4 * c) : F(0);
+    }
+    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        const Vec3<F> o(F(wo.x), F(wo.y), F(wo.z));
+        for (std::size_t k = 0; k < u.size(); ++k) {
+            const F x = F(u[k].x), phi = F(two_pi * u[k].y), z = std::sqrt((1 - x) / (1 + (alpha2 - 1) * x));
+            const F r = std::sqrt(std::max(1 - z * z, F(0)));
+            const Vec3<F> m{r * std::cos(phi), r * std::sin(phi), z}, i = m * (2 * dot(o, m)) - o;
+            out[k] = {{i.x, i.y, i.z}, dot(o, m) > 0 ? static_cast<double>(pdf_of(o, i)) : 0};
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t k = 0; k < at.size(); ++k)
+            out[k] =
+                pdf_of({F(at[k].wo.x), F(at[k].wo.y), F(at[k].wo.z)}, {F(at[k].wi.x), F(at[k].wi.y), F(at[k].wi.z)});
+    }
 };
 
 TEST(CheckStreams, KeysThatDifferInAnyFieldShareNoBlock) {
@@ -169,6 +201,38 @@ TEST_F(CheckTree, BothSidesAgreeForEveryTestFunction) {
     }
     EXPECT_EQ(drawn.checks.directions, 1u << 15);
     EXPECT_EQ(drawn.checks.pointwise.times + drawn.checks.zero.times + drawn.checks.invalid.times, 0u);
+}
+
+/// The integrals of p for w_o near the horizon, where half vectors at right angles to it are frequent.
+template <class F> void with_rounding(const std::function<void(Vec3d wo, const Plan&, const Integrals&)>& look) {
+    const HalfVector<F> sampler;
+    const CaseLighting light;
+    const Vec3d wo{std::sin(1.5), 0, std::cos(1.5)};
+    Source source(sampler, 0, wo, light);
+    const Plan plan = make_plan(source, CheckBudget::quick(), {});
+    Integrals all;
+    integrate(source, plan, 1u << 18, false, {1, 0, 0, 1, Purpose::points, 0}, all);
+    look(wo, plan, all);
+}
+
+TEST(CheckIntegrals, KnowWhereSinglePrecisionDoesNotKnowP) {
+    with_rounding<float>([](Vec3d wo, const Plan& plan, const Integrals& all) {
+        double mass_there = 0;
+        int unknown = 0;
+        for (std::size_t l = 0; l < all.leaves.size(); ++l) {
+            EXPECT_LE(all.leaves[l].rounding, 1);
+            if (all.leaves[l].rounding < 0.1) continue;
+            ++unknown, mass_there += all.leaves[l].bridge.value;
+            const ChartRect& r = plan.tree.rect(plan.tree.leaves()[l]);
+            const Vec3d off = from_chart(r.at(0.5, 0.5)) + wo;
+            EXPECT_LT(std::sqrt(dot(off, off)), 0.002 + r.theta_width() + r.phi_width()) << "opposite to w_o";
+        }
+        EXPECT_GT(unknown, 0);
+        EXPECT_LT(mass_there, 0.002);
+    });
+    with_rounding<double>([](Vec3d, const Plan&, const Integrals& all) {
+        for (const LeafIntegral& leaf : all.leaves) EXPECT_EQ(leaf.rounding, 0);
+    });
 }
 
 TEST(CheckPlan, FindsTheStepOfALattice) {

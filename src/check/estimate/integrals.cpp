@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 #include "check/constants.h"
+#include "math/simd/frame.h"
 
 namespace crescent::check {
 
@@ -42,6 +45,7 @@ struct Grid {
     int rows = 1, columns = 1;
     double per_point = 0;
     int cells() const { return rows * columns; }
+    std::size_t points() const { return 2 * static_cast<std::size_t>(cells()); }
 };
 
 /// Distributes the points of a pass: two or four to each leaf, a part evenly, and the rest by the spread of p, with
@@ -96,8 +100,9 @@ public:
             if (of_f_) source_.f_cos(w_, f_, source_.adapter.has_true_f());
             mis_.assign(w_.size(), 1);
             if (of_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
+            measure_rounding(std::span(grids).subspan(first, last - first));
             std::size_t at = 0;
-            for (std::size_t g = first; g < last; ++g) add_points(grids[g], at);
+            for (std::size_t g = first; g < last; ++g) add_points(grids[g], rounding_[g - first], at);
             first = last;
         }
         if (of_f_) measure_lost();
@@ -113,6 +118,48 @@ private:
     std::vector<ChartPoint> chart_;  // of w_
     std::vector<Vec3d> w_, f_;
     std::vector<double> p_, mis_;
+    std::vector<double> rounding_;  // by grid of the batch: relative error of p by the sampler's arithmetic
+
+    /// The rounding error of p in single precision, at the first point of each leaf, and at all points of a leaf in
+    /// which that shows one. Reflection about a half vector is an example: opposite to w_o the half vector is a
+    /// difference of nearly equal numbers.
+    void measure_rounding(std::span<const Grid> grids) {
+        rounding_.assign(grids.size(), 0);
+        if (tabulated_ || !source_.has_density() || source_.estimates ||
+            !(source_.single() || plan_.step >= angle_per_step * ulp / 4))
+            return;
+        std::vector<std::size_t> first;  // point of each grid
+        std::size_t at = 0;
+        for (const Grid& g : grids) first.push_back(at), at += g.points();
+        const std::vector<double> at_first = rounding_at(first);
+        for (std::size_t g = 0; g < grids.size(); ++g) {
+            if (!(at_first[g] > same_number)) continue;
+            std::vector<std::size_t> points(grids[g].points());
+            std::iota(points.begin(), points.end(), first[g]);
+            const std::vector<double> all = rounding_at(points);
+            rounding_[g] = std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+        }
+    }
+
+    /// The relative error of p at some points: its change if the length of w_o or w_i is off by two ulp, divided by 4.
+    /// A pdf depends on directions alone, so that only rounding makes it depend on lengths; the components of a
+    /// direction in single precision give it a length that is off by up to half an ulp.
+    std::vector<double> rounding_at(std::span<const std::size_t> points) {
+        constexpr double longer = 1 + 2 * ulp;
+        std::vector<Vec3d> w;
+        for (std::size_t at : points) w.push_back(w_[at]);
+        std::vector<double> of_wo(w.size()), of_wi(w.size()), out;
+        source_.density_from(source_.wo * longer, w, of_wo);
+        for (Vec3d& v : w) v = v * longer;
+        source_.density_from(source_.wo, w, of_wi);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            double least = p_[points[i]], most = least;
+            for (const double p : {of_wo[i], of_wi[i]})
+                if (p >= 0 && std::isfinite(p)) least = std::min(least, p), most = std::max(most, p);
+            out.push_back(most > 0 ? std::min(1.0, (most / least - 1) / 4) : 0);
+        }
+        return out;
+    }
 
     /// f |cos| L at a point, summed over three channels.
     double light_at(std::size_t at) const {
@@ -166,7 +213,7 @@ private:
             }
     }
 
-    void add_points(const Grid& g, std::size_t& at) {
+    void add_points(const Grid& g, double rounding, std::size_t& at) {
         const Leaf& leaf = plan_.tree.leaves()[g.leaf];
         LeafIntegral& to = out_.leaves[g.leaf];
         const double k = to.per_point = g.per_point;
@@ -200,6 +247,7 @@ private:
         if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
         to.top = most;
         out_.points += 2 * g.cells();
+        to.rounding = rounding;
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
     }
 
@@ -274,6 +322,7 @@ void scale(Integrals& x, double by) {
     for (LeafIntegral& leaf : x.leaves) {
         leaf.bridge.scale(by);
         leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by, leaf.known_to *= by;
+        leaf.rounding *= by;
     }
 }
 
@@ -301,6 +350,7 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
         a.bridge.add(b.bridge);
         a.second += b.second, a.solid_angle += b.solid_angle, a.known_to += b.known_to;
+        a.rounding += b.rounding;
         a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);
     }
     for (std::size_t k = 0; k < to.bridge_by_band.size(); ++k)

@@ -33,6 +33,7 @@ struct LeafIntegral {
     double top = 0;          // largest p at its points
     double per_point = 0;    // weight of one point
     double known_to = 0;     // largest effect of the error of a tabulated p
+    double rounding = 0;     // relative error of p by the sampler's arithmetic, at most 1
 };
 
 /// A point with light: the weight X = f L cos / p of a draw there (the luminance for three channels), with the MIS

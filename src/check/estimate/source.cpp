@@ -6,9 +6,9 @@
 
 namespace crescent::check {
 
-std::span<const Pair> Source::pairs_of(std::span<const Vec3d> wi) {
+std::span<const Pair> Source::pairs_of(Vec3d from, std::span<const Vec3d> wi) {
     pairs_.resize(wi.size());
-    for (std::size_t i = 0; i < wi.size(); ++i) pairs_[i] = {wo, wi[i]};
+    for (std::size_t i = 0; i < wi.size(); ++i) pairs_[i] = {from, wi[i]};
     evaluations_ += wi.size();
     return pairs_;
 }
@@ -68,6 +68,10 @@ double Source::density(Vec3d wi) {
     double p = 0;
     density({&wi, 1}, {&p, 1});
     return p;
+}
+
+void Source::density_from(Vec3d other_wo, std::span<const Vec3d> wi, std::span<double> out) {
+    adapter.exact_pdf(technique, pairs_of(other_wo, wi), out);
 }
 
 bool Source::reached_otherwise(Vec3d wi) {

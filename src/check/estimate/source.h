@@ -45,6 +45,8 @@ public:
     /// 1/sr, in double if the sampler has it; replaced by 0 and counted if it is not finite or negative.
     void density(std::span<const Vec3d> wi, std::span<double> out);
     double density(Vec3d wi);
+    /// The same from another w_o, unchanged; for directions whose lengths are off by rounding.
+    void density_from(Vec3d other_wo, std::span<const Vec3d> wi, std::span<double> out);
     /// Whether another technique draws there although this one does not.
     bool reached_otherwise(Vec3d wi);
     /// 1/sr, in the sampler's own arithmetic, unchanged.
@@ -71,7 +73,8 @@ private:
     double first_invalid_value_ = 0;
     std::vector<Pair> pairs_;
     const RecordedSampler* recorded_ = dynamic_cast<const RecordedSampler*>(&adapter);
-    std::span<const Pair> pairs_of(std::span<const Vec3d> wi);
+    std::span<const Pair> pairs_of(std::span<const Vec3d> wi) { return pairs_of(wo, wi); }
+    std::span<const Pair> pairs_of(Vec3d from, std::span<const Vec3d> wi);
     double checked(double value, Vec3d at);
 };
 

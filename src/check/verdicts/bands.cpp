@@ -33,7 +33,7 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
             for (double k = std::floor(from); k < past; ++k) {
                 Band& band = to[axis * bands + static_cast<std::size_t>(k)];
                 band.sums.variance += leaf.bridge.variance, band.sums.doubt += leaf.bridge.doubt;
-                band.sums.known_to += leaf.known_to;
+                band.sums.known_to += known_to(e, l);
                 band.sums.largest =
                     std::max({band.sums.largest, 1 / e.observations.independent, leaf.per_point * tree.leaves()[l].q});
                 if (from <= k || past >= k + 1) band.moved += moved * leaf.bridge.value / all;

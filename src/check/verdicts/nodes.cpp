@@ -27,7 +27,7 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
             const LeafIntegral& c = e.integrals.leaves[l];
             s = {o.leaves[l] / o.independent, c.bridge.value, c.second, c.solid_angle, c.bridge.variance,
-                c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q), c.known_to};
+                c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q), known_to(e, l)};
             continue;
         }
         for (int half : {0, 1}) s += out[static_cast<std::size_t>(nodes[i].child + half)];

@@ -2,6 +2,7 @@
 // family, whose p-value is the least of its members times their number.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string_view>
 
@@ -98,6 +99,12 @@ bool draws_vary(const Evidence& e, int integrand);
 double drawn_variance(const Evidence& e, int integrand);
 /// The variance of one draw due to leaves without draws: replicates that all miss them do not show it.
 Values unmet_variance(const Evidence& e);
+/// How well h p of a leaf is known: as well as a tabulated p, and as the arithmetic of the sampler allows. Where
+/// rounding makes p 0 or too small, the draws show how much it may be.
+inline double known_to(const Evidence& e, std::size_t leaf) {
+    const LeafIntegral& x = e.integrals.leaves[leaf];
+    return x.known_to + x.rounding * std::max(x.bridge.value, e.observations.leaves[leaf] / e.observations.independent);
+}
 /// Mean of a whole sum over the replicates.
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 

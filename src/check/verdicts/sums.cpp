@@ -17,18 +17,34 @@ constexpr Kind sum_kinds[integrands] = {{Family::mass, Family::mass_sets}, {Fami
     {Family::slope, Family::slope_sets}, {Family::centre, Family::centre_sets}, {Family::centre, Family::centre_sets},
     {Family::centre, Family::centre_sets}};
 
+/// The integrands in the middle of a leaf, whose mean of h is given.
+Values values_in(const Evidence& e, std::size_t l, double h) {
+    const Leaf& leaf = e.plan.tree.leaves()[l];
+    const Vec3d off = from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)) - e.plan.middle;
+    return {1, h, h * (math::log(leaf.q) - e.plan.median_log_p), h * off.x, h * off.y, h * off.z};
+}
+
+/// The effect of rounding of p on a whole sum, for all leaves in which p is not known better.
+double rounding_of_sum(const Evidence& e, std::size_t q) {
+    double out = 0;
+    for (std::size_t l = 0; l < e.integrals.leaves.size(); ++l) {
+        const LeafIntegral& leaf = e.integrals.leaves[l];
+        if (!(leaf.rounding > 0)) continue;
+        const double h = leaf.second > 0 ? leaf.second / leaf.bridge.value : 0.5;
+        out += known_to(e, l) / h * std::fabs(values_in(e, l, h)[q]);
+    }
+    return out;
+}
+
 }  // namespace
 
 Values unmet_variance(const Evidence& e) {
     Values out{};
-    const std::vector<Leaf>& leaves = e.plan.tree.leaves();
-    for (std::size_t l = 0; l < leaves.size(); ++l) {
+    for (std::size_t l = 0; l < e.integrals.leaves.size(); ++l) {
         const LeafIntegral& leaf = e.integrals.leaves[l];
         if (e.observations.counts[l] > 0 || !(leaf.second > 0)) continue;
         const double h = leaf.second / leaf.bridge.value, share = leaf.bridge.value / h;
-        const Vec3d off = from_chart(e.plan.tree.rect(leaves[l]).at(0.5, 0.5)) - e.plan.middle;
-        const double log_q = math::log(leaves[l].q) - e.plan.median_log_p;
-        const Values there = {1, h, h * log_q, h * off.x, h * off.y, h * off.z};
+        const Values there = values_in(e, l, h);
         for (std::size_t q = 0; q < integrands; ++q) out[q] += share * sqr(there[q] - e.integrals.sums[q].value);
     }
     return out;
@@ -48,7 +64,7 @@ double floor_of_sum(const Evidence& e, int integrand) {
     const Sums& s = e.observations.sums[q];
     const double n = e.observations.independent;
     // Rounding always to one side changes h by half a step on average.
-    const double known_to = e.integrals.known_to[q] + e.plan.per_step[q] / 2;
+    const double known_to = e.integrals.known_to[q] + rounding_of_sum(e, q) + e.plan.per_step[q] / 2;
     if (integrand < slope) return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to;
     return detection_floor * std::sqrt(s.square / n) + (integrand == slope ? ulp : 0) + known_to;
 }
