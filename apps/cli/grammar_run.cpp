@@ -95,7 +95,7 @@ void add_run(CLI::App& app, Work& work) {
         ->check(whole_number(0, 1023));
     c->add_flag("--no-code", f->no_code, "refuse a file that names a program or plugin");
     timeout(*c, f->timeout);
-    c->add_option("--keep-after", f->keep_after, "longer work is kept as it goes; default 10")
+    c->add_option("--keep-after", f->keep_after, "finished passes of longer runs are kept; default 10")
         ->type_name("SECONDS")
         ->check(seconds);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");

@@ -65,7 +65,7 @@ void GlBackend::claim_framebuffer(const std::string& what, int width, int height
     claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
 }
 
-std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint*) {
+std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) {
     const Scene& scene = view.scene();
     if (scene.surroundings()) throw OutputError("the GL back end has no image skies and no meshes: use the cpu");
     if (!context_->is_current()) context_->make_current();

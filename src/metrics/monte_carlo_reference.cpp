@@ -150,13 +150,13 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
 }
 
 std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
-    const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
+    const std::string& isa, ProgressMonitor& monitor) {
     std::vector<double> exponents;
     for (const TiledScene& view : views) exponents.push_back(view.scene().s());
     std::vector<std::uint32_t> seeds;  // of the lobe, then of each light
     for (std::size_t k = 0; k <= views.at(0).scene().lights().size(); ++k)
         seeds.push_back(reference_seed(experiment, static_cast<std::uint32_t>(k)));
-    return by_tiles(experiment.image, exponents, monitor, checkpoint,
+    return by_tiles(experiment.image, exponents, monitor,
         [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < views.size(); ++e) {
                 const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);

@@ -19,8 +19,8 @@ namespace crescent::inline metrics {
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
 /// Returns one film per view; the views differ only in their exponents, see views_at. `experiment` gives the sample
-/// counts and seeds. `checkpoint` keeps finished tiles.
+/// counts and seeds.
 std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
-    const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
+    const std::string& isa, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline metrics

@@ -109,20 +109,19 @@ Rgb mean_radiance(
     return MeanRadiance(scene, shading_points, moments, n)(i);
 }
 
-void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
-    const std::function<double(std::size_t)>& work) {
+void for_each_tile(
+    const std::vector<TileBox>& tiles, ProgressMonitor& monitor, const std::function<double(std::size_t)>& work) {
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (monitor.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
+        if (monitor.stop.load(std::memory_order_relaxed)) return;
         const double units = work(k);
         if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be incomplete
         monitor.advance(units);
-        if (checkpoint) checkpoint->add(k, units);
     });
     monitor.check();
 }
 
 std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor) {
     const Image& image = view.scene().image();
     const std::vector<TileBox>& tiles = view.tiles();
     std::vector<Film> films(n.size());
@@ -131,10 +130,9 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
         films[r].directions = cost_of_sample(arm).directions, films[r].evaluations = cost_of_sample(arm).f;
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
-    if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));
     PerThread<std::vector<Moments>> scratch(
         [&] { return std::vector<Moments>(n.size()); });  // reused by all tiles of a thread
-    for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
+    for_each_tile(tiles, monitor, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
         const std::shared_ptr<const TiledScene::Points> groups = view.points(k);

@@ -15,10 +15,9 @@
 
 namespace crescent::inline render {
 
-/// Returns one film for each sample count of n (ascending). `isa`: a name of isas(), "" for the best. `checkpoint`
-/// keeps finished tiles.
+/// Returns one film for each sample count of n (ascending). `isa`: a name of isas(), "" for the best.
 std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor);
 
 /// Converts sums over film.n samples to the pixels of these shading points. The caller counts film.invalid.
 void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film);
@@ -39,10 +38,10 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples = nullptr);
 
-/// Calls work(k) for every tile k on all cores, except for tiles that the checkpoint holds; work returns the tile's
-/// units of progress. Stops early if the monitor requests it.
-void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
-    const std::function<double(std::size_t)>& work);
+/// Calls work(k) for every tile k on all cores; work returns the tile's units of progress. Stops early if the monitor
+/// requests it.
+void for_each_tile(
+    const std::vector<TileBox>& tiles, ProgressMonitor& monitor, const std::function<double(std::size_t)>& work);
 
 // ---- Kernels of external samplers: their draws are made first, in batches, and then estimated like those of a
 // built-in sampler, in scalar code, because the sampler itself takes most of the time.

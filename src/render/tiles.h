@@ -1,77 +1,15 @@
-// A scene in tiles: shading points that are kept while memory allows, and a journal of finished tiles.
+// A scene cut into tiles, with the shading points of each tile, which depend only on the scene and its exponent and are
+// shared by all samplers, seeds and references of a run.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <string>
 #include <vector>
 
-#include "base/journal.h"
-#include "base/parallel.h"
-#include "base/progress.h"
 #include "render/shading_points.h"
 #include "scene/scene.h"
 
 namespace crescent::inline render {
-
-// ---- Keeps the finished part of a long pass over an image, tile by tile, in a journal next to the outputs.
-
-/// The arrays that the tiles of a pass write to.
-struct TileOutputs {
-    int width = 0;                                 // pixels in a row of every plane
-    std::vector<std::span<std::byte>> planes;      // 4 bytes per pixel
-    std::vector<std::span<std::uint64_t>> counts;  // one entry per tile
-};
-
-/// Returns all planes of films of one size, and the counts of the tiles.
-template <class F> TileOutputs outputs_of(std::vector<F>& films, std::span<std::vector<std::uint64_t>> counts = {}) {
-    TileOutputs out;
-    for (F& film : films) {
-        out.width = film.width;
-        for (const std::span<std::byte> plane : film.planes()) out.planes.push_back(plane);
-    }
-    out.counts.assign(counts.begin(), counts.end());
-    return out;
-}
-
-class TileCheckpoint {
-public:
-    /// Nothing is written before the pass has taken `checkpoint_after_s` seconds; after that, all finished tiles are.
-    TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& monitor);
-
-    /// Begins the pass: tiles that an earlier run finished are restored into the outputs, which must outlive this
-    /// object.
-    void begin(std::vector<TileBox> tiles, TileOutputs outputs);
-    bool holds(std::size_t tile) const { return units_[tile] >= 0; }
-    /// Records a finished tile and its units of progress. Any thread.
-    void add(std::size_t tile, double units);
-    /// Returns the units of the tiles that begin() restored.
-    double restored() const { return restored_; }
-    void remove() { journal_.remove(); }
-
-private:
-    using Clock = std::chrono::steady_clock;
-
-    void restore(Journal::Bytes record);
-    void write(std::size_t tile);
-    std::size_t record_size(const TileBox& tile) const;
-
-    Journal journal_;
-    double checkpoint_after_s_;
-    ProgressMonitor& monitor_;
-    std::vector<TileBox> tiles_;
-    TileOutputs outputs_;
-    std::vector<double> units_;  // of each finished tile; -1: not finished
-    double restored_ = 0;
-    Clock::time_point start_;
-    Mutex lock_;                        // guards what follows and the journal
-    std::vector<std::size_t> waiting_;  // finished, not yet written
-};
-
-// ---- A scene cut into tiles, with the shading points of each tile, which depend only on the scene and its exponent
-// and are shared by all samplers, seeds and references of a run.
 
 /// Const members may be called from any thread. Copies share the kept points.
 class TiledScene {

@@ -15,7 +15,6 @@
 #include "run/plan.h"
 
 namespace crescent::inline render {
-class TileCheckpoint;
 class TiledScene;
 }  // namespace crescent::inline render
 
@@ -26,10 +25,8 @@ class Backend {
 public:
     virtual ~Backend() = default;
     virtual std::string name() const = 0;  // for provenance and plates
-    /// Returns one film per sample count, in order. The view already has the job's s. `checkpoint`: where a back end
-    /// that works tile by tile keeps finished ones; null: nowhere.
-    virtual std::vector<Film> films(
-        const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr) = 0;
+    /// Returns one film per sample count, in order. The view already has the job's s.
+    virtual std::vector<Film> films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) = 0;
     /// Returns details for the provenance, in the driver's own words, by their names ("GL_RENDERER").
     virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
     /// Returns assertions of its own, added to those of the experiment ("framebuffer is RGBA32F").

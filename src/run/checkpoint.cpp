@@ -1,15 +1,20 @@
-// The run's folder is named by the XXH3-64 of its key: version, commit, the files of program and library, the
-// experiment's hash, the back end and the seeds. Metrics are CBOR records of a Journal, tiles a file for
-// each pass.
+// A file named by the XXH3-64 of the run's key (version, commit, the files of program and library, the experiment's
+// hash, the back end and the seeds) with a sequence of CBOR items (RFC 8742): the key, then the metrics of finished
+// passes. CBOR keeps every double exactly, including NaN and infinities. Each write appends whole items; an item that a
+// kill cut off is removed before more are appended.
 #include "run/checkpoint.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #define XXH_INLINE_ALL
@@ -48,14 +53,6 @@ std::string build_mark() {
     return mark_of(program_file()) + " " + mark_of(known ? about.dli_fname : "");
 }
 
-/// CBOR keeps every double exactly, including NaN and infinities. Returns none if the record is something else.
-std::vector<RunMetrics> metrics_of(Journal::Bytes record) {
-    const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
-    try {
-        return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMetrics>>();
-    } catch (const nlohmann::json::exception&) { return {}; }
-}
-
 bool are_of(const Experiment& experiment, const std::vector<RegionMetrics>& metrics) {
     return std::equal(metrics.begin(), metrics.end(), experiment.regions.begin(), experiment.regions.end(),
         [](const RegionMetrics& m, const Region& region) { return m.region == region.name; });
@@ -65,61 +62,69 @@ std::string key_of(const Experiment& experiment, const std::string& work) {
     return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), hash(experiment), work);
 }
 
-/// The run's folder must be its own: if a link there leads elsewhere, nothing is kept.
-bool leads_elsewhere(const std::string& folder) {
-    std::error_code ignored;
-    return fs::is_symlink(fs::symlink_status(folder, ignored));
-}
+using Item = std::vector<std::uint8_t>;
 
-bool holds_files(const std::string& folder) {
-    std::error_code ignored;
-    return fs::exists(folder, ignored) && !fs::is_empty(folder, ignored);
+/// Appends with one call, so that items of two processes do not mix.
+bool append(const std::string& path, const Item& items) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (file < 0) return false;
+    const ssize_t n = ::write(file, items.data(), items.size());
+    const int error = n < 0 ? errno : n == static_cast<ssize_t>(items.size()) ? 0 : ENOSPC;
+    ::close(file);
+    errno = error;
+    return error == 0;
 }
 
 }  // namespace
 
 Checkpoint::Checkpoint(const Experiment& experiment, const std::string& work, const std::string& out,
     double checkpoint_after_s, ProgressMonitor& monitor)
-    : all_(out + "/.crescent-kept"),
+    : folder_(out + "/.crescent-kept"),
       key_(key_of(experiment, work)),
-      folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
+      file_(fmt::format("{}/{:016x}", folder_, XXH3_64bits(key_.data(), key_.size()))),
       checkpoint_after_s_(checkpoint_after_s),
-      monitor_(monitor),
-      journal_(folder_ + "/meters", key_, monitor) {
-    for (const std::string& folder : {all_, folder_})
-        if (leads_elsewhere(folder))
-            throw OutputError(
-                fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder));
-    journal_.read([&](Journal::Bytes record) {
-        for (RunMetrics& metric : metrics_of(record))
-            if (are_of(experiment, metric.regions)) metrics_.push_back(std::move(metric));
-    });
+      monitor_(monitor) {
+    std::error_code ignored;
+    if (fs::is_symlink(fs::symlink_status(folder_, ignored)))
+        throw OutputError(
+            fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder_));
+    read(experiment);
     written_ = metrics_.size();
-    if (holds_files(folder_)) monitor_.log("resuming from the checkpoint in " + folder_);
+    if (written_ > 0) monitor_.log("resuming from the checkpoint " + file_);
+}
+
+void Checkpoint::read(const Experiment& experiment) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(fs::symlink_status(file_, ignored))) return;
+    std::ifstream in(file_, std::ios::binary);
+    const auto next = [&] { return nlohmann::json::from_cbor(in, false, false); };  // discarded at an incomplete item
+    if (!(next() == key_)) {  // != is false for an incomplete item
+        fs::remove(file_, ignored);
+        return;
+    }
+    begun_ = true;
+    std::streamoff whole = in.tellg();
+    try {
+        for (nlohmann::json item = next(); !item.is_discarded(); item = next()) {
+            for (RunMetrics& metric : item.get<std::vector<RunMetrics>>())
+                if (are_of(experiment, metric.regions)) metrics_.push_back(std::move(metric));
+            whole = in.tellg();
+        }
+    } catch (const nlohmann::json::exception&) {}  // not metrics: what follows is not used
+    fs::resize_file(file_, static_cast<std::uintmax_t>(whole), ignored);
+    if (ignored) disabled_ = true;
 }
 
 Checkpoint::~Checkpoint() {
-    if (holds_files(folder_))
-        monitor_.log("partial results saved in " + folder_ + ": the same command resumes from them");
-}
-
-TileCheckpoint Checkpoint::tiles(const Job& job) {
-    const std::string ladder = fmt::format("n{}", fmt::join(job.n, ","));
-    const std::string name = fmt::format("{}-s{}-seed{}", job.arm, job.s, job.seed);
-    const std::string file = fmt::format("{}-{:08x}", name, XXH3_64bits(ladder.data(), ladder.size()) & 0xffffffffu);
-    return {folder_ + "/" + file, key_ + " " + name + " " + ladder, checkpoint_after_s_, monitor_};
-}
-
-TileCheckpoint Checkpoint::tiles(const std::string& name) {
-    return {folder_ + "/" + name, key_ + " " + name, checkpoint_after_s_, monitor_};
+    std::error_code ignored;
+    if (fs::exists(file_, ignored))
+        monitor_.log("finished passes saved in " + file_ + ": the same command resumes from them");
 }
 
 std::vector<RunMetrics> Checkpoint::metrics(const Job& job) const {
     std::vector<RunMetrics> out;
     for (const std::uint64_t n : job.n) {
-        const RunKey key{job.arm, n, job.s, job.seed};
-        const auto metric =
-            std::find_if(metrics_.begin(), metrics_.end(), [&](const RunMetrics& m) { return m.key == key; });
+        const auto metric = std::ranges::find(metrics_, RunKey{job.arm, n, job.s, job.seed}, &RunMetrics::key);
         if (metric == metrics_.end()) return {};
         out.push_back(*metric);
     }
@@ -128,18 +133,28 @@ std::vector<RunMetrics> Checkpoint::metrics(const Job& job) const {
 
 void Checkpoint::add(const std::vector<RunMetrics>& metrics) {
     metrics_.insert(metrics_.end(), metrics.begin(), metrics.end());
-    if (start_.seconds() < checkpoint_after_s_) return;
+    if (disabled_ || start_.seconds() < checkpoint_after_s_) return;
     const std::vector<RunMetrics> fresh(metrics_.begin() + static_cast<std::ptrdiff_t>(written_), metrics_.end());
-    const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
-    journal_.append({std::as_bytes(std::span(record))});
-    written_ = metrics_.size();
+    Item items;
+    if (!begun_) nlohmann::json::to_cbor(key_, items);
+    nlohmann::json::to_cbor(fresh, items);
+    std::error_code ignored;  // append() reports the error
+    fs::create_directories(folder_, ignored);
+    if (append(file_, items)) {
+        begun_ = true, written_ = metrics_.size();
+        return;
+    }
+    monitor_.log(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", file_,
+        std::strerror(errno)));
+    fs::remove(file_, ignored);
+    disabled_ = true;
 }
 
 void Checkpoint::discard() {
     std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-    if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;
-    monitor_.log(all_ + " still holds the checkpoint of another, unfinished run");
+    fs::remove(file_, ignored);
+    if (fs::remove(folder_, ignored) || !fs::exists(folder_, ignored)) return;
+    monitor_.log(folder_ + " still holds the checkpoint of another, unfinished run");
 }
 
 }  // namespace crescent::inline runs

@@ -1,15 +1,13 @@
-// The finished part of a long run, kept in OUT/.crescent-kept while it lasts, so that the same command resumes a
-// stopped or killed run: tiles of long passes, and the metrics of finished passes. Removed once the outputs are
-// published.
+// The metrics of the finished passes of a long run, kept in OUT/.crescent-kept while it lasts, so that the same command
+// resumes a stopped or killed run. References and the films of the first seed are made again. Removed once the outputs
+// are published.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "base/journal.h"
 #include "base/progress.h"
 #include "metrics/metrics.h"
-#include "render/tiles.h"
 #include "run/plan.h"
 
 namespace crescent::inline runs {
@@ -18,7 +16,7 @@ class Checkpoint {
 public:
     /// Outputs go to `out`; nothing is kept before `checkpoint_after_s` seconds. `work`: what the results depend on
     /// other than the experiment and the build, such as the back end and the seeds. Logs if there is a checkpoint to
-    /// resume from.
+    /// resume from. Throws OutputError if its folder is a link.
     Checkpoint(const Experiment& experiment, const std::string& work, const std::string& out, double checkpoint_after_s,
         ProgressMonitor& monitor);
     /// If the run ends before discard(), logs what is kept.
@@ -26,23 +24,22 @@ public:
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
 
-    /// Returns the checkpoint for the tiles of one pass; `name`, or what the job computes, distinguishes it from the
-    /// run's others.
-    TileCheckpoint tiles(const std::string& name);
-    TileCheckpoint tiles(const Job& job);
     /// Returns the metrics of a finished pass, one per sample count; none if it is not finished.
     std::vector<RunMetrics> metrics(const Job& job) const;
+    /// If they cannot be written, the run goes on: a line is logged, and nothing more is kept.
     void add(const std::vector<RunMetrics>& metrics);
     /// Called when the outputs are published: nothing of this run is needed any more. What another run kept stays and
     /// is logged.
     void discard();
 
 private:
-    std::string all_, key_, folder_;  // all_: for every run into the same place
+    void read(const Experiment& experiment);
+
+    std::string folder_, key_, file_;  // the folder is shared by every run into the same place
     double checkpoint_after_s_;
     ProgressMonitor& monitor_;
     Stopwatch start_;
-    Journal journal_;
+    bool begun_ = false, disabled_ = false;  // the file has the key; it cannot be written
     std::vector<RunMetrics> metrics_;
     std::size_t written_ = 0;  // of metrics_
 };

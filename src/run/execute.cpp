@@ -1,5 +1,5 @@
-// Primary rays are traced once for all jobs, shading points are kept if memory allows. A job whose metrics are in the
-// checkpoint and whose films are not kept is skipped; else the back end computes its films, which are measured in
+// Primary rays are traced once for all jobs, shading points are kept if memory allows. A job whose films are not kept
+// and whose metrics are in the checkpoint is skipped; else the back end computes its films, which are measured in
 // parallel.
 #include "run/execute.h"
 
@@ -65,21 +65,14 @@ PairedPlan paired_plan(const Experiment& experiment) {
 
 void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& monitor,
     bool keep_films, Checkpoint* checkpoint, JobResult& out) {
-    std::unique_ptr<TileCheckpoint> tiles;
-    if (checkpoint) {
-        out.metrics = checkpoint->metrics(out.job);
-        tiles.reset(new TileCheckpoint(checkpoint->tiles(out.job)));
-    }
-    if (keep_films || out.metrics.empty()) {
-        std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor, tiles.get());
-        const auto all = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
-        out.samples = all - (tiles ? tiles->restored() : 0);
-        const bool fresh = out.metrics.empty();
-        if (fresh) out.metrics = metrics_of(plan, prepared, out.job, films);
-        if (fresh && checkpoint) checkpoint->add(out.metrics);
-        if (keep_films) out.films = std::move(films);
-    }
-    if (!keep_films && tiles) tiles->remove();
+    const auto samples = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
+    if (checkpoint && !keep_films) out.metrics = checkpoint->metrics(out.job);
+    if (!out.metrics.empty()) return monitor.skip(samples);
+    std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor);
+    out.samples = samples;
+    out.metrics = metrics_of(plan, prepared, out.job, films);
+    if (keep_films) out.films = std::move(films);
+    else if (checkpoint) checkpoint->add(out.metrics);
 }
 
 }  // namespace
@@ -124,27 +117,21 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
     return out;
 }
 
-void add_references(
-    const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor, Checkpoint* checkpoint) {
+void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {
     const Engine with = settled(engine);
     const auto pixels = static_cast<double>(prepared.shapes.shape.size());
-    const auto tiles_of_pass = [&](const char* name) {
-        return std::unique_ptr<TileCheckpoint>(checkpoint ? new TileCheckpoint(checkpoint->tiles(name)) : nullptr);
-    };
     prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::paired) {
             monitor.begin("paired reference", pixels);
-            const std::unique_ptr<TileCheckpoint> tiles = tiles_of_pass("paired");
-            prepared.paired = paired_reference(prepared.views, paired_plan(plan.whole), monitor, tiles.get());
+            prepared.paired = paired_reference(prepared.views, paired_plan(plan.whole), monitor);
             return;
         }
         monitor.begin("reference by quadrature", pixels);
-        const std::unique_ptr<TileCheckpoint> quadrature = tiles_of_pass("quadrature"), note = tiles_of_pass("note");
-        prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor, quadrature.get());
+        prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor);
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
         monitor.begin("the article's reference", pixels);
-        prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor, note.get());
+        prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor);
     });
 }
 

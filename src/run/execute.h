@@ -53,9 +53,8 @@ std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const Sha
 /// Prepares what the camera sees, and the samplers that are not built in. Throws InputError if it sees nothing,
 /// OutputError if memory is insufficient or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
-/// Adds the references that the experiment requests. A checkpoint keeps what is finished.
-void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor,
-    Checkpoint* checkpoint = nullptr);
+/// Adds the references that the experiment requests.
+void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor);
 /// Does both steps.
 Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& monitor);
 
@@ -74,7 +73,7 @@ Job with_sampler(Job job, const Prepared& prepared);
 /// Returns the prepared view at exponent s, which is one of the plan's.
 const TiledScene& view_at(const Prepared& prepared, double s);
 
-/// Runs one job. `keep_films` = false: only its metrics, which a checkpoint may hold already.
+/// Runs one job. `keep_films` = false: only its metrics, which a checkpoint may hold already and which it keeps.
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& monitor, bool keep_films = true, Checkpoint* checkpoint = nullptr);
 

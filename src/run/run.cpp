@@ -53,7 +53,7 @@ std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared
 Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options,
     ProgressMonitor& monitor, Checkpoint* checkpoint) {
     const Stopwatch start;
-    add_references(plan, prepared, engine, monitor, checkpoint);
+    add_references(plan, prepared, engine, monitor);
     monitor.check();
     const double references = start.seconds();
     std::vector<JobResult> results = execute_all(plan, prepared, engine, monitor, checkpoint);

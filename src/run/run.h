@@ -20,7 +20,7 @@ struct RunOptions {
     int threads = 0;                   // 0: as many as this process may use
     std::string isa;                   // "": the best this machine has
     std::string command;               // as typed, for the provenance
-    double keep_after_s = 10;          // longer passes and runs keep what they have finished, see checkpoint.h
+    double keep_after_s = 10;          // longer runs keep the passes that they have finished, see checkpoint.h
     std::shared_ptr<Backend> backend;  // null: the CPU
     double timeout_s = 0;              // for one response of a program or plugin; 0: 10 and 60 s
     OutputParts parts;

@@ -61,10 +61,10 @@ void write(const TiledScene& view, const ShadingPoints& points, const PairedPlan
 }  // namespace
 
 std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views, const PairedPlan& plan,
-    ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
+    ProgressMonitor& monitor) {
     std::vector<double> exponents;
     for (const TiledScene& view : views) exponents.push_back(view.scene().s());
-    return by_tiles(views.at(0).scene().image(), exponents, monitor, checkpoint,
+    return by_tiles(views.at(0).scene().image(), exponents, monitor,
         [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < views.size(); ++e) {
                 const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);

@@ -24,8 +24,7 @@ struct PairedPlan {
 };
 
 /// Returns R with |e| as its error, one film per view; the views differ only in their exponents, see views_at.
-/// `checkpoint` keeps finished tiles.
-std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views, const PairedPlan& plan,
-    ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
+std::vector<ReferenceFilm> paired_reference(
+    const std::vector<TiledScene>& views, const PairedPlan& plan, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline reference

@@ -54,14 +54,13 @@ inline std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double
 }
 
 /// Returns one film per exponent, computed by calling work(k, tile k, films) for every tile.
-template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
-    ProgressMonitor& monitor, TileCheckpoint* checkpoint, Work&& work) {
+template <class Work> std::vector<ReferenceFilm> by_tiles(
+    const Image& image, const std::vector<double>& exponents, ProgressMonitor& monitor, Work&& work) {
     std::vector<ReferenceFilm> films(exponents.size());
     parallel_for(std::size_t{0}, films.size(),
         [&](std::size_t e) { films[e] = ReferenceFilm(image.width, image.height, exponents[e]); });
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
-    if (checkpoint) checkpoint->begin(tiles, outputs_of(films));
-    for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
+    for_each_tile(tiles, monitor, [&](std::size_t k) {
         work(k, tiles[k], films);
         return static_cast<double>(tiles[k].x1 - tiles[k].x0) * (tiles[k].y1 - tiles[k].y0);
     });
@@ -101,8 +100,8 @@ private:
     std::size_t next_ = 0, known_ = 0;  // number of values before the last rewind; where the search begins
 };
 
-/// Returns one film per exponent, in order. `checkpoint` keeps finished tiles.
-std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents,
-    ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
+/// Returns one film per exponent, in order.
+std::vector<ReferenceFilm> quadrature_reference(
+    const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline reference
