@@ -9,12 +9,15 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
 #include "base/progress.h"
 #include "render/film.h"
+#include "render/shading_points.h"
 #include "render/tiles.h"
+#include "scene/scene.h"
 
 namespace crescent::inline reference {
 
@@ -27,5 +30,9 @@ struct PairedPlan {
 /// `checkpoint` keeps finished tiles.
 std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views, const PairedPlan& plan,
     ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
+
+/// Writes the pixels of these points into a film of the scene's size. May end early if `stop` is set.
+void write_paired(const Scene& scene, const ShadingPoints& points, const PairedPlan& plan,
+    const std::atomic<bool>* stop, ReferenceFilm& film);
 
 }  // namespace crescent::inline reference
