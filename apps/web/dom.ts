@@ -43,6 +43,13 @@ export async function copied(from: HTMLElement): Promise<string> {
   }
 }
 
+/** Saves text as a file of the user. */
+export function download(name: string, text: string): void {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
 /** Announces a line to screen readers, at most once a second, the last one always. */
 export class Speaker {
   private reported = 0;

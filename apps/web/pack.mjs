@@ -37,7 +37,7 @@ function sources(api) {
     const arms = Object.fromEntries(d.arms.map((arm) => [arm.name, arm.n]));
     const short = name.replace(/\.toml$/, "");
     all[short] = {
-      file, title: d.title, text: body, published, arms, regions: d.regions, size: [d.width, d.height], quadrature: d.quadrature,
+      file, title: d.title, text: body, published, arms, regions: d.regions, size: [d.width, d.height], reference: d.reference,
       films: native[short] ?? {},
     };
   }

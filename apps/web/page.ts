@@ -7,6 +7,7 @@ import { byId, copied, el, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
+import { OwnScenes } from "./own";
 import { Lesson, lessons, onBench } from "./lessons";
 import { Faults, faultSheet } from "./faults";
 import { exercises } from "./exercises";
@@ -19,7 +20,7 @@ import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
 import { FilmWorker, Pool } from "./pool";
 import { samplers, startText } from "./text";
-import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
+import { command, fresh, nativeHash, openingOf, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
 type Opened = Pick<State, "experiment" | "set" | "arms">;
@@ -81,6 +82,7 @@ export class Page implements Viewer {
     };
     document.querySelector<HTMLElement>(".skip")!.onclick = (event): void => { event.preventDefault(); byId("main").focus(); }; // the address holds the state
     window.onhashchange = (): void => this.fromAddress();
+    new OwnScenes(byId("own"), pool, this.speaker, (name, source) => this.openOwn(name, source));
     this.fromAddress();
   }
 
@@ -110,7 +112,7 @@ export class Page implements Viewer {
     this.response = [];
     this.idle = false;
     this.openedAt = performance.now();
-    const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
+    const opening = openingOf(source, overrides(state, source));
     byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof EngineError ? error : new EngineError("bug", error instanceof Error ? error.message : String(error));
@@ -123,6 +125,15 @@ export class Page implements Viewer {
       this.refused = true;
       this.open([...response, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
     });
+  }
+
+  /** A scene of the user on the bench. */
+  private openOwn(name: string, source: Source): void {
+    this.data.sources[name] = source;
+    this.state = { ...fresh(name, source), answers: this.state.answers };
+    this.turn();
+    this.show();
+    this.open();
   }
 
   /** Applies a setting: at once in the address, in the pictures at most thirty times a second. */
@@ -156,7 +167,7 @@ export class Page implements Viewer {
     else this.newPictures(d, shown);
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
-      if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
+      if (picture.index < 0) picture.name("reference", d.reference === "paired" ? "the mean of two estimates" : "by quadrature, no samples");
       else picture.about(d.arms[shown[picture.index]!.arm]!), this.metrics(picture.index);
     }
     if (byId("charts").childElementCount !== d.regions.length)
@@ -378,7 +389,7 @@ export class Page implements Viewer {
 
   private asker(): Asker {
     const [, source] = Object.entries(this.data.sources)[0]!;
-    const opening = { file: source.file, text: source.text, published: source.published, set: [] };
+    const opening = openingOf(source, []);
     return (this.known ??= new Asker(this.model, opening, source));
   }
 

@@ -3,15 +3,14 @@
 // too long.
 import { Box, EngineError } from "./api";
 import { choice } from "./controls";
-import { byId, copied, el, minus, plusMinus, Speaker } from "./dom";
+import { byId, copied, download, el, minus, plusMinus, Speaker } from "./dom";
 import { Editor } from "./editor";
 import { exported, exports } from "./export";
 import { FilmView } from "./film";
-import { Opening } from "./jobs";
 import { showLadders } from "./ladders";
 import { Described, Model, Shown, Viewer } from "./model";
 import { FilmWorker, Pool, withUser } from "./pool";
-import { Source } from "./state";
+import { openingOf, Source } from "./state";
 import { grounds } from "./templates";
 import { figures, samplers } from "./text";
 import { evaluations, four } from "./workshop_settings";
@@ -241,7 +240,7 @@ export class Workshop implements Viewer {
     const pool = (this.films = new Pool(this.at.module, source, count, 100_000));
     this.model.pool = pool;
     const counts = `[4, 16${this.n > 16 ? ", 64" : ""}]`;
-    const opening: Opening = { file: from.file, text: from.text, published: "", set: [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`] };
+    const opening = openingOf({ ...from, published: "" }, [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`]);
     this.model.run(opening, [yours, this.beside], this.n).catch((error: unknown) => this.failedIn(era, error));
   }
   opened(d: Described, shown: Shown[]): void { this.film.opened(d, shown); }
@@ -261,7 +260,7 @@ export class Workshop implements Viewer {
   private controls(): void {
     const again = (): void => { this.at.changed(this.work); this.restart(); };
     this.options.replaceChildren(
-      choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.quadrature || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
+      choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.reference !== "note" || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
       choice("your-beside", "beside", samplers().map(({ name, label }) => [name, label]), this.beside, (value) => { this.beside = value; again(); }),
       choice("your-n", "samples a pixel", [["4", "4"], ["16", "16"], ["64", "64"]], String(this.n), (value) => { this.n = Number(value); again(); }));
     const angle = el("output", { for: "your-theta" }, `${this.wo[0]}°`);
@@ -352,10 +351,4 @@ export async function checkedCode(module: WebAssembly.Module, worker: string, co
   } finally {
     pool.end();
   }
-}
-
-function download(name: string, text: string): void {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-  el("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
