@@ -3,7 +3,7 @@ import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
 import { Box, EngineError } from "./api";
-import { byId, copied, el, Speaker } from "./dom";
+import { byId, copied, el, newTask, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
@@ -49,6 +49,7 @@ export class Page implements Viewer {
   private known: Asker | undefined;
   private film!: FilmView;
   private workshop: Workshop | undefined; // once it is opened
+  private opensWorkshop: Promise<void> | undefined; // it takes several tasks
   private module!: WebAssembly.Module;
   private worker = "";
   private template = "cosine";
@@ -64,11 +65,13 @@ export class Page implements Viewer {
     this.model = new Model(new FilmWorker(compiled, worker), new Pool(compiled, worker, count), this);
     const module = await compiled, { pool } = this.model;
     startText(module);
+    await newTask();
     Object.assign(this, { module, worker });
     pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
     this.samplers = samplers();
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.choose(pixel), region: (box) => this.change(drawnRegion, `[${box.join(", ")}]`) }, "main-film");
     byId("film").replaceChildren(this.film.root);
+    await newTask();
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
@@ -172,7 +175,8 @@ export class Page implements Viewer {
     }
     if (byId("charts").childElementCount !== d.regions.length)
       byId("charts").replaceChildren(...d.regions.map(() => el("figure", { class: "narrow chart-to-come" })));
-    if (this.refused || !document.activeElement?.closest("[data-path]")) this.knobs();
+    if (this.refused || !document.activeElement?.closest("[data-path]"))
+      void newTask().then(() => { if (d === this.model.described) this.knobs(); });
     this.refused = false;
   }
 
@@ -318,11 +322,8 @@ export class Page implements Viewer {
     const { part, exercise } = this.state, at = byId("task"), found = exercises.find(({ name }) => name === exercise);
     const writes = part === "write" || (part === "faults" && found !== undefined);
     if (writes && !this.workshop) {
-      this.workshop = new Workshop({
-        module: this.module, worker: this.worker, filmWorker: this.model.filmWorker, sources: this.data.sources, speaker: this.speaker,
-        changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
-      });
-      byId("workshop").replaceChildren(this.workshop.root);
+      this.opensWorkshop ??= this.openWorkshop();
+      return;
     }
     byId("workshop").hidden = part !== "write";
     if (part !== "write") this.workshop?.show(false), (this.loaded = "");
@@ -341,6 +342,16 @@ export class Page implements Viewer {
     void this.loadCode();
   }
 
+  private async openWorkshop(): Promise<void> {
+    this.workshop = await Workshop.opened({
+      module: this.module, worker: this.worker, filmWorker: this.model.filmWorker, sources: this.data.sources, speaker: this.speaker,
+      changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
+    });
+    byId("workshop").replaceChildren(this.workshop.root);
+    await newTask();
+    this.showWrite();
+  }
+
   /** The code of the address, or a template. */
   private async loadCode(): Promise<void> {
     const { code, ground } = this.state, { code: plain, ground: own } = templates[this.template]!;
@@ -352,7 +363,7 @@ export class Page implements Viewer {
     } catch {
       byId("wrong").append(el("p", {}, "The address has a sampler's code that cannot be read: a template is open."));
     }
-    if (this.state.part === "write") this.workshop!.load({ code: text, ground: ground || own });
+    if (this.state.part === "write") await this.workshop!.load({ code: text, ground: ground || own });
   }
 
   /** The user has changed the code, or what it is shown on. */
@@ -369,14 +380,16 @@ export class Page implements Viewer {
     byId("workshop").hidden = false;
     this.workshop!.show(true);
     this.faults.forget();
-    this.workshop!.load(exercise);
+    void this.workshop!.load(exercise);
   }
 
   private goTo(exercise: string): void {
     Object.assign(this.state, { exercise, part: "faults" });
     this.turn();
     this.show();
-    byId("write").querySelector<HTMLElement>("a, input, button")?.focus();
+    const focus = (): void => byId("write").querySelector<HTMLElement>("a, input, button")?.focus();
+    if (this.opensWorkshop) void this.opensWorkshop.then(focus);
+    else focus();
   }
 
   private rest(): void {

@@ -3,7 +3,7 @@
 // too long.
 import { Box, EngineError } from "./api";
 import { choice } from "./controls";
-import { byId, copied, download, el, minus, plusMinus, Speaker } from "./dom";
+import { byId, copied, download, el, minus, newTask, plusMinus, Speaker } from "./dom";
 import { Editor } from "./editor";
 import { exported, exports } from "./export";
 import { FilmView } from "./film";
@@ -54,7 +54,6 @@ export interface Workplace {
 
 export class Workshop implements Viewer {
   readonly root: HTMLElement;
-  readonly editor: Editor;
   private readonly model: Model;
   private readonly film: FilmView;
   private readonly fault = el("p", { id: "fault-line", role: "alert" });
@@ -82,12 +81,17 @@ export class Workshop implements Viewer {
   private checking = false;
   private active = false;
 
-  constructor(private readonly at: Workplace) {
+  /** In several tasks. */
+  static async opened(at: Workplace): Promise<Workshop> {
+    const place = el("div", { class: "editor" });
+    return new Workshop(at, place, await Editor.opened(place, "the code of your sampler"));
+  }
+
+  private constructor(private readonly at: Workplace, place: HTMLElement, readonly editor: Editor) {
     this.scene = Object.keys(at.sources)[0]!;
     this.model = new Model(at.filmWorker, new Pool(at.module, at.worker, 0), this);
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.film.select(pixel) }, "your-film", ["film 0", "film 1"]);
-    const place = el("div", { class: "editor" });
-    this.editor = new Editor(place, "the code of your sampler", () => this.edited());
+    editor.changed = (): void => this.edited();
     const button = (id: string, words: string, act: () => void, css = ""): HTMLElement => el("button", { type: "button", id, class: css, onclick: act }, words);
     const formats = choice("export-format", "export as", exports, exports[0]![0], () => this.export());
     this.root = el("div", { class: "workshop" },
@@ -103,14 +107,19 @@ export class Workshop implements Viewer {
     window.setInterval(() => this.guard(), 500);
   }
 
-  /** Shows this code; it is checked when asked. */
-  load({ code, ground }: Work): void {
+  /** Shows this code; it is checked when asked. What is computed of it begins a few tasks later. */
+  async load({ code, ground }: Work): Promise<void> {
+    this.end();
+    const { era } = this;
     this.editor.code = code;
     this.ground = ground in grounds ? ground : "lambert";
     this.verdicts.replaceChildren();
     this.layer = "pdf";
-    this.controls();
-    this.restart();
+    for (const step of [(): void => this.controls(), (): void => this.restart()]) {
+      await newTask();
+      if (era !== this.era) return;
+      step();
+    }
   }
 
   get work(): Work { return { code: this.editor.code, ground: this.ground }; }
