@@ -109,6 +109,11 @@ def write(driver):
     time.sleep(2)  # it is read 350 ms after the last key, and its films are computed
 
 
+def open_editor(driver):
+    driver.execute_script("document.querySelector('[data-tab=write]').click()")
+    browser.wait(driver, "document.documentElement.dataset.written")
+
+
 def compute(driver):
     move(driver, 350)
     time.sleep(3)
@@ -118,6 +123,7 @@ def compute(driver):
 PHASES = (("films and metrics are computed", "", browser.FINISHED, compute),
           ("a slider moves ten times a second", "", browser.FINISHED, slide),
           ("the wheel zooms", "", browser.FINISHED, turn_wheel),
+          ("the editor opens, the first time", "", browser.FINISHED, open_editor),
           ("a sampler is edited", "#part=write", "document.documentElement.dataset.written", write))
 
 

@@ -1,5 +1,6 @@
 // crescent import: starts crescent-import, which reads a model by assimp in a process of its own, checks the mesh that
 // it wrote, and prints the tables of an experiment for it. A model that the importer dies of is an error of the input.
+// An OpenEXR image is packed by the program itself.
 #include <algorithm>
 #include <cctype>
 #include <chrono>
@@ -108,25 +109,7 @@ std::string lower(std::string text) {
     return text;
 }
 
-std::string table_name(const std::string& out) {
-    std::string name = std::filesystem::path(out).stem().string();
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
-    if (name.empty() || name[0] == '-') name = "mesh" + name;
-    return name.substr(0, 64);
-}
-
 std::string point(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
-
-/// A camera that sees a ball around the box, from above and the side.
-std::string camera_for(const Bounds& box) {
-    constexpr double half_view = 20;  // degrees
-    const Vec3d low = widen(box.low), high = widen(box.high), middle = 0.5 * (low + high);
-    const double radius = 0.5 * std::sqrt(dot(high - low, high - low));
-    const Vec3d towards = normalize(Vec3d{0.5, 0.4, 1});
-    return fmt::format("[camera]\neye = {}\ntarget = {}\nvfov_deg = {}\n",
-        point(middle + (1.05 * radius / math::sin(half_view * pi / 180)) * towards), point(middle), 2 * half_view);
-}
 
 std::string rho_d_of(const Json& description, const std::string& material) {
     Rgb rho = {0.5, 0.5, 0.5};
@@ -136,13 +119,24 @@ std::string rho_d_of(const Json& description, const std::string& material) {
     return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", rho[0], rho[1], rho[2]);
 }
 
+/// Packs an OpenEXR image, for a sky or a texture.
+int import_image(const ImportFlags& flags) {
+    if (!flags.out.ends_with(".image")) refuse(flags.out, "expected a name that ends with .image (--out)");
+    can_write(flags.out);
+    const std::shared_ptr<const RgbImage> image = read_texture(flags.file);
+    write_whole(flags.out, image_file(*image));
+    print(fmt::format("# {}: {} x {} texels, hash {}\n", flags.out, image->width, image->height, content_hash(*image)));
+    return passed;
+}
+
 }  // namespace
 
 int import(const ImportFlags& flags) {
     const std::string extension = lower(std::filesystem::path(flags.file).extension().string());
     const std::vector<std::string> known = {".obj", ".ply", ".glb", ".gltf", ".stl"};
+    if (extension == ".exr") return import_image(flags);
     if (std::ranges::find(known, extension) == known.end())
-        refuse(flags.file, "expected a model with the extension .obj, .ply, .glb, .gltf or .stl");
+        refuse(flags.file, "expected a model with the extension .obj, .ply, .glb, .gltf or .stl, or an image .exr");
     if (!flags.out.ends_with(".mesh")) refuse(flags.out, "expected a name that ends with .mesh (--out)");
     if (std::error_code unknown; !std::filesystem::is_regular_file(flags.file, unknown))
         refuse(flags.file, "expected a file that can be read");
@@ -166,8 +160,8 @@ int import(const ImportFlags& flags) {
             material.value("triangles", 0),
             material.contains("texture") ? ", texture " + material.value("texture", "") : "",
             materials.size() > 1 && flags.material.empty() ? " (alone: --material NAME)" : "");
-    out += "\n" + camera_for(box);
-    out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name(flags.out),
+    out += "\n" + camera_table(box);
+    out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name_of(flags.out),
         std::filesystem::path(flags.out).filename().string(), rho_d_of(imported.description, flags.material));
     print(out);
     return passed;

@@ -55,8 +55,9 @@ struct Bench {
     std::vector<ShadingPoints> last;
     ReferenceFilm reference;
     std::unique_ptr<PixelQuadrature> quadrature;
+    ExternalSamplers outside;  // the sampler of the page, and combinations
 
-    explicit Bench(Experiment opened) : experiment(std::move(opened)), scene(experiment) {}
+    explicit Bench(Experiment opened);
     std::size_t width() const { return static_cast<std::size_t>(experiment.image.width); }
     std::size_t pixels() const { return width() * static_cast<std::size_t>(experiment.image.height); }
 };
@@ -66,6 +67,8 @@ Slot& slot(int index);
 
 /// JSON has no NaN and infinities: they are written by name, as in metrics.json.
 ordered_json json_number(double x);
+/// An arm as the kernels take it.
+SamplerRef sampler_of(const ArmPlan& arm);
 /// Returns the arm `name` of the experiment; throws InputError if there is none.
 const ArmPlan& arm_of(const std::string& name);
 

@@ -43,6 +43,22 @@ export async function copied(from: HTMLElement): Promise<string> {
   }
 }
 
+let channel: MessageChannel | undefined;
+const waiting: (() => void)[] = [];
+
+/** Ends the task of the page's thread: what follows is another one, before which the browser may paint. */
+export function newTask(): Promise<void> {
+  if (!channel) (channel = new MessageChannel()).port1.onmessage = (): void => waiting.shift()?.();
+  return new Promise((done) => { waiting.push(done); channel!.port2.postMessage(0); });
+}
+
+/** Saves text as a file of the user. */
+export function download(name: string, text: string): void {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
 /** Announces a line to screen readers, at most once a second, the last one always. */
 export class Speaker {
   private reported = 0;

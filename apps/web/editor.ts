@@ -1,5 +1,6 @@
 // The editor of a sampler's code: CodeMirror 6 with the language's colours, and errors at their line.
-import { editorParts } from "./editor_parts";
+import { newTask } from "./dom";
+import { editorParts, loadEditor } from "./editor_parts";
 import type { EditorView } from "./vendor/codemirror/editor";
 
 /** The colours of the language. */
@@ -27,8 +28,21 @@ const theme = {
 export class Editor {
   private readonly view: EditorView;
   private quiet = false;
+  changed = (): void => {}; // called when the user has changed the code
 
-  constructor(parent: HTMLElement, label: string, private readonly changed: () => void) {
+  /** In several tasks: the packages, the view, the language. */
+  static async opened(parent: HTMLElement, label: string): Promise<Editor> {
+    await loadEditor();
+    const { Compartment, javascript, syntaxHighlighting } = editorParts(), language = new Compartment(), editor = new Editor(parent, label, language.of([]));
+    for (const extension of [javascript(), [javascript(), syntaxHighlighting(colours())]]) {
+      await newTask();
+      editor.view.dispatch({ effects: language.reconfigure(extension) });
+    }
+    await newTask();
+    return editor;
+  }
+
+  private constructor(parent: HTMLElement, label: string, language: object) {
     const parts = editorParts(), { EditorState, EditorView, keymap } = parts;
     this.view = new EditorView({
       parent,
@@ -36,7 +50,7 @@ export class Editor {
         doc: "",
         extensions: [
           parts.lineNumbers(), parts.highlightSpecialChars(), parts.history(), parts.drawSelection(), parts.indentOnInput(), parts.bracketMatching(),
-          parts.highlightActiveLine(), parts.lintGutter(), parts.javascript(), parts.syntaxHighlighting(colours()), parts.indentUnit.of("  "),
+          parts.highlightActiveLine(), parts.lintGutter(), language, parts.indentUnit.of("  "),
           keymap.of([...parts.defaultKeymap, ...parts.historyKeymap]), EditorView.theme(theme),
           EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false" }),
           EditorView.updateListener.of((update) => { if (update.docChanged && !this.quiet) this.changed(); }),

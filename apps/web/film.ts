@@ -44,6 +44,7 @@ export class FilmView {
   private drawing = false; // a region
   private dragging: Drawn | undefined;
   private frame = 0;
+  private fresh = false; // nothing of this size was drawn yet
   private repainting = 0;
   private readonly pointers = new Map<number, [number, number]>();
   private moved = 0; // CSS pixels that the pointer went since it was put down
@@ -76,6 +77,7 @@ export class FilmView {
     this.d = d;
     this.shown = shown;
     if (alike) return void (this.layers = this.layers.map((layer) => ({ ...layer }))); // layout takes longer than the first tile
+    this.fresh = !same;
     if (!same) (this.zoom = 1), (this.centre = [d.width / 2, d.height / 2]), (this.layers = []);
     const keys = this.options().map(([key]) => key);
     const want = this.prefer ?? [keys[0]!, keys[1] ?? "reference"];
@@ -243,7 +245,12 @@ export class FilmView {
 
   /** Draws in the next frame. */
   private draw(): void {
-    if (!this.frame) this.frame = requestAnimationFrame(() => { this.frame = 0; this.drawNow(); });
+    if (!this.frame) this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      if (!this.fresh) return this.drawNow();
+      this.fresh = false; // the first frame lays out the page
+      this.draw();
+    });
   }
   private drawNow(): void {
     const pen = this.canvas.getContext("2d"), w = this.canvas.clientWidth, h = this.canvas.clientHeight;

@@ -103,7 +103,8 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     const bool whole = std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
     if (!whole) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
     s.film.n = samples, s.film.invalid = 0;
-    s.film.directions = s.film.evaluations = directions_per_sample(plan.sampler);
+    const SampleCost cost = cost_of_sample(sampler_of(plan));
+    s.film.directions = cost.directions, s.film.evaluations = cost.f;
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }
 

@@ -107,7 +107,10 @@ export async function openPixel(root: HTMLElement, model: Model, state: State, l
   const { pixel } = state, { described: d } = model;
   if (!pixel) return;
   const [i, j] = [Math.min(pixel[0], d.width - 1), Math.min(pixel[1], d.height - 1)];
-  const inside = el("div"), arms = state.arms.map((arm, k): [string, string] => [String(k), arm]);
+  const single = (name: string): boolean => d.arms.some((arm) => arm.name === name && arm.sampler !== "");
+  const inside = el("div"), arms = state.arms.map((arm, k): [string, string] => [String(k), arm]).filter(([, arm]) => single(arm));
+  if (arms.length === 0) return root.replaceChildren(el("p", {}, "No arm here is a sampler of its own: choose one to see its draws."));
+  if (!single(state.arms[state.arm] ?? "")) state.arm = Number(arms[0]![0]);
   const whose = choice("whose", "draws of", arms, String(state.arm), (value) => { state.arm = Number(value); again(); });
   const s = model.shown[state.arm] ?? model.shown[0]!;
   const show = (): void => { // the old contents stay until this one has its text

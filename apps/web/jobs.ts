@@ -1,13 +1,16 @@
 // The jobs of a worker, and their execution.
 import { Api, Box, EngineError, pixelsOf, UserCalls } from "./api";
 
-export interface Opening { file: string; text: string; set: string[]; published: string }
+/** Files of the user, which an experiment names. `key`: another one for other files. */
+export interface Given { key: string; files: { name: string; bytes: Blob }[] }
+export interface Opening { file: string; text: string; set: string[]; published: string; given?: Given }
 
 /** What is painted of a film: apps/web/pictures.cpp. */
 export interface Paint { picture: number; index: number; other: number; top: number; times: number }
 
 export type Job =
   | { kind: "open"; opening: Opening }
+  | { kind: "look"; opening: Opening } // opens it and says what it is; "" as text: one is made for the files
   | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
   | { kind: "photograph"; box: Box; opening: Opening } // of the reference
@@ -26,7 +29,9 @@ export type Reply = { id: number; answer?: Answer; error?: Fault; size?: number 
 
 const filmPlanes = 9, referencePlanes = 5;
 
-function perform(api: Api, job: Exclude<Job, { kind: "open" }>): Answer {
+declare class FileReaderSync { readAsArrayBuffer(blob: Blob): ArrayBuffer }
+
+function perform(api: Api, job: Exclude<Job, { kind: "open" | "look" }>): Answer {
   switch (job.kind) {
     case "tile": {
       const { x0, y0, x1, y1 } = job.box, pixels = pixelsOf(job.box);
@@ -85,6 +90,7 @@ export class Answering {
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the api
   private ready = false; // to compute its reference
+  private given = ""; // the key of the files that the api has
 
   /** `kept`: the number of pixels for which it keeps the hits of primary rays. */
   constructor(private readonly module: WebAssembly.Module, private readonly kept: number, private readonly user?: { calls: UserCalls; numbers: number; context: boolean }) {
@@ -93,6 +99,7 @@ export class Answering {
 
   private made(): Api {
     const { user } = this, api = new Api(this.module, user?.calls);
+    this.given = "";
     api.number("keep_points", this.kept);
     if (user) api.number("user_takes", user.numbers, user.context ? 1 : 0);
     return api;
@@ -104,6 +111,7 @@ export class Answering {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
     try {
+      if (job.kind === "look") return { response: this.look(job.opening) };
       if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) this.open(about);
       if (readsReference(job) && !this.ready) {
         this.api.json("prepare_reference");
@@ -118,11 +126,36 @@ export class Answering {
     }
   }
 
-  private open(about: Opening): void {
+  private open(about: Opening): unknown {
     this.here = undefined;
     this.ready = false;
-    this.api.json("open", about);
+    this.take(about.given);
+    const described = this.api.json("open", about);
     this.here = about;
+    return described;
+  }
+
+  /** The text of an experiment, and what the core says of it. */
+  private look(opening: Opening): unknown {
+    this.take(opening.given);
+    const text = opening.text || this.api.say("experiment_of_files");
+    return { text, described: this.open({ ...opening, text }) };
+  }
+
+  /** The files of an experiment stay for the next one that has none. A file is not read before its first bytes state a
+   *  size that the module takes. */
+  private take(given: Given | undefined): void {
+    if (!given || given.key === this.given) return;
+    const reader = new FileReaderSync(), headers = 64;
+    this.given = "";
+    this.api.number("forget_files");
+    for (const { name, bytes } of given.files) {
+      this.api.give(reader.readAsArrayBuffer(bytes.slice(0, headers)));
+      this.api.json("expect_file", { name, size: bytes.size });
+      this.api.give(reader.readAsArrayBuffer(bytes));
+      this.api.json("keep_file", { name });
+    }
+    this.given = given.key;
   }
 }
 

@@ -1,5 +1,5 @@
 // Unpacks the module and starts the page; a browser that cannot run it shows a message.
-import { byId, el } from "./dom";
+import { byId, el, newTask } from "./dom";
 import { Data, Page } from "./page";
 
 declare const DecompressionStream: new (format: "gzip") => ReadableWritablePair<Uint8Array, Uint8Array>;
@@ -16,10 +16,9 @@ function bytesOf(base64: string): Uint8Array {
 /** A task of its own for each piece: one of all bytes blocks the page for 20 ms. */
 function inPieces(bytes: Uint8Array, size = 1 << 17): ReadableStream<Uint8Array> {
   let from = 0;
-  const next = new MessageChannel();
   return new ReadableStream({
     async pull(to): Promise<void> {
-      if (from > 0) await new Promise((done) => { next.port1.onmessage = done; next.port2.postMessage(0); });
+      if (from > 0) await newTask();
       to.enqueue(bytes.subarray(from, (from += size)));
       if (from >= bytes.length) to.close();
     },
@@ -35,7 +34,9 @@ function compiled(base64: string): Promise<WebAssembly.Module> {
 async function main(): Promise<void> {
   const words = (id: string): string => byId(id).textContent ?? "";
   try {
-    await new Page(JSON.parse(words("data")) as Data).start(compiled(words("module")), words("worker"));
+    const page = new Page(JSON.parse(words("data")) as Data);
+    await newTask();
+    await page.start(compiled(words("module")), words("worker"));
   } catch (error) {
     byId("wrong").replaceChildren(el("p", {}, `This browser cannot run the kernels (${error instanceof Error ? error.message : error}). It must know WebAssembly with 128-bit vectors: any browser since 2023 does.`));
   }

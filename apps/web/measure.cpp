@@ -12,10 +12,11 @@ namespace crescent::web {
 
 namespace {
 
-double rms_of(const std::vector<double>& a, const std::vector<double>& b) {
+/// `own`: the mean squared error of b, if it is known and a difference to b contains it. 0 if all of it is that.
+double rms_of(const std::vector<double>& a, const std::vector<double>& b, double own) {
     double sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return std::sqrt(sum / static_cast<double>(a.size()));
+    return std::sqrt(std::max(0.0, sum / static_cast<double>(a.size()) - own));
 }
 
 /// RMSE of an arm over a box on several seeds.
@@ -46,7 +47,9 @@ struct Measuring {
         for (int j = box.y0; j < box.y1; ++j)
             for (int i = box.x0; i < box.x1; ++i)
                 reference[at(i, j)] = double(film.y[static_cast<std::size_t>(j) * bench().width() + std::size_t(i)]);
-        for (const std::vector<double>& one : y) rmse.push_back(rms_of(one, reference));
+        const bool paired = bench().experiment.reference.kind == ReferenceKind::paired;
+        const double error = paired ? rms(film.error, film.width, {box.x0, box.y0, box.x1 - 1, box.y1 - 1}) : 0;
+        for (const std::vector<double>& one : y) rmse.push_back(rms_of(one, reference, error * error));
         const auto pixels = static_cast<double>(pixels_of(box));
         const double directions = pixels * double(n) * double(directions_per_sample(sampler)) * double(y.size());
         ordered_json out = {{"name", name}, {"n", n}, {"median", json_number(quantile(rmse, 0.5))},
@@ -137,7 +140,7 @@ CRESCENT_EXPORT(measure)()->void {
     const ordered_json query = request();
     Measuring m(query);
     prepare_reference();
-    for (const TileBox& part : parts_of(m.box, reference_cost)) m.add_reference(part);
+    for (const TileBox& part : parts_of(m.box, reference_cost(bench().experiment))) m.add_reference(part);
     for (const TileBox& part : parts_of(m.box, cost_of(m.sampler, m.n)))
         for (std::size_t k = 0; k < m.y.size(); ++k) m.add_film(part, k);
     m.send();

@@ -14,8 +14,9 @@ namespace {
 
 ordered_json one_metric(const RunMetrics& run, const std::string& name) {
     const std::optional<Published>& figures = bench().experiment.figures;
+    const bool paired = bench().experiment.reference.kind == ReferenceKind::paired;
     ordered_json out = {
-        {"value", json_number(metric_value(run, name))}, {"text", figures_of(name, metric_value(run, name))}};
+        {"value", json_number(metric_value(run, name))}, {"text", figures_of(name, metric_value(run, name), paired)}};
     const bool same_seed = figures && (!figures->seed || *figures->seed == run.key.seed);
     const auto published = same_seed ? figures->find(run.key.arm, run.key.n, run.key.s, name) : std::nullopt;
     if (published) out["published"] = figures_of(name, *published);
@@ -63,6 +64,10 @@ ordered_json metrics_of(const Slot& s) {
     for (const auto& [name, info] : metric_names(b.experiment))
         if (!(info->from_two_samples && s.key.n < 2)) out["metrics"][name] = one_metric(run, name);
     for (const Region& region : b.experiment.regions) {
+        if (b.experiment.reference.kind == ReferenceKind::paired) {  // whose error the RMSE is corrected for
+            out["own"][region.name] = figures(run.region(region.name)->reference_error, 2);
+            continue;
+        }
         const double error = rms(b.reference.error, b.reference.width, region.box);
         const double rmse = run.region(region.name)->rmse;
         if (error > most_error_share * rmse) out["unsure"].push_back(region.name);
@@ -87,7 +92,7 @@ CRESCENT_EXPORT(tail)()->void {
     const TailPlan plan = tail_plan(box);
     std::vector<float> largest;
     if (plan.kept > 0)
-        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler.sampler, tail_cost * plan.n)))
+        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
             keep_largest(part, sampler, plan, largest);
     send_tail(largest);
 }

@@ -14,10 +14,12 @@ export interface Region { name: string; box: [number, number, number, number] }
 export interface Described {
   title: string; width: number; height: number; seed: number; s: number; n: number; firefly_k: number; hash: string;
   arms: Arm[]; regions: Region[]; knobs: Knob[]; source: string;
+  reference: string; reference_cost: number; // "paired": two estimates; the cost of one of its pixels, in samples
 }
 export interface Metric { value: number | string; text: string; published?: string }
 export interface Metrics {
   key: string; largest: number; bad: number; hash: string; metrics: Record<string, Metric>; unsure?: string[];
+  own?: Record<string, string>; // by region, the error of a reference of two estimates
 }
 export interface Tail { k?: number; se?: number; heavy?: boolean; text?: string; words: string }
 
@@ -45,7 +47,7 @@ export interface PixelValues {
 export const ladder = [1, 4, 16, 64, 256, 1024];
 const referenceAfter = 64; // sample counts up to this one are computed before it
 const seedsOfBands = 8;
-const referenceCost = 2000, filmCost = 30; // of a pixel, in samples: apps/web/parts.h
+const quadratureCost = 2000, filmCost = 30; // of a pixel, in samples: apps/web/parts.h
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
@@ -92,7 +94,7 @@ export class Model {
     this.finished = this.referenceDone = false;
     this.opening = true;
     this.pool.open({ ...opening, published: "" });
-    const described = (await this.filmWorker.request({ kind: "json", call: "open", request: opening })).response as Described;
+    const { described } = (await this.filmWorker.request({ kind: "look", opening })).response as { described: Described };
     if (era !== this.era) return;
     const shown = arms.map((name) => ({ arm: described.arms.findIndex((a) => a.name === name), name, n: 0, sampleCounts: [], tails: {}, bands: {} }));
     await Promise.all([this.filmWorker.request({ kind: "call", call: "film_buffer", given: [-1] }), ...shown.map((s, index) => this.begin(index, s.arm, sampleCounts[0]!))]);
@@ -197,14 +199,14 @@ export class Model {
 
   /** The reference is kept if only seeds, arms, regions or k have changed; returns whether it is complete. */
   private keep(opening: Opening): boolean {
-    const key = JSON.stringify([opening.text, opening.set.filter((set) => !untouchedByReference.test(set))]);
+    const key = JSON.stringify([opening.text, opening.given?.key, opening.set.filter((set) => !untouchedByReference.test(set))]);
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
     return this.tiles.parts.length === this.referenceBoxes().length;
   }
   /** Large ones: no code of the user runs, and ten thousand requests would block the page. */
-  private referenceBoxes(): Box[] { return this.pool.tiles(this.described.width, this.described.height, referenceCost, mostSamples); }
+  private referenceBoxes(): Box[] { return this.pool.tiles(this.described.width, this.described.height, this.described.reference_cost, mostSamples); }
 
-  /** By quadrature; what is known is copied first. */
+  /** What is known is copied first. */
   private async reference(era: number): Promise<void> {
     const { parts } = this.tiles;
     const put = async (box: Box, bytes: ArrayBuffer): Promise<void> => {
@@ -243,6 +245,7 @@ export class Model {
     const most = 4e7; // samples of one band
     for (const region of this.described.regions) {
       const [x0, y0, x1, y1] = region.box, pixels = (x1 - x0 + 1) * (y1 - y0 + 1);
+      if (this.described.reference === "paired" && pixels * this.described.reference_cost > most) continue;
       for (const s of this.shown)
         for (const { n } of s.sampleCounts) {
           if (era !== this.era) return;
@@ -264,7 +267,7 @@ export class Model {
   /** The reference of an experiment as a picture, RGBA of one box after another. The last request is computed first. */
   async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
     await this.pool.ready;
-    for (const box of this.boxes(referenceCost + filmCost, size).reverse()) // and its colours
+    for (const box of this.boxes(quadratureCost + filmCost, size).reverse()) // and its colours
       this.pool.request({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question works without it
   }
 

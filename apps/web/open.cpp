@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "parts.h"
 #include "user_sampler.h"
 
 namespace crescent::web {
@@ -18,19 +19,17 @@ ordered_json knob(
     return {{"path", path}, {"label", label}, {"unit", unit}, {"low", low}, {"high", high}, {"log", log}};
 }
 
-void add_material_knobs(const Shape& shape, ordered_json& to) {
-    const Material& m = shape.material;
+void add_material_knobs(const std::string& name, const Material& m, ordered_json& to) {
     const auto add = [&](ordered_json k, ordered_json value) {
         k["value"] = std::move(value);
         to.push_back(std::move(k));
     };
     const LobeInfo& lobe = lobe_info(m.brdf);
-    if (m.s && !m.inherits_s) add(knob(shape.name + ".s", "s of " + shape.name, "", 1, 4096, true), *m.s);
+    if (m.s && !m.inherits_s) add(knob(name + ".s", "s of " + name, "", 1, 4096, true), *m.s);
     if (m.rho_s > 0 && lobe.parameter == LobeParameter::alpha)
-        add(knob(shape.name + ".alpha", "alpha of " + shape.name, "", 0.01, 1, true), m.alpha.value_or(0.3));
-    add(knob(shape.name + ".rho_d", "rho_d of " + shape.name, "", 0, 1, false), m.rho_d);
-    if (m.rho_s > 0 && !m.specular)
-        add(knob(shape.name + ".rho_s", "rho_s of " + shape.name, "", 0, 1, false), m.rho_s);
+        add(knob(name + ".alpha", "alpha of " + name, "", 0.01, 1, true), m.alpha.value_or(0.3));
+    add(knob(name + ".rho_d", "rho_d of " + name, "", 0, 1, false), m.rho_d);
+    if (m.rho_s > 0 && !m.specular) add(knob(name + ".rho_s", "rho_s of " + name, "", 0, 1, false), m.rho_s);
 }
 
 /// A light's lengths and its centre or edges; its direction can be changed only in the page's address.
@@ -56,28 +55,37 @@ void add_light_knobs(const Light& light, ordered_json& to) {
 
 ordered_json knobs(const Experiment& e) {
     ordered_json all = ordered_json::array();
-    const Shape* main = e.shape_of_s();
-    if (main) add_material_knobs(*main, all);
-    for (const Shape& shape : e.shapes)
-        if (&shape != main && shape.material.rho_s > 0) add_material_knobs(shape, all);
+    const std::optional<std::size_t> main = e.surface_of_s();
+    if (main) add_material_knobs(e.surface_name(*main), e.material(*main), all);
+    for (std::size_t k = 0; k < e.surface_count(); ++k)
+        if (main != k && (e.material(k).rho_s > 0 || k >= e.shapes.size()))
+            add_material_knobs(e.surface_name(k), e.material(k), all);
     const auto add = [&](ordered_json k, ordered_json value) {
         k["value"] = std::move(value);
         all.push_back(std::move(k));
     };
     for (const LightTable& table : all_lights(e)) add_light_knobs(table.light, all);
-    add(knob("fill.radiance", "fill", "W/(sr m²)", 0, 4, false), e.fill);
+    if (e.sky) {
+        add(knob("sky.rotation", "rotation of the sky", "°", -180, 180, false), e.sky->rotation);
+        add(knob("sky.scale", "scale of the sky", "", 0.01, 100, true), e.sky->scale);
+    } else add(knob("fill.radiance", "fill", "W/(sr m²)", 0, 4, false), e.fill);
     add(knob("firefly_k", "firefly k", "", 0.1, 100, true), e.firefly_k);
     add(knob("seed", "seed", "", 0, 4294967295.0, false), e.seed);
     return all;
 }
 
-ordered_json arms(const Experiment& e) {
+ordered_json arms(const Bench& b) {
+    const Experiment& e = b.experiment;
     ordered_json all = ordered_json::array();
     for (const ArmPlan& arm : e.arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
-            all.push_back({{"name", arm.name}, {"sampler", ""}, {"n", arm.n}, {"techniques", 1},
-                {"summary", "the density of the code above"}, {"formula", ""}, {"misses", ""}});
+            const SampleCost cost = cost_of_sample(sampler_of(arm));
+            all.push_back({{"name", arm.name}, {"sampler", ""}, {"n", arm.n}, {"techniques", cost.directions},
+                {"summary",
+                    arm.is_combination() ? fmt::format("a combination of {}", fmt::join(arm.combination.of, ", "))
+                                         : "the density of the code above"},
+                {"formula", ""}, {"misses", ""}});
             continue;
         }
         all.push_back({{"name", arm.name}, {"sampler", arm.sampler}, {"n", arm.n}, {"techniques", info->techniques},
@@ -87,20 +95,31 @@ ordered_json arms(const Experiment& e) {
     return all;
 }
 
-ordered_json described(const Experiment& e) {
+ordered_json described(const Bench& b) {
+    const Experiment& e = b.experiment;
     ordered_json out = {{"title", e.title}, {"width", e.image.width}, {"height", e.image.height}, {"seed", e.seed},
         {"s", e.s()}, {"n", e.n}, {"firefly_k", e.firefly_k}, {"hash", fmt::format("{:016x}", hash(e))}};
-    out["arms"] = arms(e);
+    out["arms"] = arms(b);
     out["regions"] = ordered_json::array();
     for (const Region& r : e.regions)
         out["regions"].push_back({{"name", r.name}, {"box", {r.box.x0, r.box.y0, r.box.x1, r.box.y1}}});
     out["knobs"] = knobs(e);
-    out["quadrature"] = e.reference.kind == ReferenceKind::quadrature;
+    const ReferenceKind kind = e.reference.kind;
+    out["reference"] = kind == ReferenceKind::paired ? "paired" : kind == ReferenceKind::note ? "note" : "quadrature";
+    out["reference_cost"] = reference_cost(e);
     out["source"] = e.figures ? e.figures->source : "";
     return out;
 }
 
 }  // namespace
+
+Bench::Bench(Experiment from) : experiment(std::move(from)), scene(experiment) {
+    for (const ArmPlan& arm : experiment.arms)
+        if (arm.is_external()) outside[arm.name] = page_sampler();
+    add_combinations(experiment, outside);
+}
+
+SamplerRef sampler_of(const ArmPlan& arm) { return {arm.sampler, external_of(bench().outside, arm.name)}; }
 
 Bench& bench() {
     ensure(opened != nullptr, "an experiment was opened");
@@ -123,10 +142,11 @@ CRESCENT_EXPORT(open)()->void {
     const ordered_json query = request();
     Experiment e = parse(query.at("text").get<std::string>(), query.at("file").get<std::string>(),
         query.at("set").get<std::vector<std::string>>());
-    if (e.sky) throw InputError(e.sky->at, "a page cannot read the image of a sky");
     for (const ArmPlan& arm : e.arms)
-        if (!find_arm_info(arm.sampler) && arm.exec != exec_of_page)
+        if (arm.is_external() && arm.exec != exec_of_page)
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
+    if (e.sky) load_sky(*e.sky);
+    read_meshes(e);
     const std::string published = query.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);
     std::vector<Slot> films;  // allocated memory is reused; two images of the largest size would not fit
@@ -135,7 +155,7 @@ CRESCENT_EXPORT(open)()->void {
     opened.reset();
     opened = std::make_unique<Bench>(std::move(e));
     opened->slots = std::move(films);
-    respond(described(opened->experiment));
+    respond(described(*opened));
 }
 
 /// The samplers that an arm may have, with one line about each.

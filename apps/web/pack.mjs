@@ -37,7 +37,7 @@ function sources(api) {
     const arms = Object.fromEntries(d.arms.map((arm) => [arm.name, arm.n]));
     const short = name.replace(/\.toml$/, "");
     all[short] = {
-      file, title: d.title, text: body, published, arms, regions: d.regions, size: [d.width, d.height], quadrature: d.quadrature,
+      file, title: d.title, text: body, published, arms, regions: d.regions, size: [d.width, d.height], reference: d.reference,
       films: native[short] ?? {},
     };
   }
@@ -48,15 +48,17 @@ const bytes = readFileSync(join(build, "crescent.wasm"));
 const api = await opened(await WebAssembly.compile(bytes));
 const version = api.say("version_of");
 const style = api.say("style").trim() + text(join(web, "page.css")).trim();
-const script = bundle("main.ts"), worker = bundle("worker.ts"), editor = bundle("vendor/codemirror/editor.js", "--global-name=crescentEditor");
+const script = bundle("main.ts"), worker = bundle("worker.ts");
+const editor = text(join(web, "vendor/codemirror/editor.js")).split(/^(?=\/\/ part )/m).slice(1);
 // Inside a script element only these end it.
 const inert = (words) => words.replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
 const hash = (words) => `'sha256-${createHash("sha256").update(words).digest("base64")}'`;
 const parts = {
-  version, style, script: inert(script), worker: inert(worker), editor: inert(editor),
+  version, style, script: inert(script), worker: inert(worker),
+  editor: editor.map((part) => `<script type="text/plain" class="editor">${inert(part)}</script>`).join("\n"),
   data: JSON.stringify({ version, sources: sources(api) }).replaceAll("<", "\\u003c"),
   module: gzipSync(bytes, { level: 9 }).toString("base64"),
-  "script-hash": `${hash(inert(script))} ${hash(inert(editor))}`, "style-hash": hash(style),
+  "script-hash": [script, ...editor].map((words) => hash(inert(words))).join(" "), "style-hash": hash(style),
 };
 const page = text(join(web, "index.html")).replace(/\{([a-z-]+)\}/g, (_, name) => {
   if (!(name in parts)) throw new Error(`index.html asks for {${name}}`);

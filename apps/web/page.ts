@@ -3,10 +3,11 @@ import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
 import { Box, EngineError } from "./api";
-import { byId, copied, el, Speaker } from "./dom";
+import { byId, copied, el, newTask, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
+import { OwnScenes } from "./own";
 import { Lesson, lessons, onBench } from "./lessons";
 import { Faults, faultSheet } from "./faults";
 import { exercises } from "./exercises";
@@ -19,7 +20,7 @@ import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
 import { FilmWorker, Pool } from "./pool";
 import { samplers, startText } from "./text";
-import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
+import { command, fresh, nativeHash, openingOf, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
 type Opened = Pick<State, "experiment" | "set" | "arms">;
@@ -48,6 +49,7 @@ export class Page implements Viewer {
   private known: Asker | undefined;
   private film!: FilmView;
   private workshop: Workshop | undefined; // once it is opened
+  private opensWorkshop: Promise<void> | undefined; // it takes several tasks
   private module!: WebAssembly.Module;
   private worker = "";
   private template = "cosine";
@@ -63,11 +65,13 @@ export class Page implements Viewer {
     this.model = new Model(new FilmWorker(compiled, worker), new Pool(compiled, worker, count), this);
     const module = await compiled, { pool } = this.model;
     startText(module);
+    await newTask();
     Object.assign(this, { module, worker });
     pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); }, () => this.withoutWorkers());
     this.samplers = samplers();
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.choose(pixel), region: (box) => this.change(drawnRegion, `[${box.join(", ")}]`) }, "main-film");
     byId("film").replaceChildren(this.film.root);
+    await newTask();
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
@@ -81,6 +85,7 @@ export class Page implements Viewer {
     };
     document.querySelector<HTMLElement>(".skip")!.onclick = (event): void => { event.preventDefault(); byId("main").focus(); }; // the address holds the state
     window.onhashchange = (): void => this.fromAddress();
+    new OwnScenes(byId("own"), pool, this.speaker, (name, source) => this.openOwn(name, source));
     this.fromAddress();
   }
 
@@ -110,7 +115,7 @@ export class Page implements Viewer {
     this.response = [];
     this.idle = false;
     this.openedAt = performance.now();
-    const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
+    const opening = openingOf(source, overrides(state, source));
     byId("wrong").replaceChildren(...response.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof EngineError ? error : new EngineError("bug", error instanceof Error ? error.message : String(error));
@@ -123,6 +128,15 @@ export class Page implements Viewer {
       this.refused = true;
       this.open([...response, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
     });
+  }
+
+  /** A scene of the user on the bench. */
+  private openOwn(name: string, source: Source): void {
+    this.data.sources[name] = source;
+    this.state = { ...fresh(name, source), answers: this.state.answers };
+    this.turn();
+    this.show();
+    this.open();
   }
 
   /** Applies a setting: at once in the address, in the pictures at most thirty times a second. */
@@ -156,12 +170,13 @@ export class Page implements Viewer {
     else this.newPictures(d, shown);
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
-      if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
+      if (picture.index < 0) picture.name("reference", d.reference === "paired" ? "the mean of two estimates" : "by quadrature, no samples");
       else picture.about(d.arms[shown[picture.index]!.arm]!), this.metrics(picture.index);
     }
     if (byId("charts").childElementCount !== d.regions.length)
       byId("charts").replaceChildren(...d.regions.map(() => el("figure", { class: "narrow chart-to-come" })));
-    if (this.refused || !document.activeElement?.closest("[data-path]")) this.knobs();
+    if (this.refused || !document.activeElement?.closest("[data-path]"))
+      void newTask().then(() => { if (d === this.model.described) this.knobs(); });
     this.refused = false;
   }
 
@@ -307,11 +322,8 @@ export class Page implements Viewer {
     const { part, exercise } = this.state, at = byId("task"), found = exercises.find(({ name }) => name === exercise);
     const writes = part === "write" || (part === "faults" && found !== undefined);
     if (writes && !this.workshop) {
-      this.workshop = new Workshop({
-        module: this.module, worker: this.worker, filmWorker: this.model.filmWorker, sources: this.data.sources, speaker: this.speaker,
-        changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
-      });
-      byId("workshop").replaceChildren(this.workshop.root);
+      this.opensWorkshop ??= this.openWorkshop();
+      return;
     }
     byId("workshop").hidden = part !== "write";
     if (part !== "write") this.workshop?.show(false), (this.loaded = "");
@@ -330,6 +342,16 @@ export class Page implements Viewer {
     void this.loadCode();
   }
 
+  private async openWorkshop(): Promise<void> {
+    this.workshop = await Workshop.opened({
+      module: this.module, worker: this.worker, filmWorker: this.model.filmWorker, sources: this.data.sources, speaker: this.speaker,
+      changed: (work) => void this.written(work), checked: (result) => this.faults.checked(result),
+    });
+    byId("workshop").replaceChildren(this.workshop.root);
+    await newTask();
+    this.showWrite();
+  }
+
   /** The code of the address, or a template. */
   private async loadCode(): Promise<void> {
     const { code, ground } = this.state, { code: plain, ground: own } = templates[this.template]!;
@@ -341,7 +363,7 @@ export class Page implements Viewer {
     } catch {
       byId("wrong").append(el("p", {}, "The address has a sampler's code that cannot be read: a template is open."));
     }
-    if (this.state.part === "write") this.workshop!.load({ code: text, ground: ground || own });
+    if (this.state.part === "write") await this.workshop!.load({ code: text, ground: ground || own });
   }
 
   /** The user has changed the code, or what it is shown on. */
@@ -358,14 +380,16 @@ export class Page implements Viewer {
     byId("workshop").hidden = false;
     this.workshop!.show(true);
     this.faults.forget();
-    this.workshop!.load(exercise);
+    void this.workshop!.load(exercise);
   }
 
   private goTo(exercise: string): void {
     Object.assign(this.state, { exercise, part: "faults" });
     this.turn();
     this.show();
-    byId("write").querySelector<HTMLElement>("a, input, button")?.focus();
+    const focus = (): void => byId("write").querySelector<HTMLElement>("a, input, button")?.focus();
+    if (this.opensWorkshop) void this.opensWorkshop.then(focus);
+    else focus();
   }
 
   private rest(): void {
@@ -378,7 +402,7 @@ export class Page implements Viewer {
 
   private asker(): Asker {
     const [, source] = Object.entries(this.data.sources)[0]!;
-    const opening = { file: source.file, text: source.text, published: source.published, set: [] };
+    const opening = openingOf(source, []);
     return (this.known ??= new Asker(this.model, opening, source));
   }
 

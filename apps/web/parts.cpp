@@ -59,8 +59,14 @@ std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {
     return all;
 }
 
-std::uint64_t cost_of(std::string_view sampler, std::uint64_t n) {
-    return n * directions_per_sample(sampler) + film_cost;
+std::uint64_t cost_of(const SamplerRef& sampler, std::uint64_t n) {
+    return n * cost_of_sample(sampler).directions + film_cost;
+}
+
+std::uint64_t reference_cost(const Experiment& experiment) {
+    constexpr std::uint64_t by_quadrature = 2000, estimates = 2, samplers = 5, scalar = 4;
+    if (experiment.reference.kind != ReferenceKind::paired) return by_quadrature;
+    return estimates * samplers * scalar * experiment.reference.n;
 }
 
 Film film_over(const TileBox& box, const SamplerRef& sampler, std::uint64_t n, std::uint32_t seed) {
@@ -78,12 +84,17 @@ Film film_over(const TileBox& box, const SamplerRef& sampler, std::uint64_t n, s
 
 void prepare_reference() {
     Bench& b = bench();
-    if (b.quadrature) return;
+    if (b.quadrature || b.experiment.reference.kind == ReferenceKind::paired) return;
     b.quadrature = std::make_unique<PixelQuadrature>(b.scene, std::vector{b.scene.s()});
 }
 
 void reference_over(const TileBox& box, ReferenceFilm& film) {
     Bench& b = bench();
+    if (b.experiment.reference.kind == ReferenceKind::paired) {
+        for (const ShadingPoints& points : points_seen(box))
+            write_paired(b.scene, points, paired_plan(b.experiment), nullptr, film);
+        return;
+    }
     ensure(b.quadrature != nullptr, "the reference was prepared");
     b.quadrature->write(box, {&film, 1});
 }
@@ -95,8 +106,7 @@ CRESCENT_EXPORT(prepare_reference)()->void {
 }
 /// Keeps the hits of primary rays for this many pixels of an experiment, for tiles that are requested again.
 CRESCENT_EXPORT(keep_points)(double pixels)->void { most_points = static_cast<std::size_t>(pixels); }
-/// The cost of a pixel of a reference, in samples, and of one of a film without its samples.
-CRESCENT_EXPORT(reference_cost)()->double { return static_cast<double>(reference_cost); }
+/// The cost of a pixel of a film without its samples, in samples.
 CRESCENT_EXPORT(film_cost)()->double { return static_cast<double>(film_cost); }
 
 }  // namespace crescent::web

@@ -10,8 +10,9 @@ namespace crescent::web {
 
 /// The most samples, or work of equal cost, of a box that parts_of() returns.
 inline constexpr std::uint64_t most_of_part = 100'000;
-/// The cost of a pixel of a reference: one in a penumbra takes twice that of the others, by the rates in docs/speed.md.
-inline constexpr std::uint64_t reference_cost = 2000;
+/// The cost of a pixel of the experiment's reference. By quadrature: one in a penumbra takes twice that of the others,
+/// by the rates in docs/speed.md. Of two estimates: five samplers at most, in scalar code that traces meshes.
+std::uint64_t reference_cost(const Experiment& experiment);
 /// The cost of a pixel in films without its samples.
 inline constexpr std::uint64_t film_cost = 30;
 /// The cost of a sample used for a tail.
@@ -28,7 +29,7 @@ std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel);
 /// Returns the film of a box alone: a sampler at n samples.
 Film film_over(const TileBox& box, const SamplerRef& sampler, std::uint64_t n, std::uint32_t seed);
 /// Returns the cost of one of its pixels.
-std::uint64_t cost_of(std::string_view sampler, std::uint64_t n);
+std::uint64_t cost_of(const SamplerRef& sampler, std::uint64_t n);
 /// Prepares what a reference needs of the lobes, if not done yet.
 void prepare_reference();
 /// Writes the pixels of a box into a reference of the scene's size.

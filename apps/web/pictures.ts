@@ -35,6 +35,7 @@ export class Picture {
 
   /** The axis of the arm, and its density; for two techniques, their weights. */
   about(arm: Arm): void {
+    if (!arm.formula) return this.aim.replaceChildren(arm.summary);
     this.aim.replaceChildren(made(`${arm.summary}: <math><mi>${arm.techniques > 1 ? "w" : "p"}</mi><mo>=</mo>${arm.formula}</math>`));
   }
 
@@ -89,6 +90,7 @@ export class Picture {
     };
     for (const { name } of this.d.regions) {
       row(`RMSE of ${name}`, m?.metrics[`rmse.${name}`], m?.unsure?.includes(name) ? "the reference is not good enough" : "");
+      if (m?.own?.[name]) row(`error of the reference in ${name}`, { value: 0, text: m.own[name]! });
       const tail = s.tails[name];
       row(`tail k̂ of ${name}`, tail ? { value: 0, text: tail.text ?? "–" } : waiting, tail?.words ?? "being measured");
     }

@@ -2,12 +2,14 @@
 // replaced by its default, with a message.
 import { Lesson, lessons } from "./lessons";
 import { exercises } from "./exercises";
+import { Given, Opening } from "./jobs";
 import { ladder, Region } from "./model";
 import { grounds } from "./templates";
 
 export interface Source {
   file: string; title: string; text: string; published: string; arms: Record<string, number[]>; regions: Region[];
-  size: [number, number]; quadrature: boolean;
+  size: [number, number]; reference: string; // as the file has it: "quadrature", "note", "paired"
+  given?: Given; // of a scene of the user
   films: Record<string, string>; // the program's hashes, by "ARM n=N s=S"
 }
 export type Part = "bench" | "write" | "faults" | "lessons" | "sheet";
@@ -157,10 +159,15 @@ export function overrides(state: State, source: Source): string[] {
   return [...set, ...state.arms.map((arm) => sampleCounts(arm, state, source)).filter((word) => word !== "")];
 }
 
+/** What the workers open: the experiment with some settings. */
+export function openingOf({ file, text, published, given }: Source, set: string[]): Opening {
+  return { file, text, published, set, ...(given ? { given } : {}) };
+}
+
 /** A word quoted for a shell. */
 export const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
 
 export function command(state: State, source: Source): string {
-  const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, for any file
-  return ["./run", source.file, ...[...overrides(state, source), ...measured].flatMap((word) => ["--set", quoted(word)])].join(" ");
+  const measured = source.reference === "note" ? ['reference.kind="quadrature"'] : []; // as the page does
+  return [source.given ? "crescent run" : "./run", quoted(source.file), ...[...overrides(state, source), ...measured].flatMap((word) => ["--set", quoted(word)])].join(" ");
 }

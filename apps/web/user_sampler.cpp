@@ -158,13 +158,9 @@ std::vector<Draw> draws_of(const CheckCase& at, std::size_t n) {
 
 }  // namespace
 
-const ExternalSampler& page_sampler() {
-    static const PageSampler sampler;
+std::shared_ptr<const ExternalSampler> page_sampler() {
+    static const auto sampler = std::make_shared<const PageSampler>();
     return sampler;
-}
-
-SamplerRef sampler_of(const ArmPlan& arm) {
-    return arm.is_external() ? SamplerRef(arm.sampler, &page_sampler()) : SamplerRef(arm.sampler);
 }
 
 /// What the user's functions take: so many random numbers a sample, and the context as third argument or not.

@@ -1,6 +1,7 @@
 // A sampler that the page's user writes in JavaScript: an arm `exec = "page"`, and an adapter for `check`.
 #pragma once
 
+#include <memory>
 #include <string_view>
 
 #include "api.h"
@@ -11,9 +12,6 @@ namespace crescent::web {
 inline constexpr std::string_view exec_of_page = "page";
 
 /// Draws by the functions of the page, api.user_sample and api.user_pdf; for every experiment.
-const ExternalSampler& page_sampler();
-
-/// An arm as the kernels take it: a built-in sampler, or that of the page.
-SamplerRef sampler_of(const ArmPlan& arm);
+std::shared_ptr<const ExternalSampler> page_sampler();
 
 }  // namespace crescent::web

@@ -3,15 +3,14 @@
 // too long.
 import { Box, EngineError } from "./api";
 import { choice } from "./controls";
-import { byId, copied, el, minus, plusMinus, Speaker } from "./dom";
+import { byId, copied, download, el, minus, newTask, plusMinus, Speaker } from "./dom";
 import { Editor } from "./editor";
 import { exported, exports } from "./export";
 import { FilmView } from "./film";
-import { Opening } from "./jobs";
 import { showLadders } from "./ladders";
 import { Described, Model, Shown, Viewer } from "./model";
 import { FilmWorker, Pool, withUser } from "./pool";
-import { Source } from "./state";
+import { openingOf, Source } from "./state";
 import { grounds } from "./templates";
 import { figures, samplers } from "./text";
 import { evaluations, four } from "./workshop_settings";
@@ -55,7 +54,6 @@ export interface Workplace {
 
 export class Workshop implements Viewer {
   readonly root: HTMLElement;
-  readonly editor: Editor;
   private readonly model: Model;
   private readonly film: FilmView;
   private readonly fault = el("p", { id: "fault-line", role: "alert" });
@@ -83,12 +81,17 @@ export class Workshop implements Viewer {
   private checking = false;
   private active = false;
 
-  constructor(private readonly at: Workplace) {
+  /** In several tasks. */
+  static async opened(at: Workplace): Promise<Workshop> {
+    const place = el("div", { class: "editor" });
+    return new Workshop(at, place, await Editor.opened(place, "the code of your sampler"));
+  }
+
+  private constructor(private readonly at: Workplace, place: HTMLElement, readonly editor: Editor) {
     this.scene = Object.keys(at.sources)[0]!;
     this.model = new Model(at.filmWorker, new Pool(at.module, at.worker, 0), this);
     this.film = new FilmView({ model: this.model, choose: (pixel) => this.film.select(pixel) }, "your-film", ["film 0", "film 1"]);
-    const place = el("div", { class: "editor" });
-    this.editor = new Editor(place, "the code of your sampler", () => this.edited());
+    editor.changed = (): void => this.edited();
     const button = (id: string, words: string, act: () => void, css = ""): HTMLElement => el("button", { type: "button", id, class: css, onclick: act }, words);
     const formats = choice("export-format", "export as", exports, exports[0]![0], () => this.export());
     this.root = el("div", { class: "workshop" },
@@ -104,14 +107,19 @@ export class Workshop implements Viewer {
     window.setInterval(() => this.guard(), 500);
   }
 
-  /** Shows this code; it is checked when asked. */
-  load({ code, ground }: Work): void {
+  /** Shows this code; it is checked when asked. What is computed of it begins a few tasks later. */
+  async load({ code, ground }: Work): Promise<void> {
+    this.end();
+    const { era } = this;
     this.editor.code = code;
     this.ground = ground in grounds ? ground : "lambert";
     this.verdicts.replaceChildren();
     this.layer = "pdf";
-    this.controls();
-    this.restart();
+    for (const step of [(): void => this.controls(), (): void => this.restart()]) {
+      await newTask();
+      if (era !== this.era) return;
+      step();
+    }
   }
 
   get work(): Work { return { code: this.editor.code, ground: this.ground }; }
@@ -241,7 +249,7 @@ export class Workshop implements Viewer {
     const pool = (this.films = new Pool(this.at.module, source, count, 100_000));
     this.model.pool = pool;
     const counts = `[4, 16${this.n > 16 ? ", 64" : ""}]`;
-    const opening: Opening = { file: from.file, text: from.text, published: "", set: [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`] };
+    const opening = openingOf({ ...from, published: "" }, [`arms.${yours}.exec="page"`, `arms.${yours}.n=${counts}`, `arms.${this.beside}.n=${counts}`]);
     this.model.run(opening, [yours, this.beside], this.n).catch((error: unknown) => this.failedIn(era, error));
   }
   opened(d: Described, shown: Shown[]): void { this.film.opened(d, shown); }
@@ -261,7 +269,7 @@ export class Workshop implements Viewer {
   private controls(): void {
     const again = (): void => { this.at.changed(this.work); this.restart(); };
     this.options.replaceChildren(
-      choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.quadrature || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
+      choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.reference !== "note" || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
       choice("your-beside", "beside", samplers().map(({ name, label }) => [name, label]), this.beside, (value) => { this.beside = value; again(); }),
       choice("your-n", "samples a pixel", [["4", "4"], ["16", "16"], ["64", "64"]], String(this.n), (value) => { this.n = Number(value); again(); }));
     const angle = el("output", { for: "your-theta" }, `${this.wo[0]}°`);
@@ -352,10 +360,4 @@ export async function checkedCode(module: WebAssembly.Module, worker: string, co
   } finally {
     pool.end();
   }
-}
-
-function download(name: string, text: string): void {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-  el("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 1000);
 }

@@ -1,69 +1,16 @@
-// Reads the files of meshes and their textures, not before a mesh's size is known to be that of a regular file. A mesh
-// must be within 1000 km of the origin, the range of all coordinates. A page has no files: there meshes are refused.
+// Reads the files of meshes and their textures. A mesh must be within 1000 km of the origin, the range of all
+// coordinates.
 #include <fmt/format.h>
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <map>
 
-#include "base/parallel.h"
 #include "experiment/parser.h"
 #include "experiment/scene_files.h"
 
 namespace crescent::inline experiment {
 
 namespace {
-
-#ifdef CRESCENT_NO_FILESYSTEM
-std::string contents_of_regular_file(const std::string& path) {
-    throw InputError({path, 0, 0}, "a page cannot read the file of a mesh");
-}
-#else
-std::string contents_of_regular_file(const std::string& path) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        throw InputError({path, 0, 0}, "expected a .mesh file, found none");
-    if (!std::filesystem::is_regular_file(status)) throw InputError({path, 0, 0}, "expected a regular file");
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes;
-    if (!error && file) {
-        bytes.resize(size);
-        file.read(bytes.data(), static_cast<std::streamsize>(size));
-    }
-    if (error || !file) throw InputError({path, 0, 0}, "expected a .mesh file that can be read");
-    return bytes;
-}
-#endif
-
-/// The packs of files that some experiment still has, by their contents: two tables that name one file share one, and
-/// an experiment that is read again from its text builds no tree again.
-class PacksInUse {
-public:
-    std::shared_ptr<const MeshPack> read(const std::string& bytes, const std::string& file) {
-        const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-        const std::pair<std::uint64_t, std::uint64_t> key(hash.high64, hash.low64);
-        {
-            const Guard guard(lock_);
-            if (const auto known = packs_.find(key); known != packs_.end())
-                if (std::shared_ptr<const MeshPack> pack = known->second.lock()) return pack;
-        }
-        std::shared_ptr<const MeshPack> pack = read_mesh(bytes, file);
-        const Guard guard(lock_);
-        std::erase_if(packs_, [](const auto& one) { return one.second.expired(); });
-        packs_[key] = pack;
-        return pack;
-    }
-
-private:
-    Mutex lock_;
-    std::map<std::pair<std::uint64_t, std::uint64_t>, std::weak_ptr<const MeshPack>> packs_;
-};
-PacksInUse packs_in_use;
 
 void check_extent(const Experiment& e, const MeshObject& mesh) {
     const Bounds box = mesh.pack->mesh.bounds();
@@ -117,7 +64,7 @@ void read_meshes(Experiment& experiment) {
         if (!mesh.pack)
             at_key(path + ".file", [&] {
                 const std::string file = (std::filesystem::path(experiment.file).parent_path() / mesh.file).string();
-                mesh.pack = packs_in_use.read(contents_of_regular_file(file), file);
+                mesh.pack = mesh_in_file(file);
                 check_extent(experiment, mesh);
             });
         at_key(path + ".rho_d_texture", [&] { load_texture(mesh.rho_d_texture, TextureOf::rho_d, experiment.file); });

@@ -50,9 +50,6 @@ void apply_overrides(ParseContext& context, Node& root, const std::vector<std::s
 void check_geometry(ParseContext& context);
 void check_names(ParseContext& context);
 
-/// Reads the file of every mesh that has none yet; throws InputError with the place of its key.
-void read_meshes(Experiment& experiment);
-
 /// Fills in what depends on other keys (s, n, the sample counts of ladder plates) and checks runs against arms and
 /// exponents.
 void resolve_runs(ParseContext& context);

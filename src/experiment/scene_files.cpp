@@ -1,4 +1,4 @@
-// A page has no files: scenes that need one are refused there.
+// Images are checked for their use here, wherever they come from.
 #include "experiment/scene_files.h"
 
 #include <filesystem>
@@ -7,20 +7,12 @@
 #include <xxhash.h>
 
 #include "base/errors.h"
-#ifndef CRESCENT_NO_FILESYSTEM
-#include "render/image_file.h"
-#endif
+#include "scene/image_pack.h"
 
 namespace crescent::inline experiment {
 
-#ifdef CRESCENT_NO_FILESYSTEM
-void load_sky(SkyLight& sky) { throw InputError({sky.file, 0, 0}, "a page cannot read the image of a sky"); }
-void load_texture(Texture& texture, TextureOf, const std::string&) {
-    if (texture.file) throw InputError({*texture.file, 0, 0}, "a page cannot read the image of a texture");
-}
-#else
 void load_sky(SkyLight& sky) {
-    std::shared_ptr<const RgbImage> image = read_sky(sky.file);
+    std::shared_ptr<const RgbImage> image = sky_in_file(sky.file);
     if (const std::string why = why_no_sky(*image, sky.scale); !why.empty()) throw InputError({sky.file, 0, 0}, why);
     const std::string content = content_hash(*image);
     if (sky.content && sky.content != content)
@@ -32,11 +24,10 @@ void load_sky(SkyLight& sky) {
 void load_texture(Texture& texture, TextureOf of, const std::string& beside) {
     if (!texture.file || texture.image) return;
     const std::string file = (std::filesystem::path(beside).parent_path() / *texture.file).string();
-    std::shared_ptr<const RgbImage> image = read_texture(file);
+    std::shared_ptr<const RgbImage> image = texture_in_file(file);
     if (const std::string why = why_no_texture(*image, of); !why.empty()) throw InputError({file, 0, 0}, why);
     texture.image = std::move(image);
 }
-#endif
 
 std::string content_of(const MeshObject& mesh) {
     ensure(mesh.pack != nullptr, "the content of a mesh is that of its file");

@@ -1,9 +1,12 @@
 // The files of the scene that an experiment names.
 #pragma once
 
+#include <memory>
 #include <string>
 
-#include "scene/scene_data.h"
+#include "experiment/experiment.h"
+#include "scene/mesh/mesh.h"
+#include "scene/sky.h"
 
 namespace crescent::inline experiment {
 
@@ -15,8 +18,18 @@ void load_sky(SkyLight& sky);
 /// the texel.
 void load_texture(Texture& texture, TextureOf of, const std::string& beside);
 
+/// Reads the file of every mesh that has none yet; throws InputError with the place of its key.
+void read_meshes(Experiment& experiment);
+
 /// Returns the hash of a mesh and its textures, whose files must have been read: 16 hexadecimal digits. Without
 /// textures it is that of the .mesh file.
 std::string content_of(const MeshObject& mesh);
+
+// ---- Where files are found by their paths: on the disk (disk_files.cpp), or, in a program without one, among those
+// that it was given (apps/web/files.cpp). Throw InputError with the path.
+
+std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path);
+std::shared_ptr<const RgbImage> sky_in_file(const std::string& path);
+std::shared_ptr<const RgbImage> texture_in_file(const std::string& path);
 
 }  // namespace crescent::inline experiment

@@ -149,6 +149,11 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     return seed;
 }
 
+PairedPlan paired_plan(const Experiment& experiment) {
+    const std::uint64_t n = experiment.reference.n > 0 ? experiment.reference.n : paired_samples;
+    return {n, {reference_seed(experiment, 0x10000), reference_seed(experiment, 0x10001)}};
+}
+
 std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
     const std::string& isa, ProgressMonitor& monitor) {
     std::vector<double> exponents;

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "experiment/experiment.h"
 #include "render/film.h"
+#include "render/reference/paired.h"
 #include "render/tiles.h"
 
 namespace crescent::inline metrics {
@@ -17,6 +18,9 @@ namespace crescent::inline metrics {
 /// Returns seed k of the article's reference: hashed from its own, and different from those of the experiment's arms
 /// for any number of seeds.
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
+
+/// Its seeds follow those of the article's reference, of which there is one for the lobe and one for each light.
+PairedPlan paired_plan(const Experiment& experiment);
 
 /// Returns one film per view; the views differ only in their exponents, see views_at. `experiment` gives the sample
 /// counts and seeds.

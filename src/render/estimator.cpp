@@ -30,13 +30,6 @@ void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) 
     kernels_for(isa).kernel(index, *call.shading_points)(call);
 }
 
-SampleCost cost_of_sample(const SamplerRef& arm) {
-    const Combination* combination = arm.outside ? arm.outside->as_combination() : nullptr;
-    if (combination) return combination->cost();
-    const std::uint64_t directions = directions_per_sample(arm.sampler);
-    return {directions, directions, directions - 1};
-}
-
 /// The mean radiance of shading points over n samples.
 class MeanRadiance {
 public:
@@ -84,6 +77,13 @@ private:
 };
 
 }  // namespace
+
+SampleCost cost_of_sample(const SamplerRef& arm) {
+    const Combination* combination = arm.outside ? arm.outside->as_combination() : nullptr;
+    if (combination) return combination->cost();
+    const std::uint64_t directions = directions_per_sample(arm.sampler);
+    return {directions, directions, directions - 1};
+}
 
 void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film) {
     const MeanRadiance mean_of(scene, shading_points, m, film.n);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "render/combination.h"
 #include "render/film.h"
 #include "render/kernel.h"
 #include "render/tiles.h"
@@ -14,6 +15,9 @@
 #include "scene/scene.h"
 
 namespace crescent::inline render {
+
+/// Returns what a sample costs.
+SampleCost cost_of_sample(const SamplerRef& arm);
 
 /// Returns one film for each sample count of n (ascending). `isa`: a name of isas(), "" for the best.
 std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, const std::vector<std::uint64_t>& n,

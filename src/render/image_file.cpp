@@ -9,14 +9,13 @@
 #include <OpenEXR/ImfPartType.h>
 #include <fmt/format.h>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
 #include "base/errors.h"
+#include "base/files.h"
+#include "scene/image_pack.h"
 
 namespace crescent::inline render {
 
@@ -41,29 +40,12 @@ std::array<std::string, 3> channels_of(const Imf::Header& header, const std::str
 /// Returns what an image of this size is not; "" if it may be read.
 using WhyNot = std::string (*)(std::int64_t width, std::int64_t height);
 
-std::string why_no_sky_of(std::int64_t width, std::int64_t height) {
-    if (width >= 2 && width <= widest_sky && width == 2 * height) return "";
-    return fmt::format(
-        "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} x {}", widest_sky,
-        highest_sky, width, height);
-}
-
-std::string why_no_texture_of(std::int64_t width, std::int64_t height) {
-    if (width >= 1 && width <= widest_texture && height >= 1 && height <= widest_texture) return "";
-    return fmt::format("expected an image of at most {0} x {0} texels, found {1} x {2}", widest_texture, width, height);
-}
-
 /// The size from the header, before anything else is read.
 std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path, WhyNot why_not) {
     const auto side = [](int low, int high) { return std::int64_t{high} - low + 1; };
     const std::int64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
     if (const std::string why = why_not(width, height); !why.empty()) throw InputError({path, 0, 0}, why);
     return {static_cast<int>(width), static_cast<int>(height)};
-}
-
-std::uint64_t hash_of(int width, int height, const std::vector<float>& rgb) {
-    const std::uint32_t size[2] = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-    return XXH3_64bits_withSeed(rgb.data(), rgb.size() * sizeof(float), XXH3_64bits(size, sizeof size));
 }
 
 std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_not) {
@@ -93,11 +75,21 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     return out;
 }
 
+std::shared_ptr<const RgbImage> read_pack(const std::string& path, WhyNot why_not) {
+    std::shared_ptr<const RgbImage> image = read_image_file(contents_of(path), path);
+    if (const std::string why = why_not(image->width, image->height); !why.empty()) throw InputError({path, 0, 0}, why);
+    return image;
+}
+
 std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
     errno = 0;
-    if (!std::ifstream(path, std::ios::binary))
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
         throw InputError(
             {path, 0, 0}, fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
+    std::string head(image_header_size, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (is_image_file(head)) return read_pack(path, why_not);
     try {
         return read_parts(path, why_not);
     } catch (const InputError&) { throw; } catch (const std::exception& error) {
@@ -109,7 +101,5 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
 
 std::shared_ptr<const RgbImage> read_sky(const std::string& path) { return read(path, why_no_sky_of); }
 std::shared_ptr<const RgbImage> read_texture(const std::string& path) { return read(path, why_no_texture_of); }
-
-std::string content_hash(const RgbImage& image) { return fmt::format("{:016x}", image.hash); }
 
 }  // namespace crescent::inline render

@@ -1,5 +1,5 @@
-// Reads the image of a sky or of a texture from an OpenEXR file: R, G and B, or Y alone, of its first part, in half,
-// float or integers.
+// Reads the image of a sky or of a texture: from an OpenEXR file, R, G and B, or Y alone, of its first part, in half,
+// float or integers; or from a pack (scene/image_pack.h).
 #pragma once
 
 #include <memory>
@@ -13,8 +13,5 @@ namespace crescent::inline render {
 /// texture may be; the size is checked before memory is taken for it.
 std::shared_ptr<const RgbImage> read_sky(const std::string& path);
 std::shared_ptr<const RgbImage> read_texture(const std::string& path);
-
-/// Returns the hash of the content, as 16 hexadecimal digits.
-std::string content_hash(const RgbImage& image);
 
 }  // namespace crescent::inline render

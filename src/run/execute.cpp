@@ -57,12 +57,6 @@ std::vector<RunMetrics> metrics_of(
     return out;
 }
 
-/// Its seeds follow those of the article's reference, of which there is one for the lobe and one for each light.
-PairedPlan paired_plan(const Experiment& experiment) {
-    const std::uint64_t n = experiment.reference.n > 0 ? experiment.reference.n : paired_samples;
-    return {n, {reference_seed(experiment, 0x10000), reference_seed(experiment, 0x10001)}};
-}
-
 void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& monitor,
     bool keep_films, Checkpoint* checkpoint, JobResult& out) {
     const auto samples = static_cast<double>(prepared.geometry_pixels * out.job.n.back());

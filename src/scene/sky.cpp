@@ -9,15 +9,12 @@
 
 #include "math/functions.h"
 #include "math/simd/scalar.h"
+#include "scene/image_pack.h"
 
 namespace crescent::inline scene {
 
 std::string why_no_sky(const RgbImage& image, double scale) {
-    if (image.width < 2 || image.height < 1 || image.width != 2 * image.height || image.width > widest_sky)
-        return fmt::format(
-            "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found "
-            "{} x {}",
-            widest_sky, highest_sky, image.width, image.height);
+    if (const std::string why = why_no_sky_of(image.width, image.height); !why.empty()) return why;
     bool light = false;
     for (std::size_t k = 0; k < image.rgb.size(); ++k) {
         const float x = image.rgb[k];

@@ -62,6 +62,21 @@ hash_of() { sed -n 's/.*"hash": "\([0-9a-f]*\)".*/\1/p' "$1/metrics.json" | head
 mkdir elsewhere && cp sunset.exr elsewhere/image.exr && sed 's/sunset.exr/image.exr/' sky.toml >elsewhere/sky.toml
 expect 0 "$CRESCENT" run elsewhere/sky.toml --quiet --only metrics --out moved
 [ "$(hash_of holds)" = "$(hash_of moved)" ] || die "the path of a sky is part of the identity"
+# A pack can replace its image; a damaged one is refused.
+expect 0 "$CRESCENT" import sunset.exr --out sunset.image
+expect 2 "$CRESCENT" import sunset.exr --out sunset.mesh
+sed -i 's/sunset.exr/sunset.image/' sky.toml
+run 0 --only metrics --out packed
+[ "$(hash_of holds)" = "$(hash_of packed)" ] || die "a pack of an image has another identity"
+cmp holds/metrics.csv packed/metrics.csv || die "a pack of an image gives other numbers"
+head -c 3000 sunset.image >cut.image
+printf '\x01' | dd of=sunset.image bs=1 seek=200 conv=notrunc status=none
+run 2 --out refused
+grep -q 'sky.file: sunset.image: byte 24' said || die "a damaged pack: $(cat said)"
+sed -i 's/sunset.image/cut.image/' sky.toml
+run 2 --out refused
+grep -q truncated said || die "a truncated pack: $(cat said)"
+sed -i 's/cut.image/sunset.exr/' sky.toml
 image sunset.exr 64 '(1, 1, 1 + up)'
 run 0 --only metrics --out other
 [ "$(hash_of holds)" != "$(hash_of other)" ] || die "the content of a sky is no part of the identity"

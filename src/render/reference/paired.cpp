@@ -44,21 +44,21 @@ Moments estimate(const ShadingPoints& points, const Combination& combination, st
     return std::move(moments[0]);
 }
 
-void write(const TiledScene& view, const ShadingPoints& points, const PairedPlan& plan, const std::atomic<bool>* stop,
-    ReferenceFilm& film) {
+}  // namespace
+
+void write_paired(const Scene& scene, const ShadingPoints& points, const PairedPlan& plan,
+    const std::atomic<bool>* stop, ReferenceFilm& film) {
     const Combination combination = combination_for(points);
     const std::array both = {estimate(points, combination, plan.n, plan.seeds[0], stop),
         estimate(points, combination, plan.n, plan.seeds[1], stop)};
     for (std::size_t i = 0; i < points.count; ++i) {
-        const Rgb first = mean_radiance(view.scene(), points, both[0], plan.n, i),
-                  second = mean_radiance(view.scene(), points, both[1], plan.n, i);
+        const Rgb first = mean_radiance(scene, points, both[0], plan.n, i),
+                  second = mean_radiance(scene, points, both[1], plan.n, i);
         Rgb mean{};
         for (std::size_t c = 0; c < 3; ++c) mean[c] = 0.5 * (first[c] + second[c]);
         store_pixel(film, points.pixel[i], mean, 0.5 * std::fabs(luminance(first) - luminance(second)));
     }
 }
-
-}  // namespace
 
 std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views, const PairedPlan& plan,
     ProgressMonitor& monitor) {
@@ -69,7 +69,8 @@ std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views
             for (std::size_t e = 0; e < views.size(); ++e) {
                 const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
                 for (const ShadingPoints& points : *groups) {
-                    if (e == 0 || points.lobe >= 0) write(views[e], points, plan, &monitor.stop, films[e]);
+                    if (e == 0 || points.lobe >= 0)
+                        write_paired(views[e].scene(), points, plan, &monitor.stop, films[e]);
                     else
                         for (std::size_t i = 0; i < points.count; ++i) copy_pixel(films[0], films[e], points.pixel[i]);
                 }

@@ -9,12 +9,15 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
 #include "base/progress.h"
 #include "render/film.h"
+#include "render/shading_points.h"
 #include "render/tiles.h"
+#include "scene/scene.h"
 
 namespace crescent::inline reference {
 
@@ -26,5 +29,9 @@ struct PairedPlan {
 /// Returns R with |e| as its error, one film per view; the views differ only in their exponents, see views_at.
 std::vector<ReferenceFilm> paired_reference(
     const std::vector<TiledScene>& views, const PairedPlan& plan, ProgressMonitor& monitor);
+
+/// Writes the pixels of these points into a film of the scene's size. May end early if `stop` is set.
+void write_paired(const Scene& scene, const ShadingPoints& points, const PairedPlan& plan,
+    const std::atomic<bool>* stop, ReferenceFilm& film);
 
 }  // namespace crescent::inline reference

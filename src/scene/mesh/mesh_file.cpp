@@ -1,6 +1,6 @@
 // Reads and writes the .mesh file, whose layout is in mesh.h. The counts are compared with the size of the file before
 // anything is allocated, so that memory is bounded by that size.
-#include "scene/mesh/mesh.h"
+#include "scene/mesh/mesh_file.h"
 
 #include <bit>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <xxhash.h>
 
 #include "base/errors.h"
+#include "scene/mesh/mesh.h"
 
 namespace crescent::inline scene {
 
@@ -27,10 +28,37 @@ struct Header {
     std::uint32_t kind, version, vertices, triangles, flags, reserved;
     std::uint64_t hash;
 };
-static_assert(sizeof(Header) == 40);
+static_assert(sizeof(Header) == mesh_header_size);
 
 template <class T> void append(std::string& to, const std::vector<T>& all) {
     if (!all.empty()) to.append(reinterpret_cast<const char*>(all.data()), all.size() * sizeof(T));
+}
+
+/// Reads the header of a file of `size` bytes and checks all of it but the hash.
+Header checked_header(std::string_view head, std::uint64_t size, const std::string& name) {
+    const auto fail = [&](const std::string& message) { throw InputError({name, 0, 0}, message); };
+    Header header{};
+    if (head.size() < sizeof header)
+        fail(fmt::format("expected a .mesh file, whose header has {} bytes; found {} bytes", sizeof header, size));
+    std::memcpy(&header, head.data(), sizeof header);
+    if (std::memcmp(header.magic, "crescent", 8) != 0 || header.kind != mesh_kind)
+        fail("expected a .mesh file (it begins with \"crescentmesh\"); `crescent import` makes one of a model");
+    if (header.version != mesh_version)
+        fail(fmt::format("byte 12: expected version {} of the .mesh format, found {}", mesh_version, header.version));
+    if (header.flags > (with_normals | with_uv))
+        fail(fmt::format("byte 24: expected flags from 0 to {}, found {}", with_normals | with_uv, header.flags));
+    if (header.reserved != 0) fail(fmt::format("byte 28: expected 0, found {}", header.reserved));
+    if (header.vertices == 0 || header.triangles == 0)
+        fail(fmt::format("byte 16: expected at least a triangle, found {} vertices and {} triangles", header.vertices,
+            header.triangles));
+    const std::uint64_t of_vertex = 12u + (header.flags & with_normals ? 12u : 0u) + (header.flags & with_uv ? 8u : 0u);
+    const std::uint64_t expected = sizeof header + header.vertices * of_vertex + std::uint64_t{12} * header.triangles;
+    if (expected != size)
+        fail(fmt::format("expected {} bytes for {} vertices and {} triangles, found {}{}", expected, header.vertices,
+            header.triangles, size, size < expected ? ": the file is truncated" : ""));
+    if (header.triangles >= std::uint32_t{1} << 30)
+        fail(fmt::format("byte 20: expected fewer than 2^30 triangles, found {}", header.triangles));
+    return header;
 }
 
 class Reader {
@@ -38,7 +66,7 @@ public:
     Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
     Mesh operator()(std::uint64_t& hash) {
-        const Header header = checked_header();
+        const Header header = with_content();
         hash = header.hash;
         Mesh mesh;
         take(mesh.positions, header.vertices);
@@ -62,31 +90,8 @@ public:
     [[noreturn]] void fail(const std::string& message) const { throw InputError({name_, 0, 0}, message); }
 
 private:
-    Header checked_header() {
-        Header header{};
-        if (bytes_.size() < sizeof header)
-            fail(fmt::format(
-                "expected a .mesh file, whose header has {} bytes; found {} bytes", sizeof header, bytes_.size()));
-        std::memcpy(&header, bytes_.data(), sizeof header);
-        if (std::memcmp(header.magic, "crescent", 8) != 0 || header.kind != mesh_kind)
-            fail("expected a .mesh file (it begins with \"crescentmesh\"); `crescent import` makes one of a model");
-        if (header.version != mesh_version)
-            fail(fmt::format(
-                "byte 12: expected version {} of the .mesh format, found {}", mesh_version, header.version));
-        if (header.flags > (with_normals | with_uv))
-            fail(fmt::format("byte 24: expected flags from 0 to {}, found {}", with_normals | with_uv, header.flags));
-        if (header.reserved != 0) fail(fmt::format("byte 28: expected 0, found {}", header.reserved));
-        if (header.vertices == 0 || header.triangles == 0)
-            fail(fmt::format("byte 16: expected at least a triangle, found {} vertices and {} triangles",
-                header.vertices, header.triangles));
-        const std::uint64_t of_vertex =
-            12u + (header.flags & with_normals ? 12u : 0u) + (header.flags & with_uv ? 8u : 0u);
-        const std::uint64_t size = sizeof header + header.vertices * of_vertex + std::uint64_t{12} * header.triangles;
-        if (size != bytes_.size())
-            fail(fmt::format("expected {} bytes for {} vertices and {} triangles, found {}{}", size, header.vertices,
-                header.triangles, bytes_.size(), bytes_.size() < size ? ": the file is truncated" : ""));
-        if (header.triangles >= std::uint32_t{1} << 30)
-            fail(fmt::format("byte 20: expected fewer than 2^30 triangles, found {}", header.triangles));
+    Header with_content() {
+        Header header = checked_header(bytes_, bytes_.size(), name_);
         const std::uint64_t hash = XXH3_64bits(bytes_.data() + sizeof header, bytes_.size() - sizeof header);
         if (header.hash != 0 && hash != header.hash)
             fail(fmt::format("byte 32: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
@@ -151,6 +156,10 @@ std::string mesh_file(const Mesh& mesh) {
     std::string out(sizeof header, '\0');
     std::memcpy(out.data(), &header, sizeof header);
     return out += content;
+}
+
+std::uint32_t read_triangle_count(std::string_view head, std::uint64_t size, const std::string& name) {
+    return checked_header(head, size, name).triangles;
 }
 
 std::shared_ptr<const MeshPack> read_mesh(std::string_view bytes, const std::string& name) {

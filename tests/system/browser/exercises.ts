@@ -6,13 +6,12 @@ import { grounds, templates } from "../../../apps/web/templates";
 import { userSampler } from "../../../apps/web/user";
 import { evaluations, four } from "../../../apps/web/workshop_settings";
 
-import * as editor from "../../../apps/web/vendor/codemirror/editor";
+import "../../../apps/web/vendor/codemirror/editor"; // in the page, scripts of their own
 
 export { exported } from "../../../apps/web/export";
 export { templates };
 interface Verdict { name: string; state: string; say: string; hidden: Record<string, number> }
 declare const global: Record<string, unknown>;
-global["crescentEditor"] = editor; // in the page a script of its own
 
 /** The page's answer to this code: its state, and its verdicts. */
 export function checked(module: WebAssembly.Module, code: string, ground: string, wo = four): { state: string; verdicts: Verdict[] } {

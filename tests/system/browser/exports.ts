@@ -1,11 +1,10 @@
 // What the page exports of its templates and exercises, and what the same code gives in JavaScript.
-import * as editor from "../../../apps/web/vendor/codemirror/editor";
+import "../../../apps/web/vendor/codemirror/editor"; // in the page, scripts of their own
 import { exercises } from "../../../apps/web/exercises";
 import { exported } from "../../../apps/web/export";
 import { grounds, templates } from "../../../apps/web/templates";
 import { checked } from "./exercises";
 
-(globalThis as Record<string, unknown>)["crescentEditor"] = editor; // in the page a script of its own
 interface Given { code: string; ground: string }
 interface Exported { name: string; python: string; cpp: string; states: Record<string, string>; rows: (number | null)[][] }
 const { sqrt } = Math, disk = { // the light of the ground `lit`: src/check/sources/cases.cpp

@@ -19,6 +19,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 import browser
+import own
 import reach
 import settings
 import steady
@@ -246,7 +247,8 @@ groups = {
     "numbers": [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
                 a_lesson_is_confirmed, two_hundred_settings],
     "readers": [*reach.tests(page, pathlib.Path(page_path).resolve().parent), *steady.tests(page), *settings.tests(page)],
-    "writers": written.tests(page, pathlib.Path(page_path).resolve().parent),
+    "writers": [*written.tests(page, pathlib.Path(page_path).resolve().parent),
+                *own.tests(page, pathlib.Path(page_path).resolve().parent)],
 }[group]
 driver = browser.chromium()
 failed = 0

@@ -3,6 +3,7 @@ export interface Text { readonly length: number; readonly lines: number; line(n:
 export type Extension = object;
 export interface EditorState { readonly doc: Text }
 export const EditorState: { create(config: { doc: string; extensions: Extension[] }): EditorState; tabSize: { of(n: number): Extension } };
+export class Compartment { of(extension: Extension): Extension; reconfigure(extension: Extension): object }
 export interface ViewUpdate { docChanged: boolean; state: EditorState }
 export class EditorView {
   constructor(config: { state: EditorState; parent: HTMLElement });

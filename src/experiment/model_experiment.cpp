@@ -1,0 +1,83 @@
+// Lengths in the meshes' own unit, radiance in W/(sr m^2).
+#include "experiment/model_experiment.h"
+
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "math/simd/math.h"
+#include "math/simd/scalar.h"
+
+namespace crescent::inline experiment {
+
+namespace {
+
+constexpr double half_view = 20;  // degrees
+
+std::string point(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+
+/// The ball around a box.
+struct Ball {
+    Vec3d middle;
+    double radius;
+    explicit Ball(const Bounds& box)
+        : middle(0.5 * (widen(box.low) + widen(box.high))), radius(0.5 * length(widen(box.high) - widen(box.low))) {}
+
+private:
+    static double length(Vec3d v) { return std::sqrt(dot(v, v)); }
+};
+
+/// A disk that the ball sees as large as 0.2 sr from above and the left, and even light from everywhere else.
+std::string light_over(const Ball& ball) {
+    const Vec3d towards = normalize(Vec3d{-0.6, 1, 0.6});
+    return fmt::format(
+        "[disks.light]\ncenter = {}\nnormal = {}\nradius = {:.6g}\nradiance = [15, 15, 15]\n\n[fill]\nradiance = "
+        "[0.3, 0.3, 0.3]\n",
+        point(ball.middle + 2.5 * ball.radius * towards), point(-1.0 * towards), 0.6 * ball.radius);
+}
+
+std::string arm(const std::string& name, const std::string& more = "") {
+    return fmt::format("[arms.{}]\n{}n = [4, 16, 64]\n\n", name, more);
+}
+
+}  // namespace
+
+std::string camera_table(const Bounds& box) {
+    const Ball ball(box);
+    const Vec3d towards = normalize(Vec3d{0.5, 0.4, 1});
+    return fmt::format("[camera]\neye = {}\ntarget = {}\nvfov_deg = {}\n",
+        point(ball.middle + (1.05 * ball.radius / math::sin(half_view * pi / 180)) * towards), point(ball.middle),
+        2 * half_view);
+}
+
+std::string table_name_of(const std::string& file) {
+    std::string name = std::filesystem::path(file).stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    if (name.empty() || name[0] == '-') name = "mesh" + name;
+    return name.substr(0, 64);
+}
+
+std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::optional<std::string>& sky) {
+    constexpr int width = 240, height = 180;
+    Bounds box;
+    for (const auto& [file, pack] : meshes) box.add(pack->mesh.bounds());
+    const std::string first = std::filesystem::path(meshes.at(0).first).stem().string();
+    std::string out = fmt::format(
+        "title = \"{}\"\nn = 64\n\n[image]\nwidth = {}\nheight = {}\n\n", table_name_of(first), width, height);
+    out += camera_table(box) + "\n";
+    for (const auto& [file, pack] : meshes)
+        out += fmt::format(
+            "[meshes.{}]\nfile = \"{}\"\nrho_d = [0.3, 0.25, 0.2]\nrho_s = 0.4\nbrdf = \"ggx\"\nalpha = 0.2\n\n",
+            table_name_of(file), file);
+    out += sky ? fmt::format("[sky]\nfile = \"{}\"\n", *sky) : light_over(Ball(box));
+    out += "\n[reference]\nn = 32\n\n";
+    const std::string aimed = sky ? "sky" : "light-solid-angle";
+    out += arm("cosine") + arm("ggx-vndf") +
+        arm("both", fmt::format("kind = \"mis\"\nof = [\"{}\", \"ggx-vndf\"]\n", aimed));
+    return out + fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n", width - 1, height - 1);
+}
+
+}  // namespace crescent::inline experiment

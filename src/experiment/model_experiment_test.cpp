@@ -1,0 +1,37 @@
+// The experiment that is made for a mesh is one that the parser accepts, with a camera that sees all of it.
+#include "experiment/model_experiment.h"
+
+#include <gtest/gtest.h>
+
+#include "experiment/experiment.h"
+
+namespace crescent {
+namespace {
+
+std::shared_ptr<const MeshPack> tetrahedron() {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    return make_pack(std::move(mesh));
+}
+
+TEST(ModelExperiment, IsReadByTheParser) {
+    for (const bool sky : {false, true}) {
+        const Experiment e = parse(
+            experiment_for({{"my model.mesh", tetrahedron()}}, sky ? std::optional("s.image") : std::nullopt), "e");
+        EXPECT_EQ(e.meshes.at(0).name, "my_model");
+        EXPECT_EQ(e.meshes.at(0).file, "my model.mesh");
+        EXPECT_EQ(e.sky.has_value(), sky);
+        EXPECT_EQ(e.arms.size(), 3u);
+        EXPECT_EQ(e.reference.kind, ReferenceKind::paired);
+    }
+}
+
+TEST(ModelExperiment, NamesTablesAfterFiles) {
+    EXPECT_EQ(table_name_of("folder/a model.mesh"), "a_model");
+    EXPECT_EQ(table_name_of("-x.mesh"), "mesh-x");
+    EXPECT_EQ(table_name_of(std::string(100, 'a') + ".mesh").size(), 64u);
+}
+
+}  // namespace
+}  // namespace crescent
