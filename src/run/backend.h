@@ -26,6 +26,8 @@ class Backend {
 public:
     virtual ~Backend() = default;
     virtual std::string name() const = 0;  // for provenance and plates
+    /// Throws InputError with the place of a part of the experiment that this back end has no films of.
+    virtual void check(const Experiment&) const {}
     /// Returns one film per sample count, in order. The view already has the job's s. `checkpoint`: where a back end
     /// that works tile by tile keeps finished ones; null: nowhere.
     virtual std::vector<Film> films(
