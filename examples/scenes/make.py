@@ -120,14 +120,23 @@ ARMS = """
 """
 SKY_ARMS = """
 [arms.sky]
-[arms.sky-and-lobe]
+[arms.both]
 kind = "mis"
 of = ["sky", "ggx-vndf", "cosine"]
 """
 
 
-def experiment(title: str, size: tuple[int, int], eye: list, target: list, vfov: float, body: str) -> str:
+Regions = dict[str, tuple[float, float, float, float]]  # left, bottom, right, top, as shares of the image
+
+
+def experiment(
+    title: str, size: tuple[int, int], eye: list, target: list, vfov: float, regions: Regions, body: str
+) -> str:
     width, height = size
+    boxes = "".join(
+        f"[regions.{name}]\nbox = {[int(a * width), int(b * height), int(c * width) - 1, int(d * height) - 1]}\n\n"
+        for name, (a, b, c, d) in {"all": (0, 0, 1, 1), **regions}.items()
+    )
     return f"""title = "{title}"
 n = 16
 
@@ -140,10 +149,7 @@ eye = {eye}
 target = {target}
 vfov_deg = {vfov}
 
-[regions.all]
-box = [0, 0, {width - 1}, {height - 1}]
-
-[plates.view]
+{boxes}[plates.view]
 kind = "gallery"
 
 {body}"""
@@ -168,13 +174,19 @@ kind = "plane"
 point = [0, 0, 0]
 normal = [0, 1, 0]
 rho_d = [0.4, 0.38, 0.35]
+occludes = true
 """
-    return experiment("A torus knot under a sunset sky", size, [2.4, 2.2, 4.2], [0, 0.65, 0], 40, body + ARMS + SKY_ARMS)
+    regions: Regions = {"knot": (0.2, 0.2, 0.8, 0.72), "ground": (0, 0, 1, 0.15)}
+    return experiment("A torus knot under a sunset sky", size, [2.4, 2.2, 4.2], [0, 0.65, 0], 40, regions, body + ARMS + SKY_ARMS)
 
 
 def make_gear(folder: Path, size: tuple[int, int], side: int) -> str:
     write_mesh(folder / "gear.mesh", *gear())
-    body = """[meshes.gear]
+    write_sky(folder / "haze.exr", np.full((4, 8, 3), [0.2, 0.22, 0.25]))
+    body = """[sky]
+file = "haze.exr"
+
+[meshes.gear]
 file = "gear.mesh"
 rotate = [62, 0, 0]
 rho_d = [0.02, 0.02, 0.02]
@@ -188,15 +200,13 @@ normal = [-0.4264, -0.6396, -0.6396]
 radius = 0.8
 radiance = [12, 12, 11]
 
-[fill]
-radiance = [0.2, 0.22, 0.25]
-
 [arms.light-area]
 [arms.both]
 kind = "mis"
-of = ["light-area", "ggx-vndf"]
+of = ["sky", "light-area", "ggx-vndf", "cosine"]
 """
-    return experiment("A gear of brushed metal", size, [0, 0.8, 4.2], [0, 0, 0], 36, body + ARMS)
+    regions: Regions = {"left": (0.2, 0.1, 0.5, 0.9), "right": (0.5, 0.1, 0.8, 0.9)}
+    return experiment("A gear of brushed metal", size, [0, 0.8, 4.2], [0, 0, 0], 36, regions, body + ARMS)
 
 
 def make_terrain(folder: Path, size: tuple[int, int], side: int) -> str:
@@ -209,7 +219,8 @@ file = "sunset.exr"
 file = "terrain.mesh"
 rho_d = [0.35, 0.32, 0.22]
 """
-    return experiment("A terrain", size, [-700, 320, -700], [100, -40, 200], 45, body + ARMS + SKY_ARMS)
+    regions: Regions = {"near": (0, 0, 1, 0.2), "far": (0, 0.35, 1, 0.55)}
+    return experiment("A terrain", size, [-700, 320, -700], [100, -40, 200], 45, regions, body + ARMS + SKY_ARMS)
 
 
 def make_field(folder: Path, size: tuple[int, int], side: int) -> str:
@@ -228,13 +239,15 @@ kind = "plane"
 point = [0, 0, 0]
 normal = [0, 1, 0]
 rho_d = [0.25, 0.2, 0.15]
+occludes = true
 
 [meshes.plant]
 file = "plant.mesh"
 rho_d = [0.12, 0.35, 0.08]
 
 {places}"""
-    return experiment("A field of 1,000 plants", size, [0, 2.2, 8], [0, 0.2, 0], 40, body + ARMS + SKY_ARMS)
+    regions: Regions = {"plants": (0.1, 0, 0.9, 0.5), "ground": (0, 0.72, 1, 0.8)}
+    return experiment("A field of 1,000 plants", size, [0, 2.2, 8], [0, 0.2, 0], 40, regions, body + ARMS + SKY_ARMS)
 
 
 def make_room(folder: Path, size: tuple[int, int], side: int) -> str:
@@ -260,9 +273,10 @@ emission = [9, 8, 6.5]
 [arms.light-triangle]
 [arms.both]
 kind = "mis"
-of = ["light-triangle", "ggx-vndf"]
+of = ["light-triangle", "ggx-vndf", "cosine"]
 """
-    return experiment("A room lit by emitting triangles", size, [0, 1.5, 5.5], [0, 1.3, 0], 45, body + ARMS)
+    regions: Regions = {"things": (0.2, 0.3, 0.8, 0.7), "floor": (0, 0, 1, 0.2)}
+    return experiment("A room lit by emitting triangles", size, [0, 1.5, 5.5], [0, 0.3, 0], 45, regions, body + ARMS)
 
 
 SCENES = {"knot": make_knot, "gear": make_gear, "terrain": make_terrain, "field": make_field, "room": make_room}

@@ -11,6 +11,7 @@
 #include "experiment/parser.h"
 #include "experiment/queries.h"
 #include "experiment/sampler_files.h"
+#include "experiment/scene_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {
@@ -167,8 +168,8 @@ void check_meshes(ParseContext& context) {
                         file.string()));
         };
         check_file(path + ".file", mesh.file);
-        if (mesh.rho_d_texture.file) check_file(path + ".rho_d_texture", *mesh.rho_d_texture.file);
-        if (mesh.alpha_texture.file) check_file(path + ".alpha_texture", *mesh.alpha_texture.file);
+        for (const TextureKey& key : texture_keys)
+            if (const auto& file = (mesh.*key.texture).file) check_file(fmt::format("{}.{}", path, key.name), *file);
         check_content(context, path + ".content", mesh.content);
     }
 }
@@ -178,6 +179,22 @@ bool is_unfinished_combination(const ParseContext& context, const std::string& p
     const std::string path = path_of_sampler.substr(0, path_of_sampler.rfind('.'));
     const ArmPlan* arm = context.e.find_arm(path.substr(path.find('.') + 1));
     return arm && (!context.is_valid(path + ".kind") || !arm->combination.of.empty());
+}
+
+/// A furnace has one material, so its mesh has no texture of a number that counts.
+void check_furnaces(ParseContext& context) {
+    for (const FurnacePlan& furnace : context.e.furnaces) {
+        const auto mesh = std::ranges::find(context.e.meshes, furnace.shape, &MeshObject::name);
+        if (mesh == context.e.meshes.end()) continue;
+        for (const TextureKey& key : texture_keys) {
+            const bool counts = key.of == TextureOf::alpha || furnace.part != FurnacePart::lobe;
+            if (!counts || !((*mesh).*key.texture).file) continue;
+            const std::string path = "furnaces." + furnace.name + ".shape";
+            context.report(path,
+                fmt::format(
+                    "{}: expected a surface of one material, found '{}', which has {}", path, mesh->name, key.name));
+        }
+    }
 }
 
 /// Checks that no two arms write their films into one file.
@@ -221,6 +238,7 @@ void check_names(ParseContext& context) {
             fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64),
                 valid.empty() ? "(none)" : listed(valid, ", "), hint(r.name, valid)));
     }
+    check_furnaces(context);
     check_film_files(context);
     check_external_arms(context);
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {

@@ -169,7 +169,7 @@ std::uint64_t hash(const Experiment& experiment) {
         const std::optional<std::string> content = mesh.pack ? content_of(mesh) : mesh.content;
         if (!content) continue;
         mesh.file = *content, mesh.content.reset();
-        mesh.rho_d_texture.file.reset(), mesh.alpha_texture.file.reset();
+        for (const TextureKey& key : texture_keys) (mesh.*key.texture).file.reset();
     }
     std::string text = canonical_text(counted);
     if (experiment.figures) text += text_of(*experiment.figures);

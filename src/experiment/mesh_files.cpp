@@ -35,10 +35,9 @@ void check_extent(const Experiment& e, const MeshObject& mesh) {
 
 void check_uv(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& found) {
     if (!mesh.pack->mesh.uv.empty()) return;
-    for (const auto& [key, texture] :
-        {std::pair("rho_d_texture", &mesh.rho_d_texture), {"alpha_texture", &mesh.alpha_texture}}) {
-        const std::string path = fmt::format("meshes.{}.{}", mesh.name, key);
-        if (texture->image)
+    for (const TextureKey& key : texture_keys) {
+        const std::string path = fmt::format("meshes.{}.{}", mesh.name, key.name);
+        if ((mesh.*key.texture).image)
             found.push_back({e.place_of(path),
                 fmt::format("{}: expected a mesh with texture coordinates, found none in '{}'", path, mesh.file)});
     }
@@ -67,8 +66,9 @@ void read_meshes(Experiment& experiment) {
                 mesh.pack = mesh_in_file(file);
                 check_extent(experiment, mesh);
             });
-        at_key(path + ".rho_d_texture", [&] { load_texture(mesh.rho_d_texture, TextureOf::rho_d, experiment.file); });
-        at_key(path + ".alpha_texture", [&] { load_texture(mesh.alpha_texture, TextureOf::alpha, experiment.file); });
+        for (const TextureKey& key : texture_keys)
+            at_key(fmt::format("{}.{}", path, key.name),
+                [&] { load_texture(mesh.*key.texture, key.of, experiment.file); });
         if (!mesh.pack || !found.empty()) continue;
         check_uv(experiment, mesh, found);
         const std::string content = content_of(mesh);

@@ -21,10 +21,14 @@ namespace {
 
 /// Returns the largest channel of rho_d, with that of its texture.
 double brightest_rho_d(const Experiment& experiment, std::size_t surface) {
-    const double own = std::ranges::max(experiment.material(surface).rho_d);
-    if (surface < experiment.shapes.size()) return own;
+    const Rgb& own = experiment.material(surface).rho_d;
+    if (surface < experiment.shapes.size()) return std::ranges::max(own);
     const auto& image = experiment.meshes[surface - experiment.shapes.size()].rho_d_texture.image;
-    return image ? own * static_cast<double>(std::ranges::max(image->rgb)) : own;
+    if (!image) return std::ranges::max(own);
+    double brightest = 0;
+    for (std::size_t k = 0; k < image->rgb.size(); ++k)
+        brightest = std::max(brightest, own[k % 3] * static_cast<double>(image->rgb[k]));
+    return brightest;
 }
 
 }  // namespace

@@ -32,9 +32,10 @@ void load_texture(Texture& texture, TextureOf of, const std::string& beside) {
 std::string content_of(const MeshObject& mesh) {
     ensure(mesh.pack != nullptr, "the content of a mesh is that of its file");
     std::uint64_t hash = mesh.pack->hash;
-    for (const Texture* texture : {&mesh.rho_d_texture, &mesh.alpha_texture}) {
-        if (!texture->image) continue;
-        const std::uint64_t parts[] = {hash, texture->image->hash, texture == &mesh.alpha_texture ? 1u : 0u};
+    for (const TextureKey& key : texture_keys) {
+        const Texture& texture = mesh.*key.texture;
+        if (!texture.image) continue;
+        const std::uint64_t parts[] = {hash, texture.image->hash, key.of == TextureOf::alpha ? 1u : 0u};
         hash = XXH3_64bits(parts, sizeof parts);
     }
     return fmt::format("{:016x}", hash);

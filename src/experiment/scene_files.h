@@ -10,6 +10,15 @@
 
 namespace crescent::inline experiment {
 
+/// The textures of a mesh by the keys that name them.
+struct TextureKey {
+    const char* name;
+    TextureOf of;
+    Texture MeshObject::* texture;
+};
+inline constexpr TextureKey texture_keys[] = {{"rho_d_texture", TextureOf::rho_d, &MeshObject::rho_d_texture},
+    {"alpha_texture", TextureOf::alpha, &MeshObject::alpha_texture}};
+
 /// Reads the image of a sky and sets its content hash. Throws InputError with the file and the texel: no image, a
 /// texel that is negative, not finite or too bright, no light, or another image than the experiment expects.
 void load_sky(SkyLight& sky);

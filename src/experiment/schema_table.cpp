@@ -1,4 +1,5 @@
 // The table itself. Lengths in scene units (m), y up; radiance in W/(sr m^2) as linear Rec.709; angles in degrees.
+#include "experiment/scene_files.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
@@ -121,11 +122,11 @@ Section mesh_tables() {
         to<&MeshObject::file>}};
     for (Key& key : placement_keys<MeshObject, &MeshObject::placement>()) keys.push_back(std::move(key));
     for (Key& key : material_keys<MeshObject>()) keys.push_back(std::move(key));
-    keys.push_back({"rho_d_texture", Type::text, none, "", optional, "none",
+    keys.push_back({texture_keys[0].name, Type::text, none, "", optional, "none",
         "An OpenEXR image next to this file or in a folder there, whose texels multiply rho_d.",
-        to<&MeshObject::rho_d_texture, &Texture::file>});
-    keys.push_back({"alpha_texture", Type::text, none, "", optional, "none", "The same for alpha: a grey image.",
-        to<&MeshObject::alpha_texture, &Texture::file>});
+        to<texture_keys[0].texture, &Texture::file>});
+    keys.push_back({texture_keys[1].name, Type::text, none, "", optional, "none", "The same for alpha: a grey image.",
+        to<texture_keys[1].texture, &Texture::file>});
     keys.push_back({"emission", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]",
         "Radiance of its front sides: its triangles are area lights.", to<&MeshObject::emission>});
     keys.push_back({"two_sided", Type::flag, none, "", defaulted, "false", "Emits from the back too.",

@@ -65,9 +65,17 @@ void GlBackend::claim_framebuffer(const std::string& what, int width, int height
     claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
 }
 
+void GlBackend::check(const Experiment& experiment) const {
+    const auto refuse = [](const SourceLocation& at, const char* what) {
+        throw InputError(at, fmt::format("the GL back end has no {}: expected --instrument cpu", what));
+    };
+    if (!experiment.meshes.empty()) refuse(experiment.meshes.front().at, "meshes");
+    if (experiment.sky) refuse(experiment.sky->at, "image skies");
+}
+
 std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) {
     const Scene& scene = view.scene();
-    if (scene.surroundings()) throw OutputError("the GL back end has no image skies and no meshes: use the cpu");
+    ensure(!scene.surroundings(), "meshes and skies are refused before");
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.image();

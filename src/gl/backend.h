@@ -15,6 +15,7 @@ public:
 
     std::string name() const override;
     std::vector<std::pair<std::string, std::string>> details() const override;
+    void check(const Experiment& experiment) const override;
     std::vector<Film> films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) override;
     std::vector<AssertionResult> assertions() const override { return claims_; }
 

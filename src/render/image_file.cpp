@@ -1,4 +1,5 @@
-// Rows are read into one interleaved array, converted to float by OpenEXR, on this thread.
+// Blocks of rows are read into one interleaved array that grows with them, converted to float by OpenEXR, on this
+// thread: a header that states more pixels than its file has takes no memory for them.
 #include "render/image_file.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -7,10 +8,13 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/openexr.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "base/errors.h"
@@ -48,7 +52,23 @@ std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path, 
     return {static_cast<int>(width), static_cast<int>(height)};
 }
 
+thread_local std::string header_message;
+
+/// Throws if a size in the headers contradicts the size of the file: OpenEXR's C library checks what its C++ library
+/// takes memory for.
+void check_header(const std::string& path) {
+    exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    start.error_handler_fn = [](exr_const_context_t, exr_result_t, const char* why) { header_message = why; };
+    exr_context_t context = nullptr;
+    header_message.clear();
+    const exr_result_t result = exr_start_read(&context, path.c_str(), &start);
+    exr_finish(&context);
+    // It skips a part of a broken attribute, and succeeds.
+    if (result != EXR_ERR_SUCCESS || !header_message.empty()) throw std::runtime_error(header_message);
+}
+
 std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_not) {
+    check_header(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     const Imf::Header& header = file.header(0);
     if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
@@ -56,18 +76,23 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     const Imath::Box2i window = header.dataWindow();
     const auto [width, height] = size_of(window, path, why_not);
     const std::array<std::string, 3> names = channels_of(header, path);
-    std::vector<float> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     Imf::InputPart part(file, 0);
     constexpr std::size_t pixel = 3 * sizeof(float);
+    constexpr int rows = 256;  // the largest block of an OpenEXR file: DWAB
     const std::size_t row = pixel * static_cast<std::size_t>(width);
-    char* const origin = reinterpret_cast<char*>(rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
-        static_cast<std::ptrdiff_t>(row) * window.min.y;
-    Imf::FrameBuffer buffer;
     const bool grey = names[0] == names[1];
-    for (std::size_t c = 0; c < (grey ? 1 : 3); ++c)
-        buffer.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), pixel, row));
-    part.setFrameBuffer(buffer);
-    part.readPixels(window.min.y, window.max.y);
+    std::vector<float> rgb;
+    for (int first = window.min.y; first <= window.max.y; first += rows) {
+        const int last = std::min(first + rows - 1, window.max.y);
+        rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(last - window.min.y + 1));
+        char* const origin = reinterpret_cast<char*>(rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
+            static_cast<std::ptrdiff_t>(row) * window.min.y;
+        Imf::FrameBuffer buffer;
+        for (std::size_t c = 0; c < (grey ? 1 : 3); ++c)
+            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), pixel, row));
+        part.setFrameBuffer(buffer);
+        part.readPixels(first, last);
+    }
     for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
     auto out = std::make_shared<RgbImage>();
     out->hash = hash_of(width, height, rgb);
@@ -82,6 +107,10 @@ std::shared_ptr<const RgbImage> read_pack(const std::string& path, WhyNot why_no
 }
 
 std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw InputError({path, 0, 0}, "expected a regular file");
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file)
@@ -92,8 +121,8 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
     if (is_image_file(head)) return read_pack(path, why_not);
     try {
         return read_parts(path, why_not);
-    } catch (const InputError&) { throw; } catch (const std::exception& error) {
-        throw InputError({path, 0, 0}, fmt::format("expected an OpenEXR image: {}", error.what()));
+    } catch (const InputError&) { throw; } catch (const std::exception& why) {
+        throw InputError({path, 0, 0}, fmt::format("expected an OpenEXR image: {}", why.what()));
     }
 }
 

@@ -25,6 +25,8 @@ class Backend {
 public:
     virtual ~Backend() = default;
     virtual std::string name() const = 0;  // for provenance and plates
+    /// Throws InputError with the place of a part of the experiment that this back end has no films of.
+    virtual void check(const Experiment&) const {}
     /// Returns one film per sample count, in order. The view already has the job's s.
     virtual std::vector<Film> films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) = 0;
     /// Returns details for the provenance, in the driver's own words, by their names ("GL_RENDERER").

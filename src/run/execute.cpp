@@ -96,6 +96,7 @@ std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const Sha
 
 Prepared look(const RunPlan& plan, const Engine& engine) {
     const Experiment& experiment = plan.experiment;
+    if (engine.backend) engine.backend->check(experiment);
     check_memory(experiment);
     Prepared out(experiment);
     on_threads(threads_to_be_had(settled(engine).threads), [&] {

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Meshes from files: imports of each format, the content as identity, films of the same bytes on every instruction set,
-# textures, parts that join without the files, bad files refused with the place, damaged models that do not end the
-# program.
+# textures, parts that join without the files, bad files refused with the place, damaged files of all kinds that do not
+# end the program.
 . "$(dirname "$0")/common.sh"
 # The rest of this script has a build with assimp; without it, the command says what is missing.
 "$CRESCENT" import nothing.obj --out nothing.mesh >printed 2>said
@@ -101,6 +101,13 @@ experiment uv.mesh "$textures"$'\n'"$gloss"
 run 0 --only metrics --out other
 [ "$(hash_of other)" != "$(hash_of best)" ] || die "the content of a texture is not in the identity"
 
+# GL has no meshes: nothing is drawn. Exit code 3: no GL here.
+"$CRESCENT" run mesh.toml --quiet --instrument gl --out gl >printed 2>said
+code=$?
+[ $code -eq 3 ] || { [ $code -eq 2 ] && grep -q '^mesh.toml:[0-9]*:.* no meshes: expected --instrument cpu' said; } ||
+    die "a mesh by GL: exit $code: $(cat said)"
+[ ! -e gl ] || die "GL draws a mesh"
+
 # Parts join with the files and without them; another texture is another experiment.
 mv best one && run 0 --seeds 4 --only metrics --out whole
 run 0 --seeds 4 --seed-range 1:2 --only metrics --out a
@@ -124,12 +131,18 @@ image inf.exr 4 '(inf if (x, y) == (3, 1) else 1, 1, 1)' 2
 image bright.exr 4 '(1, 1, 1.1 if (x, y) == (3, 1) else 1)' 2
 image wide.exr 8193 '(1, 1, 1)' 1
 head -c 200 wood.exr >cut.exr
+mkfifo pipe.exr
 for bad in nan dark inf bright; do
     refuses "mesh.toml:[0-9]*:[0-9]*: meshes.tent.rho_d_texture: .*$bad.exr: texel (3, 1)" uv.mesh "rho_d_texture = \"$bad.exr\""
 done
 refuses 'alpha_texture: .*texel (0, 0).*grey' uv.mesh 'alpha_texture = "wood.exr"'
+for part in combined lobe; do
+    refuses 'mesh.toml:[0-9]*:[0-9]*: furnaces.tent-[a-z]*.shape: .*one material.*alpha_texture' uv.mesh \
+        "$textures"$'\n'"$gloss"$'\n[furnaces.tent-'$part$']\narm = "cosine"\nshape = "tent"\nn = 16\npart = "'$part'"'
+done
 refuses 'wide.exr: .*8192 x 8192.*8193 x 1' uv.mesh 'rho_d_texture = "wide.exr"'
 refuses 'cut.exr: .*OpenEXR' uv.mesh 'rho_d_texture = "cut.exr"'
+refuses 'pipe.exr: .*regular file' uv.mesh 'rho_d_texture = "pipe.exr"'
 refuses 'none.exr: .*can be read' uv.mesh 'rho_d_texture = "none.exr"'
 refuses 'mesh.toml:[0-9]*:[0-9]*: .*with texture coordinates' tent-obj.mesh 'rho_d_texture = "wood.exr"'
 for outside in ../wood.exr "$PWD/wood.exr" ''; do
@@ -165,5 +178,5 @@ done
 expect 2 "$CRESCENT" import tent.obj --out tent.txt
 expect 3 "$CRESCENT" import tent.obj --out none/tent.mesh
 
-# 100,000 by hand: tests/system/mesh_mutants.py build/crescent 100000
-python3 "$here/mesh_mutants.py" "$CRESCENT" 1000 || die "a damaged model"
+# 100,000 by hand: tests/system/scene_mutants.py build/crescent 100000
+python3 "$here/scene_mutants.py" "$CRESCENT" 1000 || die "a damaged file"

@@ -110,16 +110,23 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     if (plot.legend_w > 0) draw_legend(canvas, plot);
 }
 
-// ---- The density is evaluated in double at a point with the material of the shape whose exponent is the experiment's;
-// its peak is the largest of 1801 angles. An arm that aims at lights is evaluated at a pixel, selected among a few
-// thousand, whose R is nearest to the tilt and whose light is nearest to R's plane; its peak is that of 1024 draws.
+// ---- The density is evaluated in double at a point with the material of surface_of_densities(); its peak is the
+// largest of 1801 angles. An arm that aims at lights is evaluated at a pixel, selected among a few thousand, whose R is
+// nearest to the tilt and whose light is nearest to R's plane; its peak is that of 1024 draws.
+
+std::optional<std::size_t> surface_of_densities(const Experiment& e) {
+    if (const auto own = e.surface_of_s()) return own;
+    for (std::size_t k = 0; k < e.surface_count(); ++k)
+        if (e.material(k).rho_s > 0) return k;
+    return {};
+}
 
 namespace {
 
-// Returns the surface for which the density is shown: that of the shape whose exponent is the experiment's.
+/// Returns a point of the surface for which the density is shown.
 ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
-    const auto surface_of_s = e.surface_of_s();
-    Material material = surface_of_s ? e.material(*surface_of_s) : Material{};
+    const auto shown = surface_of_densities(e);
+    Material material = shown ? e.material(*shown) : Material{};
     material.s = s;
     const Surface surface = surface_of(material, s);
     ShadingPoint<double> shading_point{};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot);
 
 // ---- A sampler's own pdf in 1/sr over the hemisphere of n = +z, for a wo whose mirror direction R is tilted from n in
 // the xz plane; it is evaluated by the sampler of samplers/all.h or by an external sampler.
+
+/// Returns the surface whose material the densities have, without its textures: that of the experiment's exponent, else
+/// the first with a lobe; none: a surface without a lobe.
+std::optional<std::size_t> surface_of_densities(const Experiment& e);
 
 /// The pdf of a sampler at one surface point of an experiment, for the plates. Directions in the local frame, n = +z.
 class Density {

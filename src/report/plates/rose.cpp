@@ -228,6 +228,12 @@ void draw_rose(Sheet& sheet) {
                  "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
              std::string("polar: plane of incidence")})
         sheet.notes.push_back(note);
+    const Experiment& e = sheet.experiment();
+    if (const auto shown = surface_of_densities(e); shown && *shown >= e.shapes.size()) {
+        const MeshObject& mesh = e.meshes[*shown - e.shapes.size()];
+        if (mesh.rho_d_texture.file || mesh.alpha_texture.file)
+            sheet.notes.push_back(fmt::format("the material of {} without its textures", escaped(mesh.name)));
+    }
     for (const Part& p : parts)
         if (!p.p.where().empty())
             sheet.notes.push_back(fmt::format(

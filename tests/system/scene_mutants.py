@@ -1,9 +1,11 @@
-"""Imports damaged models: crescent-import may die of one, and `crescent import` must not.
+"""Damaged files of a scene: models to import, .mesh files, skies and textures. crescent-import may die of one, and the
+program must not, nor take memory that the file does not need.
 
-    mesh_mutants.py CRESCENT COUNT [SEED]
+    scene_mutants.py CRESCENT COUNT [SEED [IMAGE.exr...]]
 
-Each of COUNT files is a small OBJ, PLY, STL, glTF or GLB with some bytes changed, removed, doubled or replaced by large
-numbers. Exit 1: an exit code other than 0 (a mesh) and 2 (an error of the input that names the file)."""
+Each of COUNT files is a small OBJ, PLY, STL, glTF, GLB, .mesh or OpenEXR file, or one of these IMAGEs, with some bytes
+changed, removed, doubled or replaced by large numbers. Exit 1: an exit code other than 0 (it is good) and 2 (an error of
+the input that names the file or its table), or more than 96 MB for an experiment of 16 pixels."""
 
 import json
 import os
@@ -13,6 +15,9 @@ import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import sky_image
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
@@ -75,6 +80,45 @@ MODELS = {
     "a.glb": gltf(True),
     "a.gltf": gltf(False),
 }
+EXPERIMENT = """n = 1
+image = {width = 4, height = 4}
+camera = {eye = [0, 2, 2], target = [0, 0, 0], vfov_deg = 30}
+sky = {file = "sky.exr"}
+reference = {n = 1}
+[meshes.a]
+file = "a.mesh"
+rho_d = [0.5, 0.5, 0.5]
+rho_s = 0.1
+brdf = "ggx"
+alpha = 1
+rho_d_texture = "colour.exr"
+alpha_texture = "rough.exr"
+[arms.cosine]
+[arms.sky]
+"""
+LARGEST = 96 << 10  # KiB in use
+
+
+def mesh() -> bytes:
+    corners = b"".join(struct.pack("<3f", *p) for p in CORNERS)
+    normals, uv = struct.pack("<12f", *(4 * (0.0, 1.0, 0.0))), struct.pack("<8f", 0, 0, 1, 0, 0, 1, 1, 1)
+    triangles = b"".join(struct.pack("<3I", *f) for f in FACES)
+    head = struct.pack("<8s6IQ", b"crescent", 0x6873656D, 1, len(CORNERS), len(FACES), 3, 0, 0)
+    return head + corners + normals + uv + triangles
+
+
+def image(width: int, height: int, rule: str) -> bytes:
+    with tempfile.NamedTemporaryFile(suffix=".exr") as file:
+        sky_image.write(file.name, width, height, sky_image.texels(width, height, rule))
+        return Path(file.name).read_bytes()
+
+
+SCENE = {
+    "a.mesh": mesh(),
+    "sky.exr": image(8, 4, "(1, 1 + up, 2)"),
+    "colour.exr": image(5, 3, "(0.1 * x, 0.5, 0.3 * y)"),
+    "rough.exr": image(2, 2, "(0.5, 0.5, 0.5)"),
+}
 NUMBERS = [b"\xff\xff\xff\xff", b"\xff\xff\xff\x7f", b"\0\0\0\0", b"\0\0\xc0\x7f", b"4294967295", b"-1", b"nan", b"1e39", b"inf"]
 
 
@@ -97,31 +141,49 @@ def mutant(model: bytes, draw: random.Random) -> bytes:
     return bytes(out)
 
 
-def imported(program: str, seed: int, k: int) -> tuple[int, bool]:
+def ended(words: list[str], folder: str) -> tuple[int, str, int]:
+    """Returns the exit code, what it said, and its largest memory in KiB."""
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said, cwd=folder)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        said.seek(0)
+        return process.returncode, said.read().decode(errors="replace"), usage.ru_maxrss
+
+
+def tried(program: str, seed: int, k: int, images: list[bytes]) -> tuple[int, bool]:
     """Returns the exit code for mutant k, and whether the importer died."""
     draw = random.Random(seed * 1000003 + k)
-    name = draw.choice(list(MODELS))
+    name = draw.choice([*MODELS, *SCENE])
     with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, name), "wb") as file:
-            file.write(mutant(MODELS[name], draw))
+        files = {name: mutant(MODELS[name], draw)} if name in MODELS else dict(SCENE)
+        if name in SCENE:
+            own = [SCENE[name], *images] if name.endswith(".exr") else [SCENE[name]]
+            files |= {name: mutant(draw.choice(own), draw), "a.toml": EXPERIMENT.encode()}
+        for file, data in files.items():
+            Path(folder, file).write_bytes(data)
         # Some claim 4294967295 vertices, and assimp believes them.
-        words = [program, "import", name, "--out", "a.mesh", "--timeout", "1", "--memory", "256"]
-        ended = subprocess.run(words, capture_output=True, text=True, errors="replace", cwd=folder)
-    if ended.returncode not in (0, 2) or (ended.returncode == 2 and name not in ended.stderr):
-        raise RuntimeError(f"mutant {k} of seed {seed} ({name}): exit {ended.returncode}\n{ended.stderr}")
-    return ended.returncode, "the importer ended with" in ended.stderr
+        words = ["import", name, "--out", "a.mesh", "--timeout", "1", "--memory", "256"]
+        if name in SCENE:
+            words = ["run", "a.toml", "--quiet", "--only", "metrics", "--threads", "1", "--out", "out"]
+        code, said, memory = ended([program, *words], folder)
+    located = name in said or "meshes.a:" in said
+    if code not in (0, 2) or (code == 2 and not located) or (name in SCENE and memory > LARGEST):
+        raise RuntimeError(f"mutant {k} of seed {seed} ({name}): exit {code}, {memory} KiB\n{said}")
+    return code, "the importer ended with" in said
 
 
 def main() -> None:
     program, count, seed = os.path.abspath(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 1
+    images = [Path(file).read_bytes() for file in sys.argv[4:]]
     with ThreadPoolExecutor(2 * (os.cpu_count() or 1)) as pool:
         try:
-            ends = list(pool.map(lambda k: imported(program, seed, k), range(count)))
+            ends = list(pool.map(lambda k: tried(program, seed, k, images), range(count)))
         except RuntimeError as error:
             pool.shutdown(cancel_futures=True)
             sys.exit(str(error))
     good, dead = sum(code == 0 for code, _ in ends), sum(died for _, died in ends)
-    print(f"{count} models: {good} imported, {count - good} refused, the importer died of {dead}")
+    print(f"{count} files: {good} read, {count - good} refused, the importer died of {dead}")
 
 
 if __name__ == "__main__":
