@@ -90,10 +90,4 @@ struct PageFrame {
 /// The whole page, XHTML-compatible where its parts are.
 std::string page_html(const PageFrame& frame, const std::vector<PageSection>& sections);
 
-// ---- The style sheet of the report: one column of about seventy characters, tables and figures a little wider, light
-// and dark, and paper.
-
-/// Contains no '<' and no '&', so that it is valid in XHTML.
-extern const char* const style_sheet;
-
 }  // namespace crescent::inline output
