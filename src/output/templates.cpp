@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
+#include <map>
 
 #include "base/errors.h"
 #include "base/text.h"
@@ -42,6 +43,7 @@ public:
         : context(&model), templates_(templates), page_(page) {}
 
     const mustache::data* get(const std::string& name) const override {
+        if (name.starts_with("count.")) return &(count_ = mustache::data(std::to_string(++counts_[name])));
         const mustache::data* found = context::get(name);
         ensure(found != nullptr, fmt::format("{}: the model has no value '{}'", page_, name));
         return found;
@@ -62,7 +64,8 @@ public:
 private:
     Templates templates_;
     std::string page_;
-    mutable mustache::data partial_;
+    mutable mustache::data partial_, count_;
+    mutable std::map<std::string, int> counts_;
 };
 
 }  // namespace

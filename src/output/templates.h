@@ -1,7 +1,8 @@
 // Pages from templates: *.html files next to the code, which the build puts into the program (cmake/templates.cmake),
 // in the language of mustache. {{x}} is escaped and {{{x}}} is not; {{#x}}...{{/x}} is repeated for each element of a
 // list, and left out if x is false, "" or an empty list; {{^x}}...{{/x}} is the reverse; {{> x.html}} includes another
-// template. For each list x there is has_x, and an element finds the names of what surrounds it.
+// template. For each list x there is has_x, and an element finds the names of what surrounds it. {{count.x}} is 1, then
+// 2, 3, ...
 #pragma once
 
 #include <span>

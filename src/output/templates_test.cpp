@@ -36,6 +36,10 @@ TEST(Templates, RepeatASectionForEachElement) {
     EXPECT_EQ(rendered("{{#all}}{{> part.html}}{{/all}}", {{"all", {{{"name", "a"}}, {{"name", "b"}}}}}), "<a><b>");
 }
 
+TEST(Templates, CountInTheOrderOfThePage) {
+    EXPECT_EQ(rendered("{{count.a}}{{#all}}{{count.a}}{{/all}}{{count.b}}", {{"all", {"x", "y"}}}), "1231");
+}
+
 TEST(Templates, RefuseNamesThatTheModelLacks) {
     for (const char* text : {"{{absent}}", "{{{absent}}}", "{{#absent}}x{{/absent}}", "{{^absent}}x{{/absent}}",
              "{{x.absent}}", "{{> absent.html}}", "{{> part.html}}"})

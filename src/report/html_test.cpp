@@ -1,5 +1,6 @@
 // The page: well-formed for any input, without sections that lack data, and with sentences that follow the numbers.
 #include <limits>
+#include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,6 +53,20 @@ TEST(ReportHtml, SectionsStandWhereTheirDataIs) {
              "ladders", "exponent", "furnaces", "published", "reference", "wrong", "disagreements", "what-ifs",
              "limits", "assertions", "provenance"})
         EXPECT_TRUE(has_section(html, id)) << id;
+}
+
+// The list of contents and the sections are written separately in the templates.
+TEST(ReportHtml, ContentsNameEverySectionInOrder) {
+    const std::string html = Sample().html();
+    const std::regex heading("<span class=\"number\">(\\d+)</span><a href=\"#([a-z-]+)\">(.*?)</a></h2>");
+    std::size_t at = html.find("<ol>"), number = 0;
+    for (std::sregex_iterator i(html.begin(), html.end(), heading), end; i != end; ++i) {
+        EXPECT_EQ((*i)[1], std::to_string(++number));
+        EXPECT_TRUE(has_section(html, (*i)[2]));
+        at = html.find("<li><a href=\"#" + (*i)[2].str() + "\">" + (*i)[3].str() + "</a></li>", at);
+        ASSERT_NE(at, std::string::npos) << (*i)[2];
+    }
+    EXPECT_GE(number, 18u);
 }
 
 TEST(ReportHtml, SectionsVanishWithoutTheirData) {

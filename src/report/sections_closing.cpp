@@ -1,4 +1,5 @@
-// Further experiments (one command each), the limits of this run, its assertions and its provenance.
+// The model of what follows from a run: further experiments (one command each), the limits of this run, its assertions
+// and its provenance.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -10,8 +11,6 @@
 
 namespace crescent::inline report {
 namespace {
-
-using html::words;
 
 /// Returns a command line that runs the same experiment with some keys changed.
 std::string with(const Page& page, const std::vector<std::string>& settings) {
@@ -113,119 +112,61 @@ bool remedies(const Experiment& e) {
     });
 }
 
-std::string claims(const Page& page) {
-    const Experiment& e = page.in.experiment;
-    std::vector<std::string> can{
-        "For this scene, these arms, these seeds and this <i>N</i>, the values above are those of the float films. "
-        "The films can be regenerated, bit for bit: their hashes are at the end.",
-        "Arms differ in their density alone: same directions of view, same light, same random numbers."};
-    if (e.seeds > 1) {
-        const double chance = chance_of_parted_bands(e.seeds);
-        can.push_back(fmt::format("Bands span {} seeds. Those of two equal arms are disjoint in {} of all such runs.",
-            e.seeds, chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"));
-    }
-    std::vector<std::string> cannot{
-        "One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a "
-        "renderer.",
-        "Arms are compared at equal <i>N</i>." + ray_words(e) +
-            " Nothing here says which is faster, or which belongs in production.",
-        "Photographs are tone-mapped and cut off at white. Read no error off them."};
-    if (const std::string bias = bias_words(e); !bias.empty()) cannot.push_back(bias.substr(1));
-    if (!remedies(e))
-        cannot.push_back("No arm aims at the lights and none is combined with another; so neither remedy is measured.");
-    if (e.seeds < 2) cannot.push_back("A single seed ran. There are no bands, so no arm is ranked above another.");
-    else if (e.seeds < 20)
-        cannot.push_back(
-            fmt::format("With {} seeds the ends of a 5–95 % band rest on the outermost one or two draws.", e.seeds));
-    const auto& bands = page.in.metrics.bands;
-    const auto heavy = std::count_if(bands.begin(), bands.end(), [](const SeedSpread& b) { return b.band.heavy; });
-    if (heavy > 0)
-        cannot.push_back(
-            fmt::format("{} of {} metrics have no interval, because the tail of their samples is too heavy for one. "
-                        "More seeds would not change this.",
-                heavy, bands.size()));
-    if (page.find.anything_published())
-        cannot.push_back(
-            "The geometry was fitted to published figures, which do not fix it. It is a scene that fits them, not the "
-            "one they were made with.");
-    return "<h3>It can claim</h3>\n" + html::list(can) + "<h3>It cannot claim</h3>\n" + html::list(cannot);
-}
-
-std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
-    std::string out;
-    for (const std::uint32_t seed : seeds) out += (out.empty() ? "" : ", ") + std::to_string(seed);
-    return out;
-}
-
-std::string result_of(const AssertionResult& a) {
-    if (!a.skipped.empty()) return "skipped: " + escape(a.skipped);
-    if (a.failed()) return "<b class=\"bad\">FAILED</b>";
-    return a.cannot_fail ? "holds<small>for any measurements</small>" : "holds";
-}
-
 }  // namespace
 
-PageSection more_plates(Page& page) {
-    const std::string rest = page.figures.rest();
-    return rest.empty() ? PageSection{} : PageSection{"plates", "More plates", rest};
+Json more_plates(Page& page) {
+    Json rest = page.figures.rest();
+    return rest.empty() ? Json(false) : Json{{"plates", std::move(rest)}};
 }
 
-PageSection what_ifs(Page& page) {
+Json what_ifs(const Page& page) {
     std::vector<Row> rows;
     sampling_rows(page, rows);
     material_rows(page, rows);
     light_rows(page, rows);
-    std::string items;
+    Json out = Json::array();
     for (const Row& row : rows)
-        items += html::element("dt", row.question) +
-            html::element("dd", html::command(row.command) + html::p(row.expect)) + "\n";
-    return {"what-ifs", "What if",
-        html::p("Each question is one line. An override is checked like the file itself, and the experiment’s hash "
-                "changes with it. Assertions were written for the unchanged experiment and may fail here.") +
-            "<dl class=\"what-if\">\n" + items + "</dl>\n"};
+        out.push_back({{"question", row.question}, {"line", row.command}, {"expect", row.expect}});
+    return {{"rows", out}};
 }
 
-PageSection limits(Page& page) { return {"limits", "Limits", claims(page)}; }
+Json limits(const Page& page) {
+    const Experiment& e = page.in.experiment;
+    const auto& bands = page.in.metrics.bands;
+    const auto heavy = std::ranges::count_if(bands, [](const SeedSpread& b) { return b.band.heavy; });
+    const double chance = chance_of_parted_bands(e.seeds);
+    const std::string bias = bias_words(e);
+    Json out = {{"bands", false}, {"rays", ray_words(e)}, {"bias", bias.empty() ? "" : bias.substr(1)},
+        {"remedies", remedies(e)}, {"one_seed", e.seeds < 2}, {"few_seeds", e.seeds >= 2 && e.seeds < 20},
+        {"heavy", heavy > 0 ? std::to_string(heavy) : ""}, {"metrics", bands.size()}};
+    if (e.seeds > 1) out["bands"] = {{"chance", chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"}};
+    return out;
+}
 
-PageSection assertions(Page& page) {
+Json assertions(const Page& page) {
     const auto& all = page.in.metrics.assertions;
-    if (all.empty()) return {};
-    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return a.failed(); });
-    html::Table table(
-        fmt::format("{} assertions, {}", all.size(), failed == 0 ? "all hold" : std::to_string(failed) + " failed"),
-        {words("Assertion"), {"Measured", true}, words(""), {"Bound", true}, words("Result")});
-    for (const AssertionResult& a : all)
-        table.row({html::heading(
-                       escape(a.name) + (a.text.empty() ? "" : "<small><code>" + escape(a.text) + "</code></small>")),
-            html::figure(compact(a.measured)), words(escape(a.op)), html::figure(compact(a.bound)),
-            words(result_of(a))});
-    return {"assertions", "Assertions", table.str()};
+    if (all.empty()) return false;
+    const auto failed = std::ranges::count_if(all, [](const AssertionResult& a) { return a.failed(); });
+    const auto empty = std::ranges::count_if(all, [](const AssertionResult& a) { return a.cannot_fail; });
+    Json rows = Json::array();
+    for (const AssertionResult& a : all) {
+        const bool ran = a.skipped.empty(), holds = ran && !a.failed();
+        rows.push_back({{"name", a.name}, {"claim", a.text}, {"measured", cell_text(compact(a.measured))}, {"op", a.op},
+            {"bound", cell_text(compact(a.bound))}, {"skipped", a.skipped}, {"fails", ran && a.failed()},
+            {"holds", holds}, {"cannot_fail", holds && a.cannot_fail}});
+    }
+    return {{"total", all.size()}, {"failed", failed > 0 ? std::to_string(failed) : ""},
+        {"empty", empty > 0 ? std::to_string(empty) : ""}, {"rows", rows}};
 }
 
-PageSection provenance(Page& page) {
+Json provenance(const Page& page) {
     const Provenance& p = page.in.provenance;
-    html::Table table(
-        "Where this run came from. What varies between equal runs (date, seconds, threads, instruction set) is in "
-        "timing.json",
-        {words("What"), words("Value")});
-    const auto add = [&](const char* what, const std::string& value) {
-        table.row({html::heading(what), words(value)});
-    };
-    add("Experiment", html::code(p.experiment_file) + ", hash " + html::code(p.experiment_hash));
-    add("Command", html::code(p.command));
-    add("crescent", escape(p.version) + ", commit " + html::code(p.commit));
-    add("Compiler", escape(p.compiler));
-    add("Instrument", escape(p.backend));
-    for (const auto& [what, message] : p.backend_details)
-        table.row({html::heading(escape(what)), words(escape(message))});
-    add("Seeds", seeds_text(p.seeds));
-    if (const std::vector<int> missing = p.missing(); !missing.empty())
-        add("A part of the series", fmt::format("seeds {} of {}", ranges_text(p.places), p.series));
-    html::Table films("Hashes (XXH3-64) of the float films at the first seed; equal films have equal hashes",
-        {words("Film"), words("Hash")});
-    for (const auto& [name, hash] : page.in.metrics.film_hashes)
-        films.row({html::heading(escape(name)), words(html::code(hash))});
-    return {"provenance", "Provenance", table.str() + (films.empty() ? "" : films.str())};
+    Json details = Json::array(), films = Json::array(), part = false;
+    for (const auto& [what, message] : p.backend_details) details.push_back({{"what", what}, {"message", message}});
+    for (const auto& [name, hash] : page.in.metrics.film_hashes) films.push_back({{"name", name}, {"hash", hash}});
+    if (!p.missing().empty()) part = {{"places", ranges_text(p.places)}, {"series", p.series}};
+    return {{"commit", p.commit}, {"compiler", p.compiler}, {"backend", p.backend}, {"backend_details", details},
+        {"all_seeds", fmt::format("{}", fmt::join(p.seeds, ", "))}, {"part", part}, {"films", films}};
 }
 
 }  // namespace crescent::inline report
