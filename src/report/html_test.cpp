@@ -215,6 +215,34 @@ TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
     for (const char* label : {"Phong", "GGX"}) EXPECT_NE(html.find(label, lobes), std::string::npos) << label;
 }
 
+// A name in a template that the model lacks is an error only where it is rendered.
+TEST(ReportHtml, HasTheValuesOfSectionsThatAreRare) {
+    Sample s;
+    s.experiment.sky = SkyLight{"<sky>.exr", 30, 2, {}, {}, {}};
+    MeshObject mesh;
+    mesh.name = "<mesh>", mesh.file = "<file>.mesh", mesh.rho_d_texture.file = "<rho>.exr", mesh.emission = {1, 2, 3};
+    mesh.material = s.experiment.shapes[0].material;
+    s.experiment.meshes = {mesh};
+    s.experiment.overrides = {"a=<1>", "b=2"};
+    s.provenance.backend_details = {{"<driver>", "<message>"}};
+    s.provenance.places = {1}, s.provenance.series = 3;
+    RegionMetrics& paired = s.metrics.runs[0].regions[0];
+    paired.mse = -1, paired.mse_error = 0.5;
+    s.metrics.references[0].error_share = 1;
+    s.metrics.references[0].max_relative_rmse_change = 0.25;
+    for (const ReferenceKind kind : {ReferenceKind::quadrature, ReferenceKind::paired}) {
+        s.experiment.reference.kind = kind;
+        const std::string html = s.html();
+        EXPECT_EQ(xml_error(html), "");
+        for (const char* text : {"the image <code>&lt;sky&gt;.exr</code>", "&lt;file&gt;.mesh", "&lt;rho&gt;.exr",
+                 "<code>a=&lt;1&gt;</code>, <code>b=2</code>", "&lt;driver&gt;", "seeds 1 of 3",
+                 "not good enough in region H", "Monte Carlo reference against the quadrature", "<td class=\"n\">−1"})
+            EXPECT_THAT(html, HasSubstr(text));
+    }
+    s.metrics.references[0].max_relative_rmse_change.reset();
+    EXPECT_THAT(s.html(), HasSubstr("a pair of independent estimates"));
+}
+
 TEST(ReportHtml, MarksUnfailingAndSkippedAssertions) {
     Sample s;
     s.metrics.assertions[0].cannot_fail = true;
