@@ -49,9 +49,9 @@ TEST(ReportHtml, LoadsNothingFromElsewhere) {
 
 TEST(ReportHtml, SectionsStandWhereTheirDataIs) {
     const std::string html = Sample().html();
-    for (const char* id : {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b",
-             "ladders", "exponent", "furnaces", "published", "reference", "wrong", "disagreements", "what-ifs",
-             "limits", "assertions", "provenance"})
+    for (const char* id :
+        {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b", "ladders", "exponent",
+            "furnaces", "published", "reference", "wrong", "disagreements", "limits", "assertions", "provenance"})
         EXPECT_TRUE(has_section(html, id)) << id;
 }
 
@@ -66,7 +66,7 @@ TEST(ReportHtml, ContentsNameEverySectionInOrder) {
         at = html.find("<li><a href=\"#" + (*i)[2].str() + "\">" + (*i)[3].str() + "</a></li>", at);
         ASSERT_NE(at, std::string::npos) << (*i)[2];
     }
-    EXPECT_GE(number, 18u);
+    EXPECT_GE(number, 17u);
 }
 
 TEST(ReportHtml, SectionsVanishWithoutTheirData) {
@@ -173,33 +173,12 @@ TEST(ReportHtml, WarnsOfEvidenceThatCannotBeMeasured) {
     EXPECT_THAT(s.html(), Not(HasSubstr("note_evidence measures nothing")));
 }
 
-TEST(ReportHtml, AsksForAnotherLobeByTheKeyThatShapesIt) {
+TEST(ReportHtml, MissesALightWhicheverTableNamesIt) {
     Sample s;
-    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.s=64"));
-    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.s=8"));
-    Material& m = s.experiment.shapes[0].material;
-    m.brdf = lobe_named("ggx"), m.alpha = 0.25;
-    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.alpha=0.125"));
-    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.alpha=0.5"));
-    EXPECT_THAT(s.html(), Not(HasSubstr("shapes.ball.s=64")));
-    m.alpha = 0.75;
-    EXPECT_THAT(s.html(), Not(HasSubstr("alpha=1.5"))) << "a file may have no such alpha";
-    m.alpha.reset();
-    EXPECT_THAT(s.html(), Not(HasSubstr("A sharper lobe")));
-}
-
-TEST(ReportHtml, TellsOfALightWhicheverTableNamesIt) {
-    Sample s;
-    EXPECT_THAT(s.html(), HasSubstr("disks.key.radius=0.4"));
     s.experiment.disks.clear();
     EXPECT_FALSE(has_section(s.html(), "failure-a")) << "no light to miss";
-    EXPECT_THAT(s.html(), Not(HasSubstr("A larger light")));
     s.experiment.lights = {{"lamp", lights::Sphere{{0, 3, 0}, 0.25}, {5, 5, 5}, {}}};
     EXPECT_TRUE(has_section(s.html(), "failure-a"));
-    EXPECT_THAT(s.html(), HasSubstr("lights.lamp.radius=1<"));
-    EXPECT_THAT(s.html(), HasSubstr("lights.lamp.radiance=[1, 1, 1]"));
-    s.experiment.lights = {{"window", lights::Rectangle{{0, 3, 0}, {1, 0, 0}, {0, 0, 1}, false}, {5, 5, 5}, {}}};
-    EXPECT_THAT(s.html(), HasSubstr("lights.window.edge_u=[4, 0, 0]"));
     EXPECT_EQ(xml_error(s.html()), "");
 }
 

@@ -155,7 +155,6 @@ std::string report_html(const ReportInputs& in) {
     model["reference"] = reference(page);
     model["wrong"] = where_wrong(page);
     model["disagreements"] = disagreements(page);
-    model["what_ifs"] = what_ifs(page);
     model["limits"] = limits(page);
     model["more_plates"] = more_plates(page);
     model["assertions"] = assertions(page);

@@ -62,7 +62,6 @@ Json reference(Page& page);
 // interpretation.html
 Json where_wrong(const Page& page);
 Json disagreements(const Page& page);
-Json what_ifs(const Page& page);
 Json limits(const Page& page);
 Json more_plates(Page& page);
 Json assertions(const Page& page);
