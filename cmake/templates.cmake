@@ -27,7 +27,7 @@ function(crescent_templates name)
   if(NOT files)
     return()
   endif()
-  set(output ${PROJECT_BINARY_DIR}/templates/${name}.cpp)
+  set(output ${PROJECT_BINARY_DIR}/pages/${name}.cpp)
   add_custom_command(OUTPUT ${output} DEPENDS ${files} ${CMAKE_CURRENT_FUNCTION_LIST_FILE} VERBATIM
     COMMAND ${CMAKE_COMMAND} -DNAME=${name} "-DFILES=${files}" -DOUTPUT=${output} -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE}
     COMMENT "templates of src/${name}")
