@@ -16,7 +16,7 @@ function bundle(entry, ...more) {
   return execFileSync("esbuild", [join(web, entry), ...flags], { encoding: "utf8" }).trim();
 }
 
-/** The api itself, to ask what only the core knows: the style of the report, and what each experiment holds. */
+/** The api itself, to ask what only the core knows: what each experiment holds. */
 async function opened(module) {
   const made = execFileSync("esbuild", [join(web, "api.ts"), "--format=esm", "--target=es2022"], { encoding: "utf8" });
   writeFileSync(join(build, "api.mjs"), made);
@@ -47,7 +47,7 @@ function sources(api) {
 const bytes = readFileSync(join(build, "crescent.wasm"));
 const api = await opened(await WebAssembly.compile(bytes));
 const version = api.say("version_of");
-const style = api.say("style").trim() + text(join(web, "page.css")).trim();
+const style = text(join(web, "../../src/output/style.css")).trim() + text(join(web, "page.css")).trim();
 const script = bundle("main.ts"), worker = bundle("worker.ts");
 const editor = text(join(web, "vendor/codemirror/editor.js")).split(/^(?=\/\/ part )/m).slice(1);
 // Inside a script element only these end it.

@@ -55,7 +55,6 @@ CRESCENT_EXPORT(html)()->void { respond(formula::html(request().get<std::string>
 /// Formats a number for reading.
 CRESCENT_EXPORT(figures)(double x)->void { respond(crescent::figures(x)); }
 
-CRESCENT_EXPORT(style)()->void { respond(std::string(style_sheet)); }
 CRESCENT_EXPORT(version_of)()->void { respond(version() + ", " + commit()); }
 
 }  // namespace crescent::web

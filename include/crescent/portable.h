@@ -27,7 +27,6 @@
 #include "output/tone_map.h"
 #include "output/format.h"
 #include "output/formula.h"
-#include "output/html.h"
 #include "render/estimator.h"
 #include "render/film.h"
 #include "render/kernel.h"

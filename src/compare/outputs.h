@@ -148,17 +148,6 @@ std::string ladders_svg(const CompareResult& result, Theme theme);
 
 namespace crescent::inline comparison {
 
-// ---- The sections of a comparison's page, as HTML; "" if there is no data.
-
-/// The tables of the page: every metric by arm and region, with its interval.
-std::string numbers_section(const ComparePlan& plan, const RenderStats& all, const CompareResult& result);
-std::string rankings_section(const CompareResult& result);
-std::string means_section(const CompareResult& result);
-std::string noise_section(const CompareResult& result);
-std::string ladders_section(const CompareResult& result);
-std::string spectra_section(const RenderStats& all, const CompareResult& result);
-std::string files_section(const RenderStats& all, const CompareResult& result);
-
 /// docs/compare.schema.json describes it; equal inputs give equal bytes.
 std::string compare_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& provenance);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <tuple>
 #include <fmt/format.h>
-#include <variant>
 
 #include "samplers/info.h"
 
@@ -131,34 +130,10 @@ bool any_tells_s(const Experiment& experiment) {
         experiment.arms, [&](const ArmPlan& arm) { return tells_s(arm.name, experiment.s(), experiment); });
 }
 
-// ---- A kind of light is widened by multiplying its lengths (m); a rectangle by its edges, with its corner moved so
-// that the centre stays. Directions do not change.
-
 std::vector<LightTable> all_lights(const SceneData& scene) {
     std::vector<LightTable> out;
     for (const DiskLight& disk : scene.disks) out.push_back({"disks." + disk.name, disk.light()});
     for (const Light& light : scene.lights) out.push_back({"lights." + light.name, light});
-    return out;
-}
-
-std::vector<std::string> widened(const LightTable& table, double factor) {
-    std::vector<std::string> out;
-    const auto set = [&](std::string_view key, const std::string& value) {
-        out.push_back(fmt::format("{}.{}={}", table.path, key, value));
-    };
-    const auto point = [](Vec3d v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
-    std::visit(
-        [&]<class Kind>(const Kind& kind) {
-            for (const Parameter<Kind>& parameter : Kind::parameters())
-                if (const auto* length = std::get_if<double Kind::*>(&parameter.member))
-                    set(parameter.name, fmt::format("{}", factor * kind.**length));
-            if constexpr (requires { kind.corner, kind.edge_u, kind.edge_v; }) {
-                set("corner", point(kind.corner - 0.5 * (factor - 1) * (kind.edge_u + kind.edge_v)));
-                set("edge_u", point(factor * kind.edge_u));
-                set("edge_v", point(factor * kind.edge_v));
-            }
-        },
-        table.light.form);
     return out;
 }
 

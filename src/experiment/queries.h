@@ -61,8 +61,4 @@ struct LightTable {
 /// Returns all lights of a scene except the fill, in its order: disks first.
 std::vector<LightTable> all_lights(const SceneData& scene);
 
-/// Returns the --set values that make a light `factor` times as wide about its centre ("disks.key.radius=0.4"); empty
-/// for a kind that has neither lengths nor edges.
-std::vector<std::string> widened(const LightTable& table, double factor);
-
 }  // namespace crescent::inline experiment

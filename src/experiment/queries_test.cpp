@@ -1,4 +1,4 @@
-// Lights of both tables in one list, and the settings that widen one.
+// Lights of both tables in one list, and the source of an arm in words.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,31 +47,6 @@ TEST(LightTables, AreThoseOfDisksAndThenThoseOfLights) {
     std::vector<std::string> paths;
     for (const LightTable& table : all_lights(parse(area_lights, "lamps.toml"))) paths.push_back(table.path);
     EXPECT_THAT(paths, ElementsAre("disks.key", "lights.ball", "lights.window"));
-}
-
-TEST(LightTables, AreWidenedByTheLengthsOfTheirKind) {
-    const auto tables = all_lights(parse(area_lights, "lamps.toml"));
-    EXPECT_THAT(widened(tables[0], 4), ElementsAre("disks.key.radius=0.4"));
-    EXPECT_THAT(widened(tables[1], 0.5), ElementsAre("lights.ball.radius=0.125"));
-}
-
-TEST(LightTables, AreWidenedAboutTheirCentreByWhatSetTakes) {
-    const Experiment e = parse(area_lights, "lamps.toml");
-    for (const LightTable& table : all_lights(e)) {
-        const auto wide = all_lights(parse(area_lights, "lamps.toml", widened(table, 4)));
-        for (const LightTable& now : wide) {
-            const double grown = now.path == table.path ? 16 : 1;
-            for (const LightTable& before : all_lights(e)) {
-                if (before.path != now.path) continue;
-                EXPECT_NEAR(now.light.power(), grown * before.light.power(), 1e-12) << now.path;
-                const auto middle = [](const Light& l) {
-                    return std::visit([](const auto& form) { return form.body().middle(); }, l.form);
-                };
-                const Vec3d moved = middle(now.light) - middle(before.light);
-                EXPECT_LT(dot(moved, moved), 1e-24) << now.path;
-            }
-        }
-    }
 }
 
 }  // namespace

@@ -81,6 +81,30 @@ std::string right(std::string_view utf8, std::size_t columns) {
     return std::string(columns - width(text), ' ') + text;
 }
 
+std::string with_minus(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool minus = text[i] == '-' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+        out += minus ? "−" : std::string(1, text[i]);
+    }
+    return out;
+}
+
+std::string cell_text(std::string_view text) { return text.empty() ? "–" : with_minus(text); }
+
+namespace {
+
+/// What follows item `i` of `of` in "a, b and c".
+const char* separator(std::size_t i, std::size_t of) { return i + 2 < of ? ", " : i + 2 == of ? " and " : ""; }
+
+}  // namespace
+
+std::string listed(const std::vector<std::string>& items) {
+    std::string out;
+    for (std::size_t i = 0; i < items.size(); ++i) out += items[i] + separator(i, items.size());
+    return out;
+}
+
 std::string plural(std::uint64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
@@ -93,6 +117,11 @@ Json numbers(const std::vector<double>& all) {
     Json out = Json::array();
     for (const double x : all) out.push_back(number(x));
     return out;
+}
+
+Json separated(std::vector<Json> objects) {
+    for (std::size_t i = 0; i < objects.size(); ++i) objects[i]["separator"] = separator(i, objects.size());
+    return objects;
 }
 
 std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }

@@ -37,6 +37,14 @@ std::string clip(std::string_view utf8, std::size_t columns);
 std::string left(std::string_view utf8, std::size_t columns);
 std::string right(std::string_view utf8, std::size_t columns);
 
+/// With a true minus sign before digits.
+std::string with_minus(std::string_view text);
+/// The number of a cell of a table, with_minus(); an en dash if there is none.
+std::string cell_text(std::string_view text);
+
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& items);
+
 /// "1 sample", "64 samples".
 std::string plural(std::uint64_t count, std::string_view noun);
 
@@ -51,6 +59,8 @@ inline constexpr const char* heavy_tail = "heavy tail";
 /// Used for every double in a JSON file.
 Json number(double x);
 Json numbers(const std::vector<double>& all);
+/// The objects of a list that reads "a, b and c": each with the `separator` after it.
+Json separated(std::vector<Json> objects);
 
 /// Indents by two blanks and ends with a newline; invalid UTF-8 in a name becomes U+FFFD.
 std::string text(const Json& json);

@@ -64,7 +64,7 @@ Axis y_axis(const Evidence& evidence) {
     return linear_axis("furnace reads, Y", values);
 }
 
-std::string panel(const Page& page, const Series& s) {
+Json panel(const Page& page, const Series& s) {
     const Evidence& evidence = page.in.evidence;
     std::vector<double> n;
     for (const FurnaceQuantiles* q : s.sample_counts) n.push_back(static_cast<double>(q->n));
@@ -85,8 +85,7 @@ std::string panel(const Page& page, const Series& s) {
         chart.rule(*cap, "dashed c0", fmt::format("limit of {} bits", s.u_bits));
     if (const FurnaceResult* f = combined_furnace(page); f && f->published)
         chart.diamonds({{static_cast<double>(f->n), *f->published}}, "pub");
-    return "<div class=\"panel\">" + html::element("p", "class=\"panel-title\"", escape(s.name())) + chart.str() +
-        "</div>";
+    return {{"name", s.name()}, {"chart", chart.str()}};
 }
 
 /// Returns the sample count of the series nearest to n, on a log scale.
@@ -102,35 +101,30 @@ std::string share_text(const FalseRejection& r) {
 
 }  // namespace
 
-std::string furnace_charts(const Page& page) {
-    std::string panels;
-    for (const Series& s : series_of(page.in.evidence)) panels += panel(page, s);
-    return "<div class=\"pair\">" + panels + "</div>";
+Json furnace_charts(const Page& page) {
+    Json out = Json::array();
+    for (const Series& s : series_of(page.in.evidence)) out.push_back(panel(page, s));
+    return out;
 }
 
-std::string furnace_table(const Evidence& evidence) {
+Json furnace_medians(const Evidence& evidence) {
     const auto all = series_of(evidence);
-    std::vector<html::Cell> head{{"<i>N</i>", true}};
     std::set<std::uint64_t> sample_counts;
-    for (const Series& s : all) {
-        head.push_back({escape(s.name()), true});
+    for (const Series& s : all)
         for (const FurnaceQuantiles* q : s.sample_counts) sample_counts.insert(q->n);
-    }
-    html::Table table(
-        fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)), head);
+    Json out = Json::array();
     for (const std::uint64_t n : sample_counts) {
-        std::vector<html::Cell> row{{std::to_string(n), true, true}};
+        Json cells = Json::array();
         for (const Series& s : all) {
-            const auto found =
-                std::find_if(s.sample_counts.begin(), s.sample_counts.end(), [&](const auto* q) { return q->n == n; });
-            row.push_back(html::figure(found == s.sample_counts.end() ? "" : figures((*found)->median)));
+            const auto found = std::ranges::find(s.sample_counts, n, [](const FurnaceQuantiles* q) { return q->n; });
+            cells.push_back(cell_text(found == s.sample_counts.end() ? "" : figures((*found)->median)));
         }
-        table.row(row);
+        out.push_back({{"n", n}, {"cells", cells}});
     }
-    return table.str();
+    return out;
 }
 
-std::string furnace_sentence(const Page& page) {
+std::string furnace_html(const Page& page) {
     const Evidence& evidence = page.in.evidence;
     const auto all = series_of(evidence);
     const auto coarse = std::min_element(all.begin(), all.end(), [](const Series& a, const Series& b) {
@@ -152,7 +146,7 @@ std::string furnace_sentence(const Page& page) {
     out += short_high > 0.5 * short_low
         ? " Nearly the same undershoot is in the finer arithmetic, so precision is not the cause."
         : " The finer arithmetic recovers most of it, so in this run precision does explain the undershoot.";
-    return html::p(out);
+    return out;
 }
 
 std::string lost_chart(const Evidence& evidence) {
@@ -178,7 +172,7 @@ std::string lost_chart(const Evidence& evidence) {
     return chart.str();
 }
 
-std::string lost_sentence(const Evidence& evidence) {
+std::string lost_html(const Evidence& evidence) {
     std::vector<const LostSupport*> tilted;
     double worst = 0;
     for (const LostSupport& l : evidence.lost) {
@@ -190,11 +184,11 @@ std::string lost_sentence(const Evidence& evidence) {
     for (std::size_t i = stride - 1; i < tilted.size(); i += stride)
         values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(tilted[i]->measured)),
             shortest(tilted[i]->theta_R_deg));
-    return html::p(fmt::format(
+    return fmt::format(
         "Measured by drawing from the cosine and asking the Phong density whether it could have drawn the same: {}. "
         "The largest departure from theory is {:.1f} standard errors{}.",
         values.empty() ? "nothing" : values, worst,
-        worst <= 4 ? "" : ", more than chance allows: theory and measurement disagree here"));
+        worst <= 4 ? "" : ", more than chance allows: theory and measurement disagree here");
 }
 
 std::string rejection_chart(const Evidence& evidence) {
@@ -215,18 +209,15 @@ std::string rejection_chart(const Evidence& evidence) {
     return chart.str();
 }
 
-std::string rejection_table(const Evidence& evidence) {
-    html::Table table("Rejections of the correct arm, with Clopper–Pearson 95 % intervals",
-        {{"<i>s</i>", true}, {"<i>k</i>", true}, {"Runs", true}, {"Rejected", true}, {"Rate", true},
-            {"95 % interval", true}});
+Json rejection_rows(const Evidence& evidence) {
+    Json out = Json::array();
     for (const FalseRejection& r : evidence.rejections)
-        table.row({{shortest(r.s), true, true}, html::figure(fmt::format("{:.3f}", r.k)),
-            html::figure(std::to_string(r.runs)), html::figure(std::to_string(r.rejected)), html::figure(share_text(r)),
-            html::figure(percent(r.low) + " … " + percent(r.high))});
-    return table.str();
+        out.push_back({{"exponent", shortest(r.s)}, {"k", with_minus(fmt::format("{:.3f}", r.k))}, {"runs", r.runs},
+            {"rejected", r.rejected}, {"rate", share_text(r)}, {"low", percent(r.low)}, {"high", percent(r.high)}});
+    return out;
 }
 
-std::string rejection_sentence(const Evidence& evidence) {
+std::string rejection_html(const Evidence& evidence) {
     int heavy = 0, heavy_above = 0, light = 0, light_above = 0;
     const FalseRejection* worst = nullptr;
     for (const FalseRejection& r : evidence.rejections) {
@@ -245,7 +236,7 @@ std::string rejection_sentence(const Evidence& evidence) {
         out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s),
             html::value(share_text(*worst)));
     if (light > 0) out += fmt::format(" Of {} with <i>k</i> up to 1/2, at {}.", exponents(light), light_above);
-    return html::p(out);
+    return out;
 }
 
 }  // namespace crescent::inline report

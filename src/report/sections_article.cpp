@@ -1,4 +1,5 @@
-// Every metric over seeds: the published value, the measured one, the band, and the place of the published value in it.
+// The model of every metric over seeds (published value, measured one, band, place of the published value in it), of
+// the article's explanations that do not hold, and of the published values outside the bands.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -11,22 +12,8 @@
 namespace crescent::inline report {
 namespace {
 
-using html::words;
-
-constexpr const char* published_prose = R"(
-<p>A published value is one draw from one stream of random numbers. The question is whether it lies where draws lie. In
-the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the {which} seed ({seed}) and the
-diamond the published value; each strip has its own scale. Each RMSE and variance is followed by the tail index
-<i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
-)";
-
-constexpr const char* measured_prose = R"(
-<p>In the strips the bar spans the middle 90 % of {seeds}, the tick is their median and the dot the first seed ({seed});
-each strip has its own scale. Each RMSE and variance is followed by the tail index <i>k</i> of the samples of its
-region: from 1/2 on their variance is infinite.</p>
-)";
-
-std::string fallen(const SeedSpread& b) {
+/// The share of seeds below the published value.
+std::string share_below(const SeedSpread& b) {
     if (!b.published || !b.published_rank || b.band.seeds < 2) return "–";
     if (b.band.q05 == *b.published && b.band.q95 == *b.published) return "the same";
     if (*b.published_rank <= 0) return "none";
@@ -34,28 +21,16 @@ std::string fallen(const SeedSpread& b) {
     return percent(*b.published_rank, 2);
 }
 
-std::vector<html::Cell> band_row(const Page& page, const SeedSpread& b, bool published) {
-    Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
+Json band_row(const Page& page, const SeedSpread& b) {
+    const Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
         b.published.has_value(), b.published.value_or(0)};
-    std::vector<html::Cell> row{html::heading(run_html(b.key, page.in.experiment))};
-    if (published) row.push_back(html::figure(b.published ? figures_of(b.metric, *b.published) : ""));
     const bool paired = page.in.experiment.reference.kind == ReferenceKind::paired;
-    row.push_back(html::figure(figures_of(b.metric, b.measured, paired)));
-    row.push_back(html::figure(figures_of(b.metric, b.band.median, paired)));
-    row.push_back({interval_html(b.metric, b.band), true});
-    row.push_back(words(strip_svg(strip)));
-    if (published) row.push_back({fallen(b), true});
-    row.push_back(html::figure(tail_html(page.find.tail(b))));
-    return row;
-}
-
-std::vector<html::Cell> header(bool published) {
-    std::vector<html::Cell> head{words("Run")};
-    if (published) head.push_back({"Published", true});
-    head.insert(head.end(), {{"Measured", true}, {"Median", true}, {"5–95 %", true}, words("Strip")});
-    if (published) head.push_back({"Seeds below published", true});
-    head.push_back({"<i>k</i>", true});
-    return head;
+    return {{"run", run_html(b.key, page.in.experiment)},
+        {"published", cell_text(b.published ? figures_of(b.metric, *b.published) : "")},
+        {"measured", cell_text(figures_of(b.metric, b.measured, paired))},
+        {"median", cell_text(figures_of(b.metric, b.band.median, paired))},
+        {"interval", interval_html(b.metric, b.band)}, {"strip", strip_svg(strip)}, {"below", share_below(b)},
+        {"tail", cell_text(tail_text(page.find.tail(b)))}};
 }
 
 /// Returns the metrics in a fixed order, then all others, without the whole frame.
@@ -67,40 +42,28 @@ std::vector<std::string> metrics_in_order(const Page& page) {
     return order;
 }
 
-/// Returns what the command line changed of the experiment with published values; "" if nothing.
-std::string changes(const Experiment& e) {
-    std::string list;
+/// Returns what the command line changed of the experiment with published values.
+Json changes_of(const Experiment& e) {
+    Json out = Json::array();
     for (const std::string& change : e.overrides)
-        if (!change.starts_with("seed=") && !change.starts_with("seeds="))
-            list += (list.empty() ? "" : ", ") + ("<code>" + escape(change) + "</code>");
-    if (list.empty()) return {};
-    return "<p><strong>This run differs from the published one</strong> in " + list +
-        ": the published values show the effect of the change; they need not be matched.</p>";
+        if (!change.starts_with("seed=") && !change.starts_with("seeds=")) out.push_back({{"change", change}});
+    return with_commas(std::move(out));
 }
 
 }  // namespace
 
-PageSection published(Page& page) {
+Json all_metrics(Page& page) {
     const bool published = page.find.anything_published();
-    const Experiment& e = page.in.experiment;
-    html::Table table(published ? "Published and measured" : "Every metric of every run", header(published));
+    Json groups = Json::array();
     for (const std::string& metric : metrics_in_order(page)) {
-        bool first = true;
-        for (const SeedSpread& b : page.in.metrics.bands) {
-            if (b.metric != metric) continue;
-            if (first) table.group(metric_html(metric));
-            first = false;
-            table.row(band_row(page, b, published));
-        }
+        Json rows = Json::array();
+        for (const SeedSpread& b : page.in.metrics.bands)
+            if (b.metric == metric) rows.push_back(band_row(page, b));
+        if (!rows.empty()) groups.push_back({{"metric", metric_html(metric)}, {"rows", std::move(rows)}});
     }
-    if (table.empty()) return {};
-    const std::string prose = published ? published_prose : measured_prose;
-    const std::string intro =
-        fmt::format(fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")),
-            fmt::arg("seed", e.seed), fmt::arg("which", page.seed_name()));
-    return {"published", published ? "Published and measured" : "All metrics",
-        (published ? changes(e) : "") + intro + "<div class=\"wide\">" + table.str() + "</div>" +
-            page.figures.plates(PlateKind::meters)};
+    if (groups.empty()) return false;
+    return {{"changes", published ? changes_of(page.in.experiment) : Json::array()}, {"columns", published ? 8 : 6},
+        {"groups", std::move(groups)}, {"plates", page.figures.plates(PlateKind::meters)}};
 }
 
 // ---- Three explanations of the article that do not hold, each with the measurement that shows it; points without a
@@ -108,109 +71,41 @@ PageSection published(Page& page) {
 
 namespace {
 
-using namespace mathml;
-
-constexpr const char* furnace_prose = R"(
-<h3 id="wrong-furnace">The furnace is too low because its tail is heavy</h3>
-<p>The article explains the low combined furnace of the Phong arm by the limited digits of single precision in the
-inverse distribution function. With <i>R</i> = <i>n</i> the weight of a Lambert sample has a closed form: it is
-{weight}, which is a Pareto distribution with index</p>
-{index}
-<p>here {k} at <i>s</i> = {s}. Its variance is infinite from <i>k</i> = 1/2 (<i>s</i> = 3) on. The mean exists, and most
-of it comes from samples so rare that a run of ordinary length has none of them: its typical result is low in any
-arithmetic. The resolution of <i>u</i> adds an upper limit. If <i>u</i> is never below 2<sup>−<i>b</i></sup>, then even
-infinitely many samples give only</p>
-{cap}
-<p>({caps}). The dashed lines below are these limits.</p>
-)";
-
-constexpr const char* lost_prose = R"(
-<h3 id="wrong-support">The Phong arm is biased off the normal</h3>
-<p>An estimator is unbiased if its density is positive wherever the integrand is. The Phong density is zero on the half
-space behind <i>R</i>. If <i>R</i> is tilted by θ<sub>R</sub> from the normal, part of the upper hemisphere lies behind
-it, where a Lambert surface still reflects. Under a uniform fill the share that no number of samples can reach is</p>
-{share}
-<p>A chi-square test of the directions against their density cannot detect it: both are zero there.</p>
-)";
-
-constexpr const char* rejection_prose = R"(
-<h3 id="wrong-test">A t-test rejects the arm where it is right</h3>
-<p>With <i>R</i> = <i>n</i> the arm reaches everything and its mean is known. If that mean is tested with Student’s t at
-level {alpha}, with {n} samples per run, a correct arm should be rejected in {alpha_percent} of runs. The test uses the
-sample variance, and with a heavy tail there is no variance to estimate. It rejects because of the tail.</p>
-)";
-
-std::string intro(const Page& page) {
-    const char* whose = page.find.anything_published()
-        ? "The article explains some of its values."
-        : "This bench began with an article on a gallery lit by a spotlight, which explains some of its values.";
-    return fmt::format(
-        "{} Three of the explanations can be put to a measurement of their own, and below they are, with "
-        "<i>ρ</i><sub>d</sub> = {}, <i>ρ</i><sub>s</sub> = {} and <i>s</i> = {}.",
-        whose, html::value(figures(page.in.evidence.rho_d)), html::value(figures(page.in.evidence.rho_s)),
-        shortest(page.in.evidence.s));
+Json furnace_point(const Page& page) {
+    const Evidence& e = page.in.evidence;
+    if (e.furnace.empty() || !(e.rho_d > 0)) return false;  // without Lambert the furnace is not too low
+    Json caps = Json::array();
+    for (const FurnaceCap& cap : e.caps) caps.push_back({{"y", with_minus(figures(cap.y))}, {"bits", cap.u_bits}});
+    return {{"k", figures((e.s - 1) / (e.s + 1), 3)}, {"caps", with_commas(std::move(caps))},
+        {"sentence", furnace_html(page)}, {"panels", furnace_charts(page)}, {"expected", figures(e.expected)},
+        {"medians", furnace_medians(e)}};
 }
 
-std::string furnace_point(Page& page) {
-    const Evidence& e = page.in.evidence;
-    if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert the furnace is not too low
-    const double k = (e.s - 1) / (e.s + 1);
-    const M weight = row({frac(row({mn("2"), sub(mi("ρ"), mi("d"))}), row({mi("s"), mo("+"), mn("1")})),
-        sup(mi("u"), row({mo("−"), mi("k")}))});
-    std::string caps;
-    for (const FurnaceCap& cap : e.caps)
-        caps += fmt::format("{}{} with {} bits", caps.empty() ? "" : ", ", html::value(figures(cap.y)), cap.u_bits);
-    std::string out = fmt::format(furnace_prose, fmt::arg("weight", in_line(weight)),
-        fmt::arg("index", display(pareto_index(), "k is s minus 1 over s plus 1")),
-        fmt::arg("k", html::value(figures(k, 3))), fmt::arg("s", shortest(e.s)),
-        fmt::arg("cap", display(capped_mean(), "rho s plus rho d times one minus 2 to the minus b times one minus k")),
-        fmt::arg("caps", caps.empty() ? "less than is due" : caps));
-    out += furnace_sentence(page);
-    out += page.figures.chart(furnace_charts(page),
-        "The combined furnace of the Phong arm at <i>R</i> = <i>n</i>, over replicates: median (line), middle half "
-        "(dark) and middle 90 % (light). Solid rule: what is due. Dashed: what infinitely many samples read at that "
-        "resolution of <i>u</i>.",
-        "metrics.json, evidence.furnace");
-    return out + furnace_table(e);
+Json lost_point(const Evidence& e) {
+    if (e.lost.empty()) return false;
+    return {{"sentence", lost_html(e)}, {"chart", lost_chart(e)}};
 }
 
-std::string lost_point(Page& page) {
-    const Evidence& e = page.in.evidence;
-    if (e.lost.empty()) return {};
-    return fmt::format(lost_prose, fmt::arg("share", display(lost_share(), "one minus cosine theta R over two"))) +
-        lost_sentence(e) +
-        page.figures.chart(lost_chart(e),
-            "Lost share of Lambert × fill. Line: theory. Dots: measured, with two standard errors.",
-            "metrics.json, evidence.lost");
-}
-
-std::string rejection_point(Page& page) {
-    const Evidence& e = page.in.evidence;
-    if (e.rejections.empty()) return {};
-    return fmt::format(rejection_prose, fmt::arg("alpha", shortest(e.alpha)),
-               fmt::arg("alpha_percent", percent(e.alpha)), fmt::arg("n", e.rejections.front().n)) +
-        rejection_sentence(e) + rejection_table(e) +
-        page.figures.chart(rejection_chart(e),
-            "Correct runs of the Phong arm that a plain t-test rejects, with Clopper–Pearson 95 % intervals.",
-            "metrics.json, evidence.rejections");
+Json rejection_point(const Evidence& e) {
+    if (e.rejections.empty()) return false;
+    return {{"alpha", shortest(e.alpha)}, {"alpha_percent", percent(e.alpha)}, {"n", e.rejections.front().n},
+        {"sentence", rejection_html(e)}, {"rows", rejection_rows(e)}, {"chart", rejection_chart(e)}};
 }
 
 }  // namespace
 
-PageSection where_wrong(Page& page) {
-    std::string points = furnace_point(page);  // one after the other: figures are numbered in order
-    points += lost_point(page);
-    points += rejection_point(page);
-    if (points.empty()) return {};
-    return {"wrong", "Where the article is wrong", html::p(intro(page)) + points};
+Json where_wrong(const Page& page) {
+    const Evidence& e = page.in.evidence;
+    Json out = {{"rho_d", figures(e.rho_d)}, {"rho_s", figures(e.rho_s)}, {"s", shortest(e.s)},
+        {"furnace", furnace_point(page)}, {"lost", lost_point(e)}, {"rejections", rejection_point(e)}};
+    if (out["furnace"] == false && out["lost"] == false && out["rejections"] == false) return false;
+    return out;
 }
 
 // ---- Published values outside the bands of this run, and possible reasons; only reasons for which this run has the
 // numbers are given. docs/scene.md explains how the geometry was inferred.
 
 namespace {
-
-using html::words;
 
 std::string signed_percent(double fraction) {
     const double tenths = std::round(1000 * fraction);
@@ -342,7 +237,7 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
     return {};
 }
 
-std::string remarks(const Page& page) {
+Json remarks(const Page& page) {
     std::vector<std::string> all;
     const ArmPair pair = arm_pair(page);
     const ArmPlan *broad = pair.broad, *narrow = pair.narrow;
@@ -359,37 +254,29 @@ std::string remarks(const Page& page) {
         if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));
     }
     std::erase_if(all, [](const std::string& remark) { return remark.empty(); });
-    if (all.empty()) return {};
-    return html::p("What can be said about them, medians over seeds against published values:") + html::list(all) +
-        html::p(
-            "The scene was not refitted to meet them. The geometry was inferred (<code>docs/scene.md</code>), and no "
-            "geometry was "
-            "found that meets every published figure.");
+    return all;
 }
 
 }  // namespace
 
-PageSection disagreements(Page& page) {
-    if (!page.find.anything_published()) return {};
-    html::Table table("Published values outside the 5–95 % band of this run (metrics with a heavy tail have no band)",
-        {words("Metric"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
-            {"Median against published", true}});
-    std::size_t checked = 0, outside = 0;
+Json disagreements(const Page& page) {
+    if (!page.find.anything_published()) return false;
+    Json rows = Json::array();
+    std::size_t checked = 0;
     for (const SeedSpread& b : page.in.metrics.bands) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
         ++checked;
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
-        ++outside;
         const auto off = relative(&b);
-        table.row({html::heading(metric_html(b.metric)), words(run_html(b.key, page.in.experiment)),
-            html::figure(figures_of(b.metric, *b.published)), html::figure(figures_of(b.metric, b.band.median)),
-            {interval_html(b.metric, b.band), true}, {off ? signed_percent(*off) : "–", true}});
+        rows.push_back({{"metric", metric_html(b.metric)}, {"run", run_html(b.key, page.in.experiment)},
+            {"published", cell_text(figures_of(b.metric, *b.published))},
+            {"median", cell_text(figures_of(b.metric, b.band.median))}, {"interval", interval_html(b.metric, b.band)},
+            {"off", off ? signed_percent(*off) : "–"}});
     }
-    if (checked == 0) return {};
-    std::string out = html::p(fmt::format("{} can be compared with a band; {} of them fall{} outside it.",
-        plural(checked, "published value"), outside, outside == 1 ? "s" : ""));
-    if (outside > 0) out += table.str() + remarks(page);
-    return {"disagreements", "Where article and scene disagree", out};
+    if (checked == 0) return false;
+    const std::size_t outside = rows.size();
+    return {{"compared", plural(checked, "published value")}, {"outside", outside}, {"one_outside", outside == 1},
+        {"rows", std::move(rows)}, {"remarks", remarks(page)}};
 }
 
 }  // namespace crescent::inline report

@@ -1,5 +1,5 @@
-// The arms at one N, and the two ways in which they fail: the broad density on a small light, the narrow one on a broad
-// integrand. The numbers determine which region shows which.
+// The model of measurements.html: the arms at one N, and the two ways in which they fail: the broad density on a small
+// light, the narrow one on a broad integrand. The numbers determine which region shows which.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -11,56 +11,40 @@
 namespace crescent::inline report {
 namespace {
 
-/// Returns the arm's name and the remarks on its numbers.
-std::string column_title(const ArmPlan& arm, const Experiment& e) {
-    std::string out = escape(arm.name);
-    if (techniques_of(arm) > 1) out += fmt::format("<small>{} rays a sample</small>", techniques_of(arm));
-    if (!missed_light(arm, e).empty()) out += "<small>biased here</small>";
-    return out;
+bool is_biased(const ArmPlan& arm, const Experiment& e) { return !missed_light(arm, e).empty(); }
+
+/// The arm's name and the remarks on its numbers.
+Json column_head(const ArmPlan& arm, const Experiment& e) {
+    const int techniques = techniques_of(arm);
+    return {{"name", arm.name}, {"exponent", ""}, {"rays", techniques > 1 ? std::to_string(techniques) : ""},
+        {"biased", is_biased(arm, e)}};
 }
 
-std::string headline_table(const Page& page, std::uint64_t n) {
+Json headline_table(const Page& page, std::uint64_t n) {
     const Experiment& e = page.in.experiment;
     std::vector<Column> columns;
     for (const ArmPlan& arm : e.arms)
-        if (page.find.run(arm.name, n)) columns.push_back({column_title(arm, e), arm.name, n, page.find.s()});
-    return metrics_table(page,
-        fmt::format(
-            "All arms at <i>N</i> = {}{}. Large: at the {} seed, {}. Small: median over {}, its 5–95 % band, and the "
-            "tail index of the region’s samples",
-            n, any_tells_s(e) ? ", <i>s</i> = " + shortest(page.find.s()) : "", page.seed_name(), e.seed,
-            plural(static_cast<std::uint64_t>(e.seeds), "seed")),
-        columns);
+        if (page.find.run(arm.name, n)) columns.push_back({column_head(arm, e), arm.name, n, page.find.s()});
+    return metrics_table(page, columns);
 }
 
-std::string frame_footnote(const Page& page, std::uint64_t n) {
-    std::string values;
+Json frame_errors(const Page& page, std::uint64_t n) {
+    Json out = Json::array();
     for (const ArmPlan& arm : page.in.experiment.arms)
         if (const RunMetrics* run = page.find.run(arm.name, n))
-            values += fmt::format(
-                "{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
-    if (values.empty()) return {};
-    return html::element("p", "class=\"footnote\"",
-               "Footnote: the RMSE of the whole frame, which mixes the regions, is " + values + ".") +
-        "\n";
+            out.push_back({{"arm", arm.name}, {"rmse", with_minus(figures(run->rmse_frame))}});
+    return with_commas(std::move(out));
 }
 
 /// Returns one sentence for each other arm whose density is about the normal: how it compares with the best of them.
-std::string broad_arms_sentence(const Page& page, const ArmPair& pair, const std::string& region) {
-    std::string out;
+Json broad_arms(const Page& page, const ArmPair& pair, const std::string& region) {
+    Json out = Json::array();
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
         if (arm == pair.broad) continue;
-        const std::string sentence = ordering_sentence(page, arm->name, pair.broad->name, pair.n, region);
-        if (!sentence.empty()) out += html::p("Of the arms about the normal: " + sentence);
+        const std::string sentence = ordering_html(page, arm->name, pair.broad->name, pair.n, region);
+        if (!sentence.empty()) out.push_back(sentence);
     }
     return out;
-}
-
-std::string not_seen(const ArmPair& pair, const std::string& loser, const std::string& winner) {
-    return html::p(
-        fmt::format("In this run the failure does not show: at <i>N</i> = {} there is no region in which {}’s RMSE is "
-                    "larger than {}’s.",
-            pair.n, escape(loser), escape(winner)));
 }
 
 bool larger_in(
@@ -69,120 +53,83 @@ bool larger_in(
     return of_a && of_b && *of_a > *of_b;
 }
 
-constexpr const char* a_prose = R"(
-<p>A small bright light fills little of the hemisphere. A density that spreads its rays over all of it rarely meets the
-light; a ray that does has the weight of all those that missed. On a glossy highlight that ray also meets the lobe near
-its peak, which the density does not follow, so one sample can weigh as much as {largest} with {broad}, in a picture
-whose mean is {mean}. Most pixels are then too dark and a few far too bright. At <i>N</i> = {n} there are
-{fireflies_broad} fireflies with {broad} and {fireflies_narrow} with {narrow}.</p>
-)";
-
-constexpr const char* b_prose = R"(
-<p>A lobe about the mirror direction sends nearly all rays where the lobe is. A Lambert surface receives light from the
-whole hemisphere, and light from the sides is met only by the few rays that go there. Each of those has the weight of
-many that were not sent: the largest weighs {largest} with {narrow}. A pixel is too dark until one arrives, and then far
-too bright. The mean of the frame shows it: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub> is
-{mean_narrow} with {narrow} and {mean_broad} with {broad}.{lost}</p>
-<p>On a Lambert surface the arm still aims about the mirror direction with the scene’s <i>s</i>: it samples the lobe for
-any material.</p>
-)";
-
 /// Returns those of the two failures that this run does not show.
-std::string failures_not_seen(const Page& page, const ArmPair& pair) {
+Json failures_not_seen(const Page& page, const ArmPair& pair) {
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
-    std::string out;
+    Json out = Json::array();
     if (!larger_in(page, broad, narrow, pair.n, page.find.region_where_worst(broad, narrow, pair.n)) &&
         !all_lights(page.in.experiment).empty())
-        out += not_seen(pair, broad, narrow);
+        out.push_back({{"loser", broad}, {"winner", narrow}});
     if (!larger_in(page, narrow, broad, pair.n, page.find.region_where_worst(narrow, broad, pair.n)))
-        out += not_seen(pair, narrow, broad);
+        out.push_back({{"loser", narrow}, {"winner", broad}});
     return out;
 }
 
-std::string lost_words(const Page& page) {
-    if (page.in.evidence.lost.empty()) return {};
-    return " Off the normal there is also light that it " + html::link("wrong-support", "can never find") + ".";
+/// What both failures state: the region in which `loser` is the worst against the other arm of the pair; null if its
+/// error is nowhere larger.
+Json failure_of(const Page& page, const ArmPair& pair, const ArmPlan& loser) {
+    const ArmPlan& winner = &loser == pair.broad ? *pair.narrow : *pair.broad;
+    const std::string region = page.find.region_where_worst(loser.name, winner.name, pair.n);
+    if (!larger_in(page, loser.name, winner.name, pair.n, region)) return {};
+    return {{"region", region}, {"ordering", ordering_html(page, loser.name, winner.name, pair.n, region)},
+        {"broad", pair.broad->name}, {"narrow", pair.narrow->name}, {"n", pair.n},
+        {"largest", with_minus(figures(page.find.run(loser.name, pair.n)->largest))}};
 }
 
 }  // namespace
 
-PageSection results(Page& page) {
+Json results(Page& page) {
     const std::uint64_t n = page.find.headline_n();
-    if (n == 0) return {};
-    std::string out = page.figures.plates(PlateKind::columns) + headline_table(page, n);
+    if (n == 0) return false;
+    const Experiment& e = page.in.experiment;
     const ArmPair pair = arm_pair(page);
-    std::vector<std::string> items;
-    for (const Region& region : page.in.experiment.regions)
-        if (pair) items.push_back(ordering_sentence(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
-    if (!items.empty()) out += html::p("Region by region:") + html::list(items);
-    const std::string beside = ray_words(page.in.experiment) + bias_words(page.in.experiment);
-    if (!beside.empty()) out += html::p(beside.substr(1));
-    if (pair && !page.in.experiment.regions.empty()) out += failures_not_seen(page, pair);
-    if (const std::uint64_t bad = page.find.bad_samples())
-        out += html::p(
-            fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative, or with a pdf or a direction that "
-                        "cannot be used. The figures above are not to be trusted until that is understood.",
-                plural(bad, "sample")));
-    return {"results", "Results", out + page.figures.plates(PlateKind::heat) + frame_footnote(page, n)};
+    const std::string remarks = ray_words(e) + bias_words(e);
+    const std::uint64_t bad = page.find.bad_samples();
+    Json regions = Json::array();
+    for (const Region& region : e.regions)
+        if (pair) regions.push_back(ordering_html(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
+    return {{"plates", page.figures.plates(PlateKind::columns)}, {"table", headline_table(page, n)}, {"n", n},
+        {"exponent", any_tells_s(e) ? shortest(page.find.s()) : ""}, {"regions", regions},
+        {"remarks", remarks.empty() ? "" : remarks.substr(1)}, {"pair_n", pair.n},
+        {"not_seen", pair && !e.regions.empty() ? failures_not_seen(page, pair) : Json::array()},
+        {"bad_samples", bad ? plural(bad, "sample") : ""}, {"heat_plates", page.figures.plates(PlateKind::heat)},
+        {"frame", frame_errors(page, n)}};
 }
 
-PageSection failure_a(Page& page) {
+Json failure_a(Page& page) {
     const ArmPair pair = arm_pair(page);
-    if (!pair || page.in.experiment.regions.empty() || all_lights(page.in.experiment).empty()) return {};
+    if (!pair || page.in.experiment.regions.empty() || all_lights(page.in.experiment).empty()) return false;
+    Json out = failure_of(page, pair, *pair.broad);
+    if (out.is_null()) return false;
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
-    const std::string region = page.find.region_where_worst(broad, narrow, pair.n);
-    const RunMetrics *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
-    if (!larger_in(page, broad, narrow, pair.n, region)) return {};
-    std::string out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
-                          ordering_sentence(page, broad, narrow, pair.n, region)) +
-        broad_arms_sentence(page, pair, region);
-    out += fmt::format(a_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)),
-        fmt::arg("n", pair.n), fmt::arg("largest", html::value(figures(of_broad->largest))),
-        fmt::arg("mean", html::value(figures(of_broad->y_mean))), fmt::arg("fireflies_broad", of_broad->fireflies),
-        fmt::arg("fireflies_narrow", of_narrow->fireflies));
-    const auto shows = [](const std::string& arm) {
-        return [arm](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; };
-    };
-    for (const std::string& arm : {broad, narrow}) out += page.figures.plates(PlateKind::ladder, shows(arm));
-    return {"failure-a", fmt::format("Failure A: {} misses the light in {}", escape(broad), escape(region)), out};
+    out["others"] = broad_arms(page, pair, out["region"]);
+    out["mean"] = with_minus(figures(page.find.run(broad, pair.n)->y_mean));
+    out["fireflies_broad"] = page.find.run(broad, pair.n)->fireflies;
+    out["fireflies_narrow"] = page.find.run(narrow, pair.n)->fireflies;
+    out["plates"] = Json::array();
+    for (const std::string& arm : {broad, narrow})
+        for (const Json& plate : page.figures.plates(PlateKind::ladder,
+                 [&](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; }))
+            out["plates"].push_back(plate);
+    return out;
 }
 
-PageSection failure_b(Page& page) {
+Json failure_b(Page& page) {
     const ArmPair pair = arm_pair(page);
-    if (!pair || page.in.experiment.regions.empty()) return {};
-    const std::string broad = pair.broad->name, narrow = pair.narrow->name;
-    const std::string region = page.find.region_where_worst(narrow, broad, pair.n);
-    const RunMetrics *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
-    if (!larger_in(page, narrow, broad, pair.n, region)) return {};
-    std::string out = html::p(
-        "It shows in region <b>" + escape(region) + "</b>. " + ordering_sentence(page, narrow, broad, pair.n, region));
-    out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)),
-        fmt::arg("n", pair.n), fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
-        fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))),
-        fmt::arg("largest", html::value(figures(of_narrow->largest))), fmt::arg("lost", lost_words(page)));
-    return {"failure-b", fmt::format("Failure B: {} starves {}", escape(narrow), escape(region)),
-        out + page.figures.plates(PlateKind::surround)};
+    if (!pair || page.in.experiment.regions.empty()) return false;
+    Json out = failure_of(page, pair, *pair.narrow);
+    if (out.is_null()) return false;
+    out["mean_broad"] = with_minus(figures(page.find.run(pair.broad->name, pair.n)->y_mean));
+    out["mean_narrow"] = with_minus(figures(page.find.run(pair.narrow->name, pair.n)->y_mean));
+    out["lost"] = !page.in.evidence.lost.empty();
+    out["plates"] = page.figures.plates(PlateKind::surround);
+    return out;
 }
 
 // ---- RMSE against N with the fitted slope, and the exponent control; the sample counts are prefixes of one stream of
 // samples.
 
 namespace {
-
-using html::words;
-
-constexpr const char* ladder_prose = R"(
-<p>The samples of one sample count are the first samples of the next. If the variance of a sample is finite, the error
-falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the {seed}
-seed; the interval is {interval}. A heavy tail breaks this rate: the error then jumps whenever a rare sample arrives,
-and the slope depends on the seed more than on the arm.</p>
-)";
-
-constexpr const char* exponent_prose = R"(
-<p>The control repeats {arm} at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF
-of {shape} and in the reference, so each column is compared with its own reference. A wider lobe sends more samples
-below the horizon; a narrower one leaves more of the hemisphere rarely sampled.</p>
-)";
 
 std::vector<const Ladder*> ladders_in(const Page& page, const std::string& region) {
     std::vector<const Ladder*> all;
@@ -191,7 +138,7 @@ std::vector<const Ladder*> ladders_in(const Page& page, const std::string& regio
     return all;
 }
 
-std::string slope_interval(const Ladder& l) {
+std::string slope_interval_html(const Ladder& l) {
     if (l.heavy) return html::heavy_tail();
     if (!std::isfinite(l.low) || !std::isfinite(l.high)) return "–";
     return html::value(fmt::format("{:.3f} … {:.3f}", l.low, l.high));
@@ -264,116 +211,85 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     return chart.str();
 }
 
-std::string arm_of(const Ladder& l, const Page& page) {
-    const ArmPlan* arm = page.in.experiment.find_arm(l.arm);
-    const bool biased = arm && !missed_light(*arm, page.in.experiment).empty();
-    return escape(l.arm) + (biased ? "<small>biased: it stops falling</small>" : "");
-}
-
-std::string slope_table(const Page& page) {
-    html::Table table(
-        "Fitted slopes of log RMSE on log <i>N</i>; −0.5 if the variance is finite and no light is missed",
-        {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
-    for (const Ladder& l : page.in.metrics.ladders)
-        if (l.n.size() > 1)
-            table.row({html::heading(escape(l.region)), words(arm_of(l, page)),
-                html::figure(tells_s(l.arm, l.s, page.in.experiment) ? shortest(l.s) : ""),
-                html::figure(std::isfinite(l.slope) ? fmt::format("{:.3f}", l.slope) : "–"),
-                {slope_interval(l), true}});
-    return table.str();
+Json slopes_of(const Page& page) {
+    const Experiment& e = page.in.experiment;
+    Json out = Json::array();
+    for (const Ladder& l : page.in.metrics.ladders) {
+        if (l.n.size() < 2) continue;
+        const ArmPlan* arm = e.find_arm(l.arm);
+        out.push_back({{"region", l.region}, {"arm", l.arm}, {"biased", arm && is_biased(*arm, e)},
+            {"exponent", cell_text(tells_s(l.arm, l.s, e) ? shortest(l.s) : "")},
+            {"slope", cell_text(std::isfinite(l.slope) ? fmt::format("{:.3f}", l.slope) : "")},
+            {"interval", slope_interval_html(l)}});
+    }
+    return out;
 }
 
 }  // namespace
 
-PageSection ladders(Page& page) {
+Json ladders(Page& page) {
     std::string charts;
     for (const Region& region : page.in.experiment.regions)
         if (!ladders_in(page, region.name).empty()) charts += ladder_chart(page, region.name);
-    if (charts.empty()) return {};
-    const std::string published = page.find.anything_published() ? " Diamonds: published values." : "";
-    std::string out = fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())),
-        fmt::arg("seed", page.seed_name()),
-        fmt::arg("interval",
-            page.in.experiment.seeds > 1 ? "the <span class=\"v\">5–95 %</span> band of the same fit over seeds"
-                                         : "the fit’s own, from its residuals; two sample counts leave none"));
-    out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
-        "RMSE against <i>N</i> at the " + page.seed_name() + " seed, by region" +
-            (page.in.experiment.seeds > 1 ? ", with the 5–95 % band over seeds" : "") +
-            ". Dashed: slope −1/2 through each arm’s first point." + published,
-        "metrics.json, ladders");
-    return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
+    if (charts.empty()) return false;
+    return {{"over_seeds", page.in.experiment.seeds > 1}, {"charts", charts}, {"rows", slopes_of(page)},
+        {"plates", page.figures.plates(PlateKind::ladder)}};
 }
 
-PageSection exponent(Page& page) {
+Json exponent_control(Page& page) {
     const auto& control = page.in.experiment.exponent;
-    if (!control) return {};
+    if (!control) return false;
     std::vector<Column> columns;
-    for (const double s : control->s) columns.push_back({"<i>s</i> = " + shortest(s), control->arm, control->n, s});
-    const std::string table = metrics_table(page,
-        fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
-            escape(control->arm), control->n, page.seed_name()),
-        columns);
-    if (table.empty()) return {};
-    return {"exponent", "Exponent control",
-        fmt::format(exponent_prose, fmt::arg("arm", escape(control->arm)), fmt::arg("n", control->n),
-            fmt::arg("shape", "<b>" + escape(control->shape) + "</b>")) +
-            table + page.figures.plates(PlateKind::exponent)};
+    for (const double s : control->s)
+        columns.push_back(
+            {{{"name", ""}, {"exponent", shortest(s)}, {"rays", ""}, {"biased", false}}, control->arm, control->n, s});
+    Json table = metrics_table(page, columns);
+    if (table == false) return false;
+    return {{"arm", control->arm}, {"n", control->n}, {"shape", control->shape}, {"table", std::move(table)},
+        {"plates", page.figures.plates(PlateKind::exponent)}};
 }
 
 // ---- White furnaces: one arm on a surface that reflects a known share of a light of radiance 1 from everywhere.
 
 namespace {
 
-using html::words;
+bool is_heavy(const FurnaceResult& f) { return f.tail && f.tail->heavy(); }
 
-constexpr const char* prose = R"(
-<p>If every direction brings radiance 1 to a surface, its radiance is its reflectance: <i>ρ</i><sub>d</sub> +
-<i>ρ</i><sub>s</sub> with both parts of the BRDF, <i>ρ</i><sub>s</sub> with the lobe alone. The camera looks along the
-normal, so that <i>R</i> = <i>n</i> and no sample is below the horizon. Any difference from this value is an error of
-the arm.</p>
-)";
-
-std::string state(const FurnaceResult& f) {
-    if (f.tail && f.tail->heavy()) return "<b>inconclusive: heavy tail</b>";
+/// Whether the reading is the expected one, by its standard error.
+void add_verdict(const FurnaceResult& f, Json& to) {
     const double off = std::fabs(f.measured - f.expected);
-    if (!(f.se > 0)) return off == 0 ? "exact" : "no standard error";
+    to["heavy"] = is_heavy(f), to["differs"] = false, to["remark"] = "";
+    if (is_heavy(f)) return;
+    if (!(f.se > 0)) {
+        to["remark"] = off == 0 ? "exact" : "no standard error";
+        return;
+    }
     const double z = off / f.se;
-    return fmt::format("{}, {:.1f} standard errors off", z <= 3 ? "agrees" : "<b class=\"bad\">differs</b>", z);
-}
-
-std::string shortfall(const FurnaceResult& f) {
-    if (!(f.tail && f.tail->heavy()) || f.expected <= 0) return {};
-    const double off = f.measured / f.expected - 1;
-    return html::p(fmt::format(
-        "<b>{}</b> reads {} where {} is due, {} {}. Its samples have tail index {}: above 1/2 their variance "
-        "is infinite, no standard error exists, and the reading says nothing for or against the arm.",
-        escape(f.name), html::value(figures(f.measured)), html::value(figures(f.expected)), percent(std::fabs(off), 2),
-        off < 0 ? "short" : "over", html::value(tail_html(f.tail))));
+    to["differs"] = !(z <= 3);
+    to["remark"] = fmt::format("{}, {:.1f} standard errors off", z <= 3 ? "agrees" : "", z);
 }
 
 }  // namespace
 
-PageSection furnaces(Page& page) {
-    bool any_published = false;
-    for (const FurnaceResult& f : page.in.metrics.furnaces) any_published = any_published || f.published;
-    std::vector<html::Cell> head{words("Furnace"), words("Arm"), words("BRDF"), {"<i>N</i>", true},
-        {"Expected <i>Y</i>", true}, {"Measured <i>Y</i>", true}, {"Standard error", true}, {"Tail index", true},
-        words("Verdict")};
-    if (any_published) head.insert(head.begin() + 5, {"Published", true});
-    html::Table table("White furnaces at the " + page.seed_name() + " seed", head);
-    std::string sentences;
-    for (const FurnaceResult& f : page.in.metrics.furnaces) {
-        const bool heavy = f.tail && f.tail->heavy();
-        std::vector<html::Cell> row{html::heading(escape(f.name)), words(escape(f.arm)),
-            words(f.part == "lobe" ? "lobe alone" : escape(f.part)), html::figure(std::to_string(f.n)),
-            html::figure(figures(f.expected)), html::figure(figures(f.measured)),
-            {heavy ? html::heavy_tail() : figures(f.se, 2), true}, html::figure(tail_html(f.tail)), words(state(f))};
-        if (any_published) row.insert(row.begin() + 5, html::figure(f.published ? figures(*f.published) : ""));
-        table.row(row);
-        sentences += shortfall(f);
+Json furnaces(const Page& page) {
+    const std::vector<FurnaceResult>& all = page.in.metrics.furnaces;
+    if (all.empty()) return false;
+    Json rows = Json::array(), shortfalls = Json::array();
+    for (const FurnaceResult& f : all) {
+        rows.push_back({{"name", f.name}, {"arm", f.arm}, {"part", f.part == "lobe" ? "lobe alone" : f.part},
+            {"n", f.n}, {"expected", cell_text(figures(f.expected))},
+            {"published", cell_text(f.published ? figures(*f.published) : "")},
+            {"measured", cell_text(figures(f.measured))}, {"standard_error", figures(f.se, 2)},
+            {"tail", cell_text(tail_text(f.tail))}});
+        add_verdict(f, rows.back());
+        if (!is_heavy(f) || f.expected <= 0) continue;
+        const double off = f.measured / f.expected - 1;
+        shortfalls.push_back({{"name", f.name}, {"measured", with_minus(figures(f.measured))},
+            {"expected", with_minus(figures(f.expected))}, {"off", percent(std::fabs(off), 2)}, {"short", off < 0},
+            {"tail", tail_text(f.tail)}});
     }
-    if (table.empty()) return {};
-    return {"furnaces", "White furnaces", prose + table.str() + sentences};
+    const bool published = std::ranges::any_of(all, [](const FurnaceResult& f) { return f.published.has_value(); });
+    return {{"with_published", published}, {"rows", rows}, {"shortfalls", shortfalls}};
 }
 
 }  // namespace crescent::inline report

@@ -90,7 +90,7 @@ std::string ray_words(const Experiment& experiment) {
     return fmt::format(
         " {} {} two techniques: {} <i>N</i> counts pairs, and at equal <i>N</i> {} two rays for each one "
         "of the others.",
-        html::join(names), names.size() == 1 ? "joins" : "join", names.size() == 1 ? "its" : "their",
+        listed(names), names.size() == 1 ? "joins" : "join", names.size() == 1 ? "its" : "their",
         names.size() == 1 ? "it sends" : "they send");
 }
 
@@ -125,7 +125,7 @@ std::string heavy_words(const Page& page, const SeedSpread& a, const SeedSpread&
         if (!band->band.heavy) continue;
         const auto tail = page.find.tail(*band);
         names += (names.empty() ? "" : " and ") + escape(band->key.arm);
-        if (tail) names += fmt::format(" (tail index {})", html::value(tail_html(tail)));
+        if (tail) names += fmt::format(" (tail index {})", html::value(tail_text(tail)));
     }
     return fmt::format(
         " How large the ratio is stays <b>inconclusive: heavy tail</b>: the samples of {} spread so widely "
@@ -146,58 +146,59 @@ std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) 
                          : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";
 }
 
-html::Cell metric_cell(const Page& page, const SeedSpread* band) {
-    if (!band) return html::figure("");
+Json metric_cell(const Page& page, const SeedSpread* band) {
+    Json out = {{"value", "–"}, {"median", ""}, {"band", ""}, {"tail", ""}};
+    if (!band) return out;
     const bool paired = page.in.experiment.reference.kind == ReferenceKind::paired;
-    std::string out = html::number(figures_of(band->metric, band->measured, paired));
-    if (band->band.seeds > 1)
-        out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->metric, band->band.median, paired)),
-            interval_html(band->metric, band->band));
-    if (const auto tail = page.find.tail(*band); tail && band->metric.starts_with("rmse."))
-        out += fmt::format("<small>tail index {}</small>", html::value(tail_html(tail)));
-    return {out, true};
+    out["value"] = with_minus(figures_of(band->metric, band->measured, paired));
+    if (band->band.seeds > 1) {
+        out["median"] = with_minus(figures_of(band->metric, band->band.median, paired));
+        out["band"] = interval_html(band->metric, band->band);
+    }
+    if (band->metric.starts_with("rmse.")) out["tail"] = tail_text(page.find.tail(*band));
+    return out;
 }
 
 /// A row for each region in which FLIP was measured.
-void add_flip_rows(const Page& page, const std::vector<Column>& columns, html::Table& table) {
+void add_flip_rows(const Page& page, const std::vector<Column>& columns, Json& rows) {
     for (const Region& region : page.in.experiment.regions) {
         const std::string metric = "flip." + region.name;
-        std::vector<html::Cell> row{html::heading(metric_html(metric))};
+        Json cells = Json::array();
         bool any = false;
         for (const Column& column : columns) {
             const RunMetrics* run = page.find.run(column.arm, column.n, column.s);
             const RegionMetrics* at = run ? run->region(region.name) : nullptr;
             const bool measured = at && at->has_flip();
             any = any || measured;
-            if (const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s))
-                row.push_back(metric_cell(page, band));
-            else row.push_back(html::figure(measured ? figures(at->flip) : ""));
+            const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
+            cells.push_back(metric_cell(page, band));
+            if (!band && measured) cells.back()["value"] = with_minus(figures(at->flip));
         }
-        if (any) table.row(row);
+        if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
     }
 }
 
 }  // namespace
 
-std::string metrics_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns) {
-    std::vector<html::Cell> head{html::words("Metric")};
-    for (const Column& column : columns) head.push_back({column.title_html, true});
-    html::Table table(caption_html, head);
+Json metrics_table(const Page& page, const std::vector<Column>& columns) {
+    Json heads = Json::array(), rows = Json::array();
+    for (const Column& column : columns) heads.push_back(column.head);
     for (const std::string& metric : headline_metrics(page.in.experiment)) {
-        std::vector<html::Cell> row{html::heading(metric_html(metric))};
+        Json cells = Json::array();
         bool any = false;
         for (const Column& column : columns) {
             const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
             any = any || band;
-            row.push_back(metric_cell(page, band));
+            cells.push_back(metric_cell(page, band));
         }
-        if (any) table.row(row);
+        if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
     }
-    add_flip_rows(page, columns, table);
-    return table.empty() ? "" : table.str();
+    add_flip_rows(page, columns, rows);
+    if (rows.empty()) return false;
+    return {{"columns", heads}, {"rows", rows}};
 }
 
-std::string ordering_sentence(
+std::string ordering_html(
     const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
     const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
     if (!of_a || !of_b) return {};

@@ -4,7 +4,18 @@
 
 #include <string>
 
+#include "base/text.h"
 #include "report/page.h"
+
+// The few pieces of markup that sentences contain.
+namespace crescent::html {
+
+/// A number in a sentence keeps its digits together and in tabular figures.
+inline std::string value(std::string_view text) { return "<span class=\"v\">" + escape(with_minus(text)) + "</span>"; }
+/// In the place of an interval.
+inline std::string heavy_tail() { return "<span class=\"heavy\">heavy tail</span>"; }
+
+}  // namespace crescent::html
 
 namespace crescent::inline report {
 

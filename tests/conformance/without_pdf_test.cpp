@@ -11,6 +11,7 @@
 #include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
 #include "tests/support/checked.h"
+#include "tests/support/wellformed.h"
 
 namespace crescent {
 namespace {
@@ -176,9 +177,10 @@ TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
 TEST(WithoutAPdf, ReportHasOneMapAndATable) {
     const CheckResult j = pictured(power_lobe(20, false));
     const std::string page = verdict_html(j), text = verdict_table(j);
-    EXPECT_EQ(page.find("<figcaption>expected"), std::string::npos) << "a copy of what was observed";
-    EXPECT_EQ(page.find("off most"), std::string::npos);
-    EXPECT_EQ(page.find("<polyline class=rose-p"), std::string::npos) << "p is not known";
+    EXPECT_EQ(testing::xml_error(page), "");
+    EXPECT_EQ(page.find("<figcaption>Expected"), std::string::npos) << "a copy of what was observed";
+    EXPECT_EQ(page.find("furthest off"), std::string::npos);
+    EXPECT_EQ(page.find("<polyline class=\"rose-p\""), std::string::npos) << "p is not known";
     EXPECT_NE(page.find("<figcaption>Density of the draws"), std::string::npos);
     EXPECT_NE(page.find("implied density, mean over the ring"), std::string::npos);
     EXPECT_NE(text.find("The density that the draws imply"), std::string::npos) << text;

@@ -30,7 +30,7 @@ assert root.tag == "testsuites" and float(root.get("time")) > 0
 cases = list(root.iter("testcase"))
 assert len(cases) == int(root.get("tests")) and all(float(c.get("time")) >= 0 for c in cases)
 html = open("a.html", encoding="utf-8").read()
-assert "<title>phong: wrong" in html and "class=matrix" in html
+assert "<title>phong: wrong" in html and 'class="matrix"' in html
 PY
 
 # One line per finding: the same fault at 8 w_o is reported in one line, before the table.

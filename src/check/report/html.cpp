@@ -1,25 +1,22 @@
-// The HTML page of a result: the findings in sentences, tables and pictures.
-#include "check/report/html.h"
-#include "check/report/print.h"
-
+// The model of the HTML page of a result: check.html and the templates that it includes lay it out.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "base/text.h"
+#include "check/report/print.h"
 #include "check/report/summary.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 #include "output/charts.h"
-#include "output/html.h"
+#include "output/templates.h"
 
 namespace crescent::inline results {
 
 namespace {
 
 /// Counts of X by size, both logarithmic, with the fitted tail if there is one.
-std::string histogram(const WeightHistogram& w) {
-    if (w.counts.empty()) return "";
+Json histogram(const WeightHistogram& w) {
+    if (w.counts.empty()) return false;
     std::vector<double> seen;
     std::ranges::copy_if(w.counts, std::back_inserter(seen), [](double c) { return c > 0; });
     seen.push_back(0.5);
@@ -46,140 +43,17 @@ std::string histogram(const WeightHistogram& w) {
         }
         if (tail.size() > 1) chart.line(tail, "c2"), line = true;
     }
-    const std::string fitted = w.exceedances > 0
-        ? fmt::format("{} Pareto tail fitted to the {:.0f} largest has k = {:.3f}{}", line ? "the" : "a", w.exceedances,
-              w.k, line ? " (line)" : "")
-        : std::string("the largest weights are alike, so that there is no tail to fit");
-    return fmt::format(
-        "<figure class=narrow>{}<figcaption>Histogram of the weights X = f L cos / p, both axes logarithmic; {}; "
-        "{:.0f} draws of weight 0 are left out.</figcaption></figure>",
-        chart.str(), fitted, w.zeros);
+    Json tail = false;
+    if (w.exceedances > 0)
+        tail = {{"has_line", line}, {"exceedances", fmt::format("{:.0f}", w.exceedances)},
+            {"k", fmt::format("{:.3f}", w.k)}};
+    return {{"chart", chart.str()}, {"tail", tail}, {"zeros", fmt::format("{:.0f}", w.zeros)}};
 }
-
-/// The parts of the style sheet that only this page uses.
-constexpr const char* head =
-    "<style>.right{color:var(--good)}.inconclusive{color:var(--accent)}.wrong,.error{color:var(--bad);font-weight:600}"
-    ".skipped{color:var(--soft)}.row{display:flex;flex-wrap:wrap;gap:.5em .1em}.row figure{margin:0;width:auto}"
-    ".matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .5em}.matrix th:first-child{white-space:nowrap}"
-    "details{margin-bottom:.6em}"
-    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;outline:1px solid var(--line)}"
-    ".row figure.map{position:relative;width:318px;padding-right:1em}.map "
-    "canvas{position:absolute;left:40px;top:5px}.map "
-    "svg{position:relative;display:block}"
-    ".map text,.rose text{font-size:11px;fill:var(--soft)}.map path,.rose path{stroke:var(--soft);fill:none}.rose "
-    ".faint{stroke:var(--line)}"
-    ".rose "
-    "polyline{fill:none;stroke-width:2}.rose-f{stroke:var(--soft)}.rose-p{stroke:var(--c1)}.worst{fill:none;stroke:#"
-    "0a0;stroke-width:2}"
-    ".wide{overflow-x:auto}details p{margin-top:1em}</style><script>"
-    "function paint(w,top,seen,due,off){const "
-    "c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const "
-    "night=matchMedia('(prefers-color-scheme:dark)').matches;"
-    "const grey=v=>{const m=Math.min(v/top,1),g=night?25+225*m:255-225*m;return[g,g,g]};"
-    "const tint=v=>{const "
-    "d=v/4,a=Math.min(Math.abs(d),1),f=night?25:255*(1-a),g=25+230*a;if(night)return "
-    "d<0?[f,g/2,g]:[g,f,g/3];return d<0?[f,f,255]:[255,f,f]};"
-    "const draw=(k,colour)=>{const "
-    "x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/"
-    "w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"
-    "draw(0,i=>grey(seen[i]));if(due){draw(1,i=>grey(due[i]));draw(2,i=>tint(off[i]))}}"
-    "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>d.open=true))</script>";
-
-std::string names_of(const CheckResult& j) {
-    std::vector<std::string> names;
-    for (const Verdict& v : j.verdicts)
-        if (std::find(names.begin(), names.end(), v.arm) == names.end()) names.push_back(v.arm);
-    return names.size() == 1 ? names[0] : fmt::format("{} samplers", names.size());
-}
-
-std::string expected_html(const Verdict& v) {
-    return fmt::format(" <em>{}: {}.</em>", v.waived ? "Waived" : "As expected of this arm", escape(v.why_expected));
-}
-
-/// One line for each finding, then every case with its verdicts.
-std::string overview(const CheckResult& j) {
-    std::string out;
-    for (const Finding& f : findings_of(j))
-        out += fmt::format("<li><b class={}>{}</b> {}{}", word(f.state), escape(f.arm), escape(describe(f)),
-            f.expected ? expected_html(*f.worst) : "");
-    for (const std::string& line : j.unmet) out += "<li class=wrong>" + escape(line);
-    if (const std::string left = skipped_text(j); !left.empty()) out += "<li class=inconclusive>" + escape(left);
-    out = out.empty() ? "<p>Nothing is wrong, nothing was left open.</p>" : "<ul>" + out + "</ul>";
-    std::vector<std::string_view> names;
-    for (const Verdict& v : j.verdicts)
-        if (std::find(names.begin(), names.end(), v.name) == names.end()) names.push_back(v.name);
-    const bool one_arm = std::ranges::all_of(j.verdicts, [&](const Verdict& v) { return v.arm == j.verdicts[0].arm; });
-    out += "<div class=wide><table class=matrix><tr><th>case";
-    for (std::string_view name : names) out += fmt::format("<th>{}", name);
-    for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
-        const Verdict& v = j.verdicts[i];
-        if (i == 0 || v.check_case != j.verdicts[i - 1].check_case || v.arm != j.verdicts[i - 1].arm)
-            out += fmt::format("<tr><th>{}{}", one_arm ? "" : escape(v.arm) + " ", escape(v.check_case));
-        out += fmt::format("<td class={}>{}", word(v.state), word(v.state));
-    }
-    return out + "</table></div>";
-}
-
-/// Every case with its verdicts, maps, implied density and weights.
-std::string cases_html(const CheckResult& j) {
-    std::string out;
-    std::size_t map = 0, weight = 0;
-    for (std::size_t i = 0; i < j.verdicts.size();) {
-        const std::string arm = j.verdicts[i].arm, check_case = j.verdicts[i].check_case;
-        std::string rows, implied;
-        bool open = false;
-        for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].check_case == check_case; ++i) {
-            const Verdict& v = j.verdicts[i];
-            open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
-            rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state),
-                escape(describe(v)), v.why_expected.empty() ? "" : expected_html(v));
-            implied += implied_html(v);
-        }
-        open = open || (out.empty() && !implied.empty());  // only the first table of an implied density is open
-        out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
-            escape(arm), escape(check_case), rows);
-        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].check_case == check_case)
-            out += map_figures(j.maps[map++]);
-        out += implied + "<div class=row>";
-        while (
-            weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].check_case == check_case) {
-            out += histogram(j.weights[weight]) + rose_figure(j.weights[weight]);
-            ++weight;
-        }
-        out += "</div></details>";
-    }
-    return out;
-}
-
-}  // namespace
-
-std::string verdict_html(const CheckResult& j, const ResultSource& source) {
-    PageFrame frame;
-    frame.title_text = fmt::format("{}: {}", names_of(j), word(j.state));
-    frame.kicker_text = "samplers checked by themselves";
-    frame.version_text = source.version;
-    frame.head_html = head;
-    frame.lead_html = fmt::format("<p class=\"verdict {0}\">{0}</p>\n", word(j.state)) + overview(j) +
-        fmt::format(
-            "<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh "
-            "seed{}.</p>\n",
-            j.tests, j.alpha, j.screened, j.confirmed,
-            j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "") +
-        "<p>" + escape(unseen_text(j)) + " " + escape(nothing_drawn_text(j)) + "</p>\n";
-    if (!source.version.empty())
-        frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
-            escape(source.commit), escape(source.command));
-    return page_html(frame, {{"cases", "Case by case", cases_html(j)}});
-}
-
-// ---- SVG as text; the script of the page paints the cells of a map from the numbers next to it.
-
-namespace {
 
 // A map is 260 x 200 px (`canvas` in the style of the page), with room for labels on the left and below.
-constexpr double map_width = 260, map_height = 200;
-constexpr const char* axes_text = "theta downwards, phi to the right";
-constexpr const char* shades = "by shade 0 to";
+constexpr double map_width = 260, map_height = 200, map_left = 40, map_top = 5;
+
+std::string pixels(double v) { return fmt::format("{:.1f}", v); }
 
 double degrees_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))) * 180 / pi; }
 
@@ -187,51 +61,26 @@ double degrees_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 
 std::string degrees(double v) { return v >= 1 || v == 0 ? fmt::format("{:.0f}", v) : fmt::format("{:.2g}", v); }
 
 /// All rings have the same height, independent of their angle, so their edges are labelled.
-std::string map_axes(const BinHistogram& m) {
-    std::string out;
+Json ring_ticks(const BinHistogram& m) {
+    Json out = Json::array();
     for (int i = 0; i <= 4; ++i) {
         const std::size_t edge = static_cast<std::size_t>(std::lround(0.25 * i * m.rings));
-        const double y = map_height * static_cast<double>(edge) / m.rings;
-        if (edge < m.edges.size())
-            out += fmt::format("<text x=34 y={:.1f} text-anchor=end>{}</text><path d='M36 {:.1f}h4'/>", y + 9,
-                degrees(degrees_of(m.edges[edge])), y + 5);
-        const std::size_t sector = static_cast<std::size_t>(std::lround(0.25 * i * m.sectors));
-        const double x = 40 + map_width * static_cast<double>(sector) / m.sectors;
-        const double turn = sector < m.sector_edges.size() ? m.sector_edges[sector] : 90 * i;
-        out += fmt::format(
-            "<text x={:.1f} y=222 text-anchor=middle>{}</text><path d='M{:.1f} 205v4'/>", x, degrees(turn), x);
+        if (edge >= m.edges.size()) continue;
+        const double y = map_top + map_height * static_cast<double>(edge) / m.rings;
+        out.push_back({{"y", pixels(y)}, {"text_y", pixels(y + 4)}, {"degrees", degrees(degrees_of(m.edges[edge]))}});
     }
     return out;
 }
 
-std::string frame_of(const BinHistogram& m, std::size_t bin) {
-    const double w = map_width / m.sectors, h = map_height / m.rings;
-    const double x = 40 + w * static_cast<double>(bin % static_cast<std::size_t>(m.sectors));
-    const double y = 5 + h * static_cast<double>(bin / static_cast<std::size_t>(m.sectors));
-    return fmt::format(
-        "<rect class=worst x={:.1f} y={:.1f} width={:.1f} height={:.1f} />", x - 1.5, y - 1.5, w + 3, h + 3);
-}
-
-std::string curve(const std::vector<double>& v, std::string_view name) {
-    const double top = std::max(*std::max_element(v.begin(), v.end()), 1e-300);
-    std::string out = fmt::format("<polyline class={} points='", name);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const double angle = (static_cast<double>(i) - 89) * pi / 180, r = 170 * v[i] / top;
-        out += fmt::format("{:.1f},{:.1f} ", 210 + r * math::sin(angle), 195 - r * math::cos(angle));
+Json sector_ticks(const BinHistogram& m) {
+    Json out = Json::array();
+    for (int i = 0; i <= 4; ++i) {
+        const std::size_t sector = static_cast<std::size_t>(std::lround(0.25 * i * m.sectors));
+        const double x = map_left + map_width * static_cast<double>(sector) / m.sectors;
+        const double turn = sector < m.sector_edges.size() ? m.sector_edges[sector] : 90 * i;
+        out.push_back({{"x", pixels(x)}, {"degrees", degrees(turn)}});
     }
-    return out + "'/>";
-}
-
-/// A map of densities, 1/sr.
-std::string implied_figure(const BinHistogram& m) {
-    const double top = std::max(m.full_scale, 1e-300);
-    return fmt::format(
-        "<p>Density of the draws by bin, {}. There is no pdf(w) to compare it with.</p>"
-        "<div class='row wide'><figure class=map><canvas width={} height={}></canvas><svg width=320 "
-        "height=230>{}</svg><figcaption>Density of the draws, {} {:.4g} 1/sr. Degrees: {}.</figcaption></figure></div>"
-        "<script>paint({},{:.6g},[{:.4g}])</script>",
-        m.coordinates, m.sectors, m.rings, map_axes(m), shades, top, axes_text, m.sectors, top,
-        fmt::join(m.observed, ","));
+    return out;
 }
 
 double deviation_of(const BinHistogram& m, std::size_t bin) {
@@ -239,69 +88,154 @@ double deviation_of(const BinHistogram& m, std::size_t bin) {
     return (m.observed[bin] - m.expected[bin]) / sd;
 }
 
-std::size_t furthest_bin(const BinHistogram& m) {
-    std::size_t worst = 0;
-    for (std::size_t i = 1; i < m.observed.size(); ++i)
-        if (std::fabs(deviation_of(m, i)) > std::fabs(deviation_of(m, worst))) worst = i;
-    return worst;
+/// The bin that is furthest off, and a frame around its cell.
+Json frame_of(const BinHistogram& m, const std::vector<double>& deviations) {
+    const auto furthest = std::ranges::max_element(deviations, {}, [](double d) { return std::fabs(d); });
+    const auto bin = static_cast<std::size_t>(furthest - deviations.begin()),
+               sectors = static_cast<std::size_t>(m.sectors);
+    constexpr double around = 1.5;
+    const double width = map_width / m.sectors, height = map_height / m.rings;
+    return {{"drawn", fmt::format("{:.0f}", m.observed[bin])}, {"expected", fmt::format("{:.1f}", m.expected[bin])},
+        {"deviation", fmt::format("{:+.1f}", *furthest)},
+        {"x", pixels(map_left + width * static_cast<double>(bin % sectors) - around)},
+        {"y", pixels(map_top + height * static_cast<double>(bin / sectors) - around)},
+        {"width", pixels(width + 2 * around)}, {"height", pixels(height + 2 * around)}};
+}
+
+Json map_of(const BinHistogram& m) {
+    Json out = {{"coordinates", m.coordinates}, {"sectors", m.sectors}, {"rings", m.rings}, {"bins", m.observed.size()},
+        {"ring_ticks", ring_ticks(m)}, {"sector_ticks", sector_ticks(m)}, {"frame", false}};
+    if (m.expected.empty()) {  // a density, 1/sr
+        const double top = std::max(m.full_scale, 1e-300);
+        out["top"] = fmt::format("{:.4g}", top), out["full_scale"] = fmt::format("{:.6g}", top);
+        out["observed"] = fmt::format("{:.4g}", fmt::join(m.observed, ","));
+        return out;
+    }
+    const double top = std::max(std::ranges::max(m.observed), std::ranges::max(m.expected));
+    std::vector<double> deviations;
+    for (std::size_t i = 0; i < m.observed.size(); ++i) deviations.push_back(deviation_of(m, i));
+    out["frame"] = frame_of(m, deviations);
+    out["top"] = fmt::format("{:.0f}", top), out["full_scale"] = fmt::format("{:.0f}", std::max(top, 1.0));
+    out["observed"] = fmt::format("{:.0f}", fmt::join(m.observed, ","));
+    out["expected_draws"] = fmt::format("{:.1f}", fmt::join(m.expected, ","));
+    out["deviations"] = fmt::format("{:.2f}", fmt::join(deviations, ","));
+    return out;
+}
+
+/// The points of a polar curve over the angles of the plane of incidence, scaled to its largest value.
+std::string curve(const std::vector<double>& v) {
+    const double top = std::max(std::ranges::max(v), 1e-300);
+    std::string out;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const double angle = (static_cast<double>(i) - 89) * pi / 180, r = 170 * v[i] / top;
+        out += fmt::format("{:.1f},{:.1f} ", 210 + r * math::sin(angle), 195 - r * math::cos(angle));
+    }
+    return out;
+}
+
+Json rose_of(const WeightHistogram& w) {
+    if (w.rose_p.empty()) return false;
+    Json spokes = Json::array();
+    for (int angle = -90; angle <= 90; angle += 30) {
+        const double s = math::sin(angle * pi / 180), c = math::cos(angle * pi / 180);
+        spokes.push_back({{"x", pixels(210 + 172 * s)}, {"y", pixels(195 - 172 * c)}, {"text_x", pixels(210 + 186 * s)},
+            {"text_y", pixels(std::abs(angle) == 90 ? 212 : 199 - 184 * c)}, {"degrees", angle}});
+    }
+    return {{"spokes", spokes}, {"f", curve(w.rose_f)}, {"p", curve(w.rose_p)}};
+}
+
+/// The density that the draws imply, by rings about n; null for any other verdict.
+Json implied_of(const Verdict& v) {
+    const auto found = v.evidence.find("implied_rings");
+    if (found == v.evidence.end()) return {};
+    Json rings = Json::array();
+    for (const auto& row : found->at("rows"))
+        rings.push_back(
+            {{"from", fmt::format("{:.0f}", row[0].get<double>())}, {"to", fmt::format("{:.0f}", row[1].get<double>())},
+                {"density", fmt::format("{:.4g}", row[2].get<double>())},
+                {"error", fmt::format("{:.2g}", row[3].get<double>())}});
+    return {{"rings", rings}};
+}
+
+std::string title_of(const CheckResult& j) {
+    std::vector<std::string> names;
+    for (const Verdict& v : j.verdicts)
+        if (std::ranges::find(names, v.arm) == names.end()) names.push_back(v.arm);
+    return fmt::format(
+        "{}: {}", names.size() == 1 ? names[0] : fmt::format("{} samplers", names.size()), word(j.state));
+}
+
+Json expected_of(const Verdict& v) { return {{"waived", v.waived}, {"why", v.why_expected}}; }
+
+Json findings_list(const CheckResult& j) {
+    Json out = Json::array();
+    for (const Finding& f : findings_of(j))
+        out.push_back({{"state", word(f.state)}, {"arm", f.arm}, {"text", describe(f)},
+            {"expected", f.expected ? expected_of(*f.worst) : Json(false)}});
+    return out;
+}
+
+bool starts_case(const std::vector<Verdict>& all, std::size_t i) {
+    return i == 0 || all[i].check_case != all[i - 1].check_case || all[i].arm != all[i - 1].arm;
+}
+
+/// The names of the tests, and the states of each case; the arm is named if there are several.
+void add_matrix(const CheckResult& j, Json& to) {
+    std::vector<std::string_view> tests;
+    for (const Verdict& v : j.verdicts)
+        if (std::ranges::find(tests, v.name) == tests.end()) tests.push_back(v.name);
+    const bool one_arm = std::ranges::all_of(j.verdicts, [&](const Verdict& v) { return v.arm == j.verdicts[0].arm; });
+    Json matrix = Json::array();
+    for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
+        const Verdict& v = j.verdicts[i];
+        if (starts_case(j.verdicts, i))
+            matrix.push_back({{"arm", one_arm ? "" : v.arm}, {"case", v.check_case}, {"states", Json::array()}});
+        matrix.back()["states"].push_back(word(v.state));
+    }
+    to["tests"] = tests, to["matrix"] = matrix;
+}
+
+/// Every case with its verdicts, maps, implied density and weights.
+Json cases_of(const CheckResult& j) {
+    Json out = Json::array();
+    std::size_t map = 0, weight = 0;
+    for (std::size_t i = 0; i < j.verdicts.size();) {
+        const std::string arm = j.verdicts[i].arm, check_case = j.verdicts[i].check_case;
+        const auto is_here = [&](const auto& all, std::size_t k) {
+            return k < all.size() && all[k].arm == arm && all[k].check_case == check_case;
+        };
+        Json verdicts = Json::array(), implied = Json::array(), maps = Json::array(), weights = Json::array();
+        bool open = false;
+        for (; is_here(j.verdicts, i); ++i) {
+            const Verdict& v = j.verdicts[i];
+            open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
+            verdicts.push_back({{"name", v.name}, {"state", word(v.state)}, {"text", describe(v)},
+                {"expected", v.why_expected.empty() ? Json(false) : expected_of(v)}});
+            if (const Json density = implied_of(v); !density.is_null()) implied.push_back(density);
+        }
+        open = open || (out.empty() && !implied.empty());  // only the first table of an implied density is open
+        for (; is_here(j.maps, map); ++map) maps.push_back(map_of(j.maps[map]));
+        for (; is_here(j.weights, weight); ++weight)
+            weights.push_back({{"histogram", histogram(j.weights[weight])}, {"rose", rose_of(j.weights[weight])}});
+        out.push_back({{"arm", arm}, {"case", check_case}, {"open", open}, {"verdicts", verdicts}, {"maps", maps},
+            {"implied", implied}, {"weights", weights}});
+    }
+    return out;
 }
 
 }  // namespace
 
-std::string map_figures(const BinHistogram& m) {
-    if (m.expected.empty()) return implied_figure(m);
-    const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()),
-        *std::max_element(m.expected.begin(), m.expected.end()));
-    const std::size_t worst = furthest_bin(m);
-    std::vector<double> deviations;
-    for (std::size_t i = 0; i < m.observed.size(); ++i) deviations.push_back(deviation_of(m, i));
-    std::string out = fmt::format(
-        "<p>Draws by bin, {}; bins are finer where most draws are. The framed bin is furthest off: {:.0f} drawn, "
-        "{:.1f} "
-        "expected, {:+.1f} standard deviations; the furthest of {} bins of a right sampler is off by about 3.</p>"
-        "<div class='row wide'>",
-        m.coordinates, m.observed[worst], m.expected[worst], deviations[worst], m.observed.size());
-    const std::string captions[] = {fmt::format("Observed: draws, {} {:.0f}. Degrees: {}.", shades, top, axes_text),
-        fmt::format("Expected: what p gives, {} {:.0f}. Degrees: {}.", shades, top, axes_text),
-        fmt::format(
-            "Observed less expected in standard deviations: red more, blue fewer, full colour at 4. Degrees: {}.",
-            axes_text)};
-    for (const std::string& caption : captions)
-        out += fmt::format(
-            "<figure class=map><canvas width={} height={}></canvas><svg width=320 "
-            "height=230>{}{}</svg><figcaption>{}</figcaption></figure>",
-            m.sectors, m.rings, map_axes(m), frame_of(m, worst), caption);
-    return out +
-        fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}],[{:.2f}])</script>", m.sectors, std::max(top, 1.0),
-            fmt::join(m.observed, ","), fmt::join(m.expected, ","), fmt::join(deviations, ","));
-}
-
-std::string rose_figure(const WeightHistogram& w) {
-    if (w.rose_p.empty()) return "";
-    std::string out = "<figure class=rose><svg viewBox='0 0 420 230' width=380 height=208><path d='M20 195h380'/>";
-    for (int angle = -90; angle <= 90; angle += 30) {
-        const double s = math::sin(angle * pi / 180), c = math::cos(angle * pi / 180);
-        out += fmt::format(
-            "<path class=faint d='M210 195L{:.1f} {:.1f}'/><text x={:.1f} y={:.1f} text-anchor=middle>{}</text>",
-            210 + 172 * s, 195 - 172 * c, 210 + 186 * s, (angle == 90 || angle == -90 ? 212 : 199 - 184 * c), angle);
-    }
-    out += curve(w.rose_f, "rose-f") + curve(w.rose_p, "rose-p");
-    return out +
-        "</svg><figcaption>p(w_i) (blue) and f L cos (grey) in the plane of incidence, by degrees of w_i from n; each "
-        "curve is scaled to its own largest value</figcaption></figure>";
-}
-
-std::string implied_html(const Verdict& v) {
-    const auto rings = v.evidence.find("implied_rings");
-    if (rings == v.evidence.end()) return "";
-    std::string out =
-        "<table class=matrix><tr><th>degrees from n<th>implied density, mean over the ring, 1/sr<th>standard error";
-    for (const auto& row : rings->at("rows"))
-        out += fmt::format("<tr><td>{:.0f} to {:.0f}<td>{:.4g}<td>{:.2g}", row[0].get<double>(), row[1].get<double>(),
-            row[2].get<double>(), row[3].get<double>());
-    return out +
-        "</table><p>In the JSON these are <code>implied_rings</code>; cells of about equal numbers of draws are "
-        "<code>implied_bins</code>.</p>";
+std::string verdict_html(const CheckResult& j, const ResultSource& source) {
+    const Json findings = findings_list(j);
+    const std::string left_out = skipped_text(j);
+    Json model = {{"title", title_of(j)}, {"version", source.version}, {"commit", source.commit},
+        {"command", source.command}, {"state", word(j.state)}, {"findings", findings}, {"unmet", j.unmet},
+        {"left_out", left_out}, {"nothing_found", findings.empty() && j.unmet.empty() && left_out.empty()},
+        {"statistical_tests", j.tests}, {"alpha", fmt::format("{:g}", j.alpha)}, {"screened", j.screened},
+        {"confirmed", j.confirmed}, {"questions", j.questions > 0 ? std::to_string(j.questions) : ""},
+        {"unseen", unseen_text(j)}, {"nothing_drawn", nothing_drawn_text(j)}, {"cases", cases_of(j)}};
+    add_matrix(j, model);
+    return render_page(check_templates(), "check.html", model);
 }
 
 }  // namespace crescent::inline results

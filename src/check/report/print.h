@@ -24,7 +24,7 @@ std::string verdict_timing(const CheckResult& result, const ResultSource& source
 std::string verdict_junit(const CheckResult& result);
 /// The summary, a matrix of w_o and verdicts, then for each case: maps of observed, expected and standardised
 /// difference, weight histograms with their tail, and polar plots of p and f L cos. For a sampler without pdf(w): the
-/// map and the table of the density that its draws imply.
+/// map and the table of the density that its draws imply. Not in crescent::check built alone.
 std::string verdict_html(const CheckResult& result, const ResultSource& source = {});
 
 // ---- Next steps in the terms of a front end: flags of the command line, calls of C++ or of Python.
