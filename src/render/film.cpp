@@ -7,14 +7,21 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+
 namespace crescent::inline render {
 
 namespace {
 
 std::size_t area(int w, int h) { return static_cast<std::size_t>(w) * static_cast<std::size_t>(h); }
 
-template <class... V> std::vector<std::span<const std::byte>> bytes_of(const V&... planes) {
-    return {std::as_bytes(std::span(planes))...};
+template <class Byte, class... V> std::vector<std::span<Byte>> bytes_of(V&... planes) {
+    return {std::span<Byte>(reinterpret_cast<Byte*>(planes.data()), sizeof(planes[0]) * planes.size())...};
+}
+template <class Byte, class F> std::vector<std::span<Byte>> film_bytes(F& f) {
+    return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.second_moment, f.var, f.largest, f.horizon, f.light_hits);
+}
+template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f) {
+    return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.error);
 }
 
 std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
@@ -36,11 +43,9 @@ ReferenceFilm::ReferenceFilm(int w, int h, double exponent) : width(w), height(h
     for (auto* plane : {&r, &g, &b, &y, &error}) plane->assign(area(w, h), 0.0f);
 }
 
-std::vector<std::span<const std::byte>> Film::planes() const {
-    return bytes_of(r, g, b, y, second_moment, var, largest, horizon, light_hits);
-}
+std::vector<std::span<std::byte>> Film::planes() { return film_bytes<std::byte>(*this); }
 
-std::vector<std::span<const std::byte>> ReferenceFilm::planes() const { return bytes_of(r, g, b, y, error); }
+std::vector<std::span<std::byte>> ReferenceFilm::planes() { return reference_bytes<std::byte>(*this); }
 
 FilmHash::FilmHash() : state_(XXH3_createState(), [](void* p) { XXH3_freeState(static_cast<XXH3_state_t*>(p)); }) {
     XXH3_64bits_reset(static_cast<XXH3_state_t*>(state_.get()));
@@ -52,8 +57,8 @@ std::string FilmHash::text() const {
     return fmt::format("{:016x}", XXH3_64bits_digest(static_cast<const XXH3_state_t*>(state_.get())));
 }
 
-std::string hash(const Film& film) { return hash_of(film.planes()); }
+std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(film)); }
 
-std::string hash(const ReferenceFilm& film) { return hash_of(film.planes()); }
+std::string hash(const ReferenceFilm& film) { return hash_of(reference_bytes<const std::byte>(film)); }
 
 }  // namespace crescent::inline render

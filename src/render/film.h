@@ -37,7 +37,7 @@ struct Film {
     std::uint64_t invalid = 0;              // NaN, infinite or negative samples in the whole film
 
     /// Returns every plane as bytes, 4 per pixel.
-    std::vector<std::span<const std::byte>> planes() const;
+    std::vector<std::span<std::byte>> planes();
     /// Makes all planes of w * h pixels, filled with 0.
     Film() = default;
     Film(int w, int h, std::uint64_t samples);
@@ -49,8 +49,8 @@ struct ReferenceFilm {
     int width = 0, height = 0;
     double s = 0;
     std::vector<float> r, g, b, y, error;
-    std::vector<std::span<const std::byte>> planes() const;  // like Film::planes()
-    std::size_t size() const { return y.size(); }            // pixels
+    std::vector<std::span<std::byte>> planes();    // like Film::planes()
+    std::size_t size() const { return y.size(); }  // pixels
     ReferenceFilm() = default;
     ReferenceFilm(int w, int h, double exponent);
 };

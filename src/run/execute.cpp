@@ -62,8 +62,9 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     const auto samples = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
     if (checkpoint && !keep_films) out.metrics = checkpoint->metrics(out.job);
     if (!out.metrics.empty()) return monitor.skip(samples);
+    const Stopwatch start;
     std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor);
-    out.samples = samples;
+    out.samples = samples, out.seconds = start.seconds();
     out.metrics = metrics_of(plan, prepared, out.job, films);
     if (keep_films) out.films = std::move(films);
     else if (checkpoint) checkpoint->add(out.metrics);
@@ -145,12 +146,10 @@ Job with_sampler(Job job, const Prepared& prepared) {
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& monitor, bool keep_films, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
-    const Stopwatch start;
     JobResult out;
     out.job = with_sampler(job, prepared);
     out.stopped = !unless_stopped(
         with.threads, monitor, [&] { compute(plan, prepared, with, monitor, keep_films, checkpoint, out); });
-    out.seconds = start.seconds();
     return out;
 }
 

@@ -63,7 +63,7 @@ struct JobResult {
     std::vector<RunMetrics> metrics;  // one per sample count; collect() adds tails
     std::vector<Film> films;          // one per sample count; none if they were not requested
     double samples = 0;               // number drawn in this call
-    double seconds = 0;
+    double seconds = 0;               // of its films, without their metrics
     bool stopped = false;
 };
 
