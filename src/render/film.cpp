@@ -7,7 +7,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-
 namespace crescent::inline render {
 
 namespace {
