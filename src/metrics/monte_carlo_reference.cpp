@@ -161,8 +161,8 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
     std::vector<std::uint32_t> seeds;  // of the lobe, then of each light
     for (std::size_t k = 0; k <= views.at(0).scene().lights().size(); ++k)
         seeds.push_back(reference_seed(experiment, static_cast<std::uint32_t>(k)));
-    return by_tiles(experiment.image, exponents, monitor,
-        [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
+    return by_tiles(
+        experiment.image, exponents, monitor, [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < views.size(); ++e) {
                 const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
                 for (const ShadingPoints& shading_points : *groups) {

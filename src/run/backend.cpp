@@ -12,8 +12,7 @@ class Cpu : public Backend {
 public:
     explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
     std::string name() const override { return "CPU"; }
-    std::vector<Film> films(
-        const TiledScene& view, const Job& job, ProgressMonitor& monitor) override {
+    std::vector<Film> films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) override {
         return estimate_films(view, {job.sampler, job.outside.get()}, job.n, job.seed, isa_, monitor);
     }
 

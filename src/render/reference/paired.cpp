@@ -60,8 +60,8 @@ void write_paired(const Scene& scene, const ShadingPoints& points, const PairedP
     }
 }
 
-std::vector<ReferenceFilm> paired_reference(const std::vector<TiledScene>& views, const PairedPlan& plan,
-    ProgressMonitor& monitor) {
+std::vector<ReferenceFilm> paired_reference(
+    const std::vector<TiledScene>& views, const PairedPlan& plan, ProgressMonitor& monitor) {
     std::vector<double> exponents;
     for (const TiledScene& view : views) exponents.push_back(view.scene().s());
     return by_tiles(views.at(0).scene().image(), exponents, monitor,

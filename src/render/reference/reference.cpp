@@ -137,8 +137,8 @@ void store_pixel(ReferenceFilm& film, std::size_t at, const Rgb& radiance, doubl
 std::vector<ReferenceFilm> quadrature_reference(
     const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& monitor) {
     const PixelQuadrature pixels(scene, exponents);
-    return by_tiles(scene.image(), exponents, monitor,
-        [&](std::size_t, const TileBox& tile, std::vector<ReferenceFilm>& films) {
+    return by_tiles(
+        scene.image(), exponents, monitor, [&](std::size_t, const TileBox& tile, std::vector<ReferenceFilm>& films) {
             for (int j = tile.y0; j < tile.y1 && !monitor.stop.load(std::memory_order_relaxed); ++j)
                 pixels.write({tile.x0, j, tile.x1, j + 1}, films);
         });
