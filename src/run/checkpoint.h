@@ -1,6 +1,6 @@
 // The metrics of the finished passes of a long run, kept in OUT/.crescent-kept while it lasts, so that the same command
-// resumes a stopped or killed run. References and the films of the first seed are computed again. Removed once the outputs
-// are published.
+// resumes a stopped or killed run. References and the films of the first seed are computed again. Removed once the
+// outputs are published.
 #pragma once
 
 #include <string>
