@@ -18,15 +18,15 @@ static_assert(std::endian::native == std::endian::little, "image files are littl
 
 constexpr std::uint32_t image_kind = 0x67616d69, image_version = 1;
 
-struct Header {
+struct ImageHeader {
     char magic[8];
     std::uint32_t kind, version, width, height;
     std::uint64_t hash;
 };
-static_assert(sizeof(Header) == image_header_size);
+static_assert(sizeof(ImageHeader) == image_header_size);
 
-Header header_of(std::string_view head) {
-    Header header{};
+ImageHeader image_header_of(std::string_view head) {
+    ImageHeader header{};
     std::memcpy(&header, head.data(), std::min(head.size(), sizeof header));
     return header;
 }
@@ -53,7 +53,7 @@ std::uint64_t hash_of(int width, int height, const std::vector<float>& rgb) {
 }
 
 std::string image_file(const RgbImage& image) {
-    Header header{{}, image_kind, image_version, static_cast<std::uint32_t>(image.width),
+    ImageHeader header{{}, image_kind, image_version, static_cast<std::uint32_t>(image.width),
         static_cast<std::uint32_t>(image.height), image.hash};
     std::memcpy(header.magic, "crescent", 8);
     std::string out(sizeof header, '\0');
@@ -62,7 +62,7 @@ std::string image_file(const RgbImage& image) {
 }
 
 bool is_image_file(std::string_view head) {
-    const Header header = header_of(head);
+    const ImageHeader header = image_header_of(head);
     return std::memcmp(header.magic, "crescent", 8) == 0 && header.kind == image_kind;
 }
 
@@ -72,9 +72,10 @@ ImageSize read_image_size(std::string_view head, std::uint64_t size, const std::
         fail(
             "expected an .image file (it begins with \"crescentimag\"); `crescent import` makes one of an OpenEXR "
             "image");
-    if (size < sizeof(Header) || head.size() < sizeof(Header))
-        fail(fmt::format("expected an .image file, whose header has {} bytes; found {} bytes", sizeof(Header), size));
-    const Header header = header_of(head);
+    if (size < sizeof(ImageHeader) || head.size() < sizeof(ImageHeader))
+        fail(fmt::format(
+            "expected an .image file, whose header has {} bytes; found {} bytes", sizeof(ImageHeader), size));
+    const ImageHeader header = image_header_of(head);
     if (header.version != image_version)
         fail(fmt::format("byte 12: expected version {} of the .image format, found {}", image_version, header.version));
     if (header.width < 1 || header.height < 1 || header.width > widest_texture || header.height > widest_texture)
@@ -92,9 +93,9 @@ std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const st
     auto out = std::make_shared<RgbImage>();
     out->width = static_cast<int>(size.width), out->height = static_cast<int>(size.height);
     out->rgb.resize(3 * out->texels());
-    std::memcpy(out->rgb.data(), bytes.data() + sizeof(Header), out->rgb.size() * sizeof(float));
+    std::memcpy(out->rgb.data(), bytes.data() + sizeof(ImageHeader), out->rgb.size() * sizeof(float));
     out->hash = hash_of(out->width, out->height, out->rgb);
-    if (const std::uint64_t stated = header_of(bytes).hash; stated != out->hash)
+    if (const std::uint64_t stated = image_header_of(bytes).hash; stated != out->hash)
         throw InputError({name, 0, 0},
             fmt::format("byte 24: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
                 out->hash, stated));
