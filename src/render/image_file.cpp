@@ -95,7 +95,7 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     }
     for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
     auto out = std::make_shared<RgbImage>();
-    out->hash = hash_of(width, height, rgb);
+    out->hash = hash_of_texels(width, height, rgb);
     out->width = width, out->height = height, out->rgb = std::move(rgb);
     return out;
 }

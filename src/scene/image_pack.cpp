@@ -47,7 +47,7 @@ std::string why_no_texture_of(std::int64_t width, std::int64_t height) {
     return fmt::format("expected an image of at most {0} x {0} texels, found {1} x {2}", widest_texture, width, height);
 }
 
-std::uint64_t hash_of(int width, int height, const std::vector<float>& rgb) {
+std::uint64_t hash_of_texels(int width, int height, const std::vector<float>& rgb) {
     const std::uint32_t size[2] = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
     return XXH3_64bits_withSeed(rgb.data(), rgb.size() * sizeof(float), XXH3_64bits(size, sizeof size));
 }
@@ -94,7 +94,7 @@ std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const st
     out->width = static_cast<int>(size.width), out->height = static_cast<int>(size.height);
     out->rgb.resize(3 * out->texels());
     std::memcpy(out->rgb.data(), bytes.data() + sizeof(ImageHeader), out->rgb.size() * sizeof(float));
-    out->hash = hash_of(out->width, out->height, out->rgb);
+    out->hash = hash_of_texels(out->width, out->height, out->rgb);
     if (const std::uint64_t stated = image_header_of(bytes).hash; stated != out->hash)
         throw InputError({name, 0, 0},
             fmt::format("byte 24: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",

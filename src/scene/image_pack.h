@@ -26,7 +26,7 @@ namespace crescent::inline scene {
 inline constexpr std::size_t image_header_size = 32;
 
 /// Returns RgbImage::hash of these texels.
-std::uint64_t hash_of(int width, int height, const std::vector<float>& rgb);
+std::uint64_t hash_of_texels(int width, int height, const std::vector<float>& rgb);
 /// Returns the file's bytes.
 std::string image_file(const RgbImage& image);
 /// Returns whether a file that begins with these bytes is a pack.

@@ -15,7 +15,7 @@ RgbImage image() {
     RgbImage out{2, 3, {}, 0};
     for (int k = 0; k < 18; ++k) out.rgb.push_back(0.25f * static_cast<float>(k));
     out.rgb[4] = std::numeric_limits<float>::infinity();  // whether a texel is usable is not decided here
-    out.hash = hash_of(out.width, out.height, out.rgb);
+    out.hash = hash_of_texels(out.width, out.height, out.rgb);
     return out;
 }
 
