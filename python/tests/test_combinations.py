@@ -177,6 +177,7 @@ def test_check_names_the_arms_that_there_are():
 
 def test_an_interrupted_run_keeps_the_complete_seeds(tmp_path):
     calls = itertools.count(1)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in background jobs of a shell
 
     def slow(wo, u):
         call = next(calls)  # of any thread
