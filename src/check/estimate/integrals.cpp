@@ -74,7 +74,7 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
         g.rows = static_cast<int>(std::clamp(square + 0.5, 1.0, static_cast<double>(pairs)));
         g.columns = std::max(1, pairs / g.rows);
         g.rows = pairs / g.columns;
-        g.per_point = rect.area() / (2.0 * g.cells());
+        g.per_point = rect.area() / static_cast<double>(g.points());
     }
     return out;
 }
@@ -125,9 +125,7 @@ private:
     /// difference of nearly equal numbers.
     void measure_rounding(std::span<const Grid> grids) {
         rounding_.assign(grids.size(), 0);
-        if (tabulated_ || !source_.has_density() || source_.estimates ||
-            !(source_.single() || plan_.step >= angle_per_step * ulp / 4))
-            return;
+        if (tabulated_ || !source_.has_density() || source_.estimates || !plan_.in_single(source_)) return;
         std::vector<std::size_t> first;  // point of each grid
         std::size_t at = 0;
         for (const Grid& g : grids) first.push_back(at), at += g.points();
@@ -246,7 +244,7 @@ private:
         }
         if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
         to.top = most;
-        out_.points += 2 * g.cells();
+        out_.points += static_cast<double>(g.points());
         to.rounding = rounding;
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
     }

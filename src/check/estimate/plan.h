@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "check/constants.h"
 #include "check/estimate/tree.h"
 
 namespace crescent::check {
@@ -32,6 +33,9 @@ struct Plan {
         return {1, h, known > 0 ? h * (log_of(known) - median_log_p) : 0, h * (w.x - middle.x), h * (w.y - middle.y),
             h * (w.z - middle.z)};
     }
+    /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of
+    /// an angle is angle_per_step ulp, here to a factor of 4.
+    bool in_single(const Source& source) const { return source.single() || step >= angle_per_step * ulp / 4; }
     static double log_of(double p) { return math::log(p); }
 };
 

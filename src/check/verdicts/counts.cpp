@@ -27,7 +27,7 @@ void test_repeats(const Evidence& e, const Visit& visit) {
     std::ranges::sort(met, {}, &Observations::Met::key);
     const double least = e.source.traits.bits == 53 ? 0x1p-53 : ulp;
     const double step = std::max(e.plan.step / angle_per_step, least);
-    const bool single = e.source.single() || e.plan.step >= angle_per_step * ulp / 4;
+    const bool single = e.plan.in_single(e.source);
     double equal = 0, expected = o.independent * step * step * o.mean_p / 2;
     for (std::size_t k = 0, end = 0; k < met.size(); k = end) {
         while (end < met.size() && met[end].key == met[k].key) ++end;
