@@ -84,6 +84,10 @@ private:
     std::vector<double> rows_;    // sum of the masses of all rows up to this one
     std::vector<float> columns_;  // the same within each row, over the mass of the row
     double total_ = 0;
+    /// Where searches begin: entry k is the first index of a number above k / entries, of rows_, of edge_ (of its
+    /// square root), and of each row of columns_. Entries are a power of two, so that k is exact.
+    std::vector<std::uint16_t> row_guide_, edge_guide_, column_guide_;
+    std::size_t guides_of_row_ = 1;
 };
 
 }  // namespace crescent::inline scene

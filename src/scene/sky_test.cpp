@@ -56,6 +56,45 @@ TEST(SkyTable, DrawsDirectionsOfTheDrawnTexel) {
     }
 }
 
+/// The tables and the fast azimuth only begin the searches: texels are those of a plain search.
+TEST(SkyTable, HasTheTexelsOfAPlainSearch) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> number(0, 1), coordinate(-1, 1);
+    for (const int height : {1, 2, 3, 17, 2048}) {
+        SkyLight light = test::noisy_sky(height, 11);
+        light.rotation = 31;
+        const SkyTable sky(light);
+        std::vector<double> edge;  // 1 - cos theta, down to the equator
+        for (int row = 0; 2 * row <= height; ++row) edge.push_back(2 * sqr(math::sin(pi * row / (2.0 * height))));
+        if (height % 2 == 0) edge.back() = 1;
+        const auto plain = [&](Vec3d w) {
+            const double across2 = w.x * w.x + w.z * w.z, size = std::sqrt(across2 + w.y * w.y),
+                         h = across2 / (size * (size + std::fabs(w.y)));
+            int row = 0;
+            while (row + 1 < int(edge.size()) && row < (height - 1) / 2 && edge[std::size_t(row) + 1] <= h) ++row;
+            if (w.y < 0) row = height - 1 - row;
+            double turn = math::atan2(w.x, -w.z) / (2 * pi) + light.rotation / 360;
+            turn -= std::floor(turn);
+            return row * sky.width() + std::min(int(turn * sky.width()), sky.width() - 1);
+        };
+        for (int k = 0; k < 20000; ++k) {
+            const double small = k % 4 == 0 ? 1e-9 : 1, low = k % 8 == 0 ? 0 : 1;
+            Vec3d w = {small * coordinate(random), coordinate(random), coordinate(random)};
+            EXPECT_EQ(int(sky.texel_at(w)), plain(w)) << height;
+            w.z = 0, w.y *= low;
+            EXPECT_EQ(int(sky.texel_at(w)), plain(w)) << height;
+            // On the edge of a column, within rounding, and on that of a row.
+            const double turn = std::floor(number(random) * sky.width()) / sky.width() - light.rotation / 360;
+            const math::SinCos phi = math::sincos(2 * pi * turn);
+            w = {phi.sin, coordinate(random), -phi.cos};
+            EXPECT_EQ(int(sky.texel_at(w)), plain(w)) << height;
+            const math::SinCos theta = math::sincos(pi * std::floor(number(random) * height) / height);
+            w = {theta.sin * phi.sin, theta.cos, -theta.sin * phi.cos};
+            EXPECT_EQ(int(sky.texel_at(w)), plain(w)) << height;
+        }
+    }
+}
+
 /// Chi-square of texels against their masses, and of the place within a texel.
 TEST(SkyTable, DrawsTexelsByMassAndDirectionsEvenly) {
     const SkyTable sky(test::noisy_sky(4, 5));
