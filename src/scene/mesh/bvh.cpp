@@ -13,7 +13,7 @@
 // are widened by e = 8 u R: 6 u R, and the rounding of o + e and o - e.
 #include "scene/mesh/bvh.h"
 
-#include <utility>
+#include <optional>
 
 #include "scene/mesh/bvh_tree.h"
 
@@ -35,11 +35,12 @@ struct TriangleRay {
     TriangleRay(Vec3f o, Vec3f d) {
         const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
         kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
-        kx = (kz + 1) % 3, ky = (kz + 2) % 3;
-        const float along = axis_of(d, kz);
-        if (along < 0) std::swap(kx, ky);
-        ox = axis_of(o, kx), oy = axis_of(o, ky), oz = axis_of(o, kz);
-        sx = axis_of(d, kx) / along, sy = axis_of(d, ky) / along, sz = 1 / along;
+        const std::array from = {o.x, o.y, o.z}, to = {d.x, d.y, d.z};
+        const float along = to[kz];
+        constexpr std::array<std::size_t, 4> after = {1, 2, 0, 1};
+        kx = after[along < 0 ? kz + 1 : kz], ky = after[along < 0 ? kz : kz + 1];
+        ox = from[kx], oy = from[ky], oz = from[kz];
+        sx = to[kx] / along, sy = to[ky] / along, sz = 1 / along;
     }
 
     struct Hits {
@@ -47,8 +48,8 @@ struct TriangleRay {
         F4 t, u, v;
     };
     /// Returns which triangles of a block are met at 0 < t < t_max.
-    Hits hits(const Block& block, float t_max) const {
-        const auto corner = [&](std::size_t k) {
+    [[gnu::always_inline]] Hits hits(const Block& block, float t_max) const {
+        const auto corner = [&](std::size_t k) __attribute__((always_inline)) {
             const F4 z = std::bit_cast<F4>(block.corner[kz][k]) - all4(oz);
             const F4 x = (std::bit_cast<F4>(block.corner[kx][k]) - all4(ox)) - all4(sx) * z;
             const F4 y = (std::bit_cast<F4>(block.corner[ky][k]) - all4(oy)) - all4(sy) * z;
@@ -68,7 +69,7 @@ struct TriangleRay {
 };
 
 /// Returns the box of a triangle in a block.
-Bounds box_of(const Block& block, std::size_t lane) {
+[[gnu::always_inline]] inline Bounds box_of(const Block& block, std::size_t lane) {
     Bounds box;
     for (std::size_t k = 0; k < 3; ++k)
         box.add(Vec3f{block.corner[0][k][lane], block.corner[1][k][lane], block.corner[2][k][lane]});
@@ -77,13 +78,15 @@ Bounds box_of(const Block& block, std::size_t lane) {
 
 /// Returns the t of a triangle that the watertight test accepts: infinity if its box is not met or t is not below
 /// t_max.
-float t_in_box(const Block& block, std::size_t lane, float t, const BoxRay& boxes, float t_max) {
+[[gnu::always_inline]] inline float t_in_box(
+    const Block& block, std::size_t lane, float t, const BoxRay& boxes, float t_max) {
     const float at = std::fmax(t, boxes.enters(box_of(block, lane), t_max));
     return at < t_max ? at : infinity;
 }
 
 /// Takes a triangle of a block that is nearer, or as near with a lower index.
-void take(const Block& block, const BoxRay& boxes, const TriangleRay& ray, float t_max, TriangleHit& best) {
+[[gnu::always_inline]] inline void take(
+    const Block& block, const BoxRay& boxes, const TriangleRay& ray, float t_max, TriangleHit& best) {
     const auto hits = ray.hits(block, t_max);
     for (unsigned met = hits.met; met; met &= met - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(met));
@@ -140,35 +143,62 @@ Bvh::Bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) 
     made_ = std::move(made);
 }
 
+/// The two traversals, compiled as the caller is (see bvh_tree.h).
+struct Bvh::Traversal {
+    [[gnu::always_inline]] static bool occluded(const Made& made, Vec3f o, Vec3f d, float t_max) {
+        const BoxRay boxes(o, d, error(largest_of(o)));
+        std::optional<TriangleRay> ray;  // many rays meet no leaf
+        const auto hides = [&](std::size_t leaf) __attribute__((always_inline)) {
+            if (!ray) ray.emplace(o, d);
+            const Block& block = made.blocks[leaf];
+            const auto hits = ray->hits(block, t_max);
+            for (unsigned met = hits.met; met; met &= met - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+                if (t_in_box(block, lane, hits.t[lane], boxes, t_max) < infinity) return true;
+            }
+            return false;
+        };
+        const auto fetch = [&](std::size_t leaf) __attribute__((always_inline)) { made.fetch(leaf); };
+        return visit_leaves(made.nodes, boxes, t_max, hides, fetch);
+    }
+
+    [[gnu::always_inline]] static void closest(const Made& made, Vec3f o, Vec3f d, float t_max, TriangleHit& best) {
+        const BoxRay boxes(o, d, error(largest_of(o)));
+        const TriangleRay ray(o, d);
+        float nearest = std::fmin(t_max, best.t);
+        const auto test = [&](std::size_t leaf) __attribute__((always_inline)) {
+            take(made.blocks[leaf], boxes, ray, t_max, best);
+            nearest = std::fmin(nearest, best.t);
+            return false;
+        };
+        const auto fetch = [&](std::size_t leaf) __attribute__((always_inline)) { made.fetch(leaf); };
+        visit_leaves(made.nodes, boxes, nearest, test, fetch);
+    }
+
+#ifdef CRESCENT_EIGHT_LANES
+    CRESCENT_EIGHT_LANES static bool occluded_wide(const Made& made, Vec3f o, Vec3f d, float t_max) {
+        return occluded(made, o, d, t_max);
+    }
+    CRESCENT_EIGHT_LANES static void closest_wide(const Made& made, Vec3f o, Vec3f d, float t_max, TriangleHit& best) {
+        closest(made, o, d, t_max, best);
+    }
+#endif
+};
+
 bool Bvh::occluded(Vec3f o, Vec3f d, float t_max) const {
     if (!made_) return false;
-    const BoxRay boxes(o, d, error(largest_of(o)));
-    const TriangleRay ray(o, d);
-    const auto hides = [&](std::size_t leaf) {
-        const Block& block = made_->blocks[leaf];
-        const auto hits = ray.hits(block, t_max);
-        for (unsigned met = hits.met; met; met &= met - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(met));
-            if (t_in_box(block, lane, hits.t[lane], boxes, t_max) < infinity) return true;
-        }
-        return false;
-    };
-    return visit_leaves(made_->nodes, boxes, t_max, hides, [&](std::size_t leaf) { made_->fetch(leaf); });
+#ifdef CRESCENT_EIGHT_LANES
+    if (has_eight_lanes) return Traversal::occluded_wide(*made_, o, d, t_max);
+#endif
+    return Traversal::occluded(*made_, o, d, t_max);
 }
 
 void Bvh::closest(Vec3f o, Vec3f d, float t_max, TriangleHit& best) const {
     if (!made_) return;
-    const BoxRay boxes(o, d, error(largest_of(o)));
-    const TriangleRay ray(o, d);
-    float nearest = std::fmin(t_max, best.t);
-    visit_leaves(
-        made_->nodes, boxes, nearest,
-        [&](std::size_t leaf) {
-            take(made_->blocks[leaf], boxes, ray, t_max, best);
-            nearest = std::fmin(nearest, best.t);
-            return false;
-        },
-        [&](std::size_t leaf) { made_->fetch(leaf); });
+#ifdef CRESCENT_EIGHT_LANES
+    if (has_eight_lanes) return Traversal::closest_wide(*made_, o, d, t_max, best);
+#endif
+    Traversal::closest(*made_, o, d, t_max, best);
 }
 
 TriangleHit Bvh::closest(Vec3f o, Vec3f d, float t_max) const {

@@ -83,6 +83,7 @@ public:
 
 private:
     struct Made;
+    struct Traversal;
     std::shared_ptr<const Made> made_;
     Vec3f center_{};
     float scale_ = 1;

@@ -181,8 +181,7 @@ private:
         for (std::size_t c = 0; c < children; ++c) {
             const Bounds box = c < count ? splits_[opened[c]].box : Bounds{};
             for (std::size_t k = 0; k < 3; ++k)
-                tree.nodes[to].side[0][k][c / 4][c % 4] = axis_of(box.low, k),
-                                                     tree.nodes[to].side[1][k][c / 4][c % 4] = axis_of(box.high, k);
+                tree.nodes[to].side[0][k][c] = axis_of(box.low, k), tree.nodes[to].side[1][k][c] = axis_of(box.high, k);
             tree.nodes[to].child[c] = 0;
             if (c >= count) continue;
             const Split& child = splits_[opened[c]];

@@ -26,6 +26,15 @@ inline constexpr std::size_t group = 4;     // items in a leaf
 // Lanes, as the compilers' vector extension: the same IEEE operations on every machine.
 using F4 = float __attribute__((vector_size(16)));
 using I4 = std::int32_t __attribute__((vector_size(16)));
+using F8 = float __attribute__((vector_size(32)));
+using I8 = std::int32_t __attribute__((vector_size(32)));
+
+// Traversal is compiled twice on x86, with two and with one instruction for eight lanes; the bits are the same. Eight
+// lanes are never passed by value, which means different things in the two.
+#if defined(__x86_64__) && !defined(__AVX2__)
+#define CRESCENT_EIGHT_LANES [[gnu::target("avx2")]]
+inline const bool has_eight_lanes = __builtin_cpu_supports("avx2") != 0;
+#endif
 
 [[gnu::always_inline]] inline F4 all4(float x) { return F4{x, x, x, x}; }
 template <class F> [[gnu::always_inline]] inline F least(F a, F b) { return a < b ? a : b; }
@@ -39,16 +48,23 @@ template <class F> [[gnu::always_inline]] inline F most(F a, F b) { return a > b
 #endif
 }
 
+/// The same for eight lanes.
+[[gnu::always_inline]] inline unsigned bits_of(const I8& mask) {
+    const auto half = std::bit_cast<std::array<I4, 2>>(mask);
+    return bits_of(half[0]) | bits_of(half[1]) << 4;
+}
+
 inline float axis_of(Vec3f v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 inline float largest_of(Vec3f v) { return std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)); }
 
 /// Boxes and what is in them: a node (> 0), a leaf (its complement ~c), or nothing (an empty box).
 struct alignas(32) BvhNode {
-    std::array<std::array<std::array<F4, children / 4>, 3>, 2> side;  // low and high, by axis and child
+    std::array<std::array<F8, 3>, 2> side;  // low and high, by axis and child
     std::array<std::int32_t, children> child;
 };
 
-using Leaf = std::array<std::uint32_t, group>;  // up to four items; no_item fills it
+using Leaf = std::array<std::uint32_t, group>;       // up to four items; no_item fills it
+using LeafBoxes = std::array<std::array<F4, 3>, 2>;  // their boxes: low and high, by axis and item
 
 /// A tree over boxes, built by binned SAH (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"),
 /// in parallel, with a result that does not depend on threads. Node 0 is the root.
@@ -80,20 +96,27 @@ public:
 
     /// Returns which boxes of a node are met at t <= t_max (a bit for each), and stores where they are entered.
     [[gnu::always_inline]] unsigned meets(const BvhNode& node, float t_max, std::array<float, children>& at) const {
-        unsigned met = 0;
-        std::array<F4, children / 4> entry;
-        for (std::size_t half = 0; half < entry.size(); ++half) {
-            F4 near = all4(0), far = all4(t_max);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const F4 a = node.side[forward_[k] ? 0 : 1][k][half], b = node.side[forward_[k] ? 1 : 0][k][half];
-                near = most((a - all4(near_[k])) * all4(inverse_[k]), near);
-                far = least((b - all4(far_[k])) * all4(inverse_[k]), far);
-            }
-            entry[half] = near;
-            met |= bits_of(near <= far * all4(far_factor)) << 4 * half;
+        F8 near = {}, far = near + t_max;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const F8 a = (node.side[forward_[k] ? 0 : 1][k] - near_[k]) * inverse_[k],
+                     b = (node.side[forward_[k] ? 1 : 0][k] - far_[k]) * inverse_[k];
+            near = a > near ? a : near;
+            far = b < far ? b : far;
         }
-        at = std::bit_cast<std::array<float, children>>(entry);
-        return met;
+        at = std::bit_cast<std::array<float, children>>(near);
+        return bits_of(near <= far * far_factor);
+    }
+
+    /// The same for the boxes of a leaf's items, which are met at t < t_max.
+    [[gnu::always_inline]] unsigned meets(const LeafBoxes& boxes, float t_max) const {
+        F4 near = {}, far = near + t_max;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const F4 a = (boxes[forward_[k] ? 0 : 1][k] - near_[k]) * inverse_[k],
+                     b = (boxes[forward_[k] ? 1 : 0][k] - far_[k]) * inverse_[k];
+            near = a > near ? a : near;
+            far = b < far ? b : far;
+        }
+        return bits_of((near <= far * far_factor) & (near < all4(t_max)));
     }
 
     /// Returns where one box is entered, at least 0; infinity if it is not met at t <= t_max.
@@ -120,34 +143,46 @@ private:
 template <class Test, class Fetch> [[gnu::always_inline]] inline bool visit_leaves(
     const HugeVector<BvhNode>& nodes, const BoxRay& ray, const float& nearest, const Test& test, const Fetch& fetch) {
     if (nodes.empty()) return false;
-    struct Entry {
-        float t;
-        std::int32_t at;
+    // Where a child is entered, in the upper half, and the child: t >= 0 has the order of its bits.
+    using Entry = std::uint64_t;
+    const auto t_of = [](Entry e) __attribute__((always_inline)) {
+        return std::bit_cast<float>(static_cast<std::uint32_t>(e >> 32));
     };
     std::array<Entry, stack_size> stack;
     std::size_t size = 0;
-    Entry next{0, 0};
+    Entry next = 0;
     for (;;) {
-        if (next.at >= 0) {
-            const BvhNode& node = nodes[static_cast<std::size_t>(next.at)];
+        if (const auto at = static_cast<std::int32_t>(static_cast<std::uint32_t>(next)); at >= 0) {
+            const BvhNode& node = nodes[static_cast<std::size_t>(at)];
             std::array<float, children> entry;
             const std::size_t begin = size;
-            for (unsigned met = ray.meets(node, nearest, entry); met; met &= met - 1) {
+            unsigned met = ray.meets(node, nearest, entry);
+            const auto child_of = [&]() __attribute__((always_inline)) {
                 const auto c = static_cast<std::size_t>(std::countr_zero(met));
-                std::size_t i = size++;  // the nearest last
-                for (; i > begin && stack[i - 1].t < entry[c]; --i) stack[i] = stack[i - 1];
+                met &= met - 1;
                 const std::int32_t child = node.child[c];
                 if (child < 0) fetch(static_cast<std::size_t>(~child));
                 else __builtin_prefetch(&nodes[static_cast<std::size_t>(child)]);
-                stack[i] = {entry[c], child};
+                return Entry{std::bit_cast<std::uint32_t>(entry[c])} << 32 | static_cast<std::uint32_t>(child);
+            };
+            if (met) {
+                next = child_of();
+                while (met) {
+                    const Entry other = child_of(), farther = other > next ? other : next;
+                    next = other > next ? next : other;
+                    std::size_t i = size++;  // the nearest last
+                    for (; i > begin && stack[i - 1] < farther; --i) stack[i] = stack[i - 1];
+                    stack[i] = farther;
+                }
+                continue;
             }
-        } else if (test(static_cast<std::size_t>(~next.at))) {
+        } else if (test(static_cast<std::size_t>(~at))) {
             return true;
         }
         do {
             if (size == 0) return false;
             next = stack[--size];
-        } while (next.t > nearest);
+        } while (t_of(next) > nearest);
     }
 }
 

@@ -44,12 +44,15 @@ public:
     /// The same by testing every triangle of every instance, for tests.
     MeshHit closest_of_all(Vec3d x, Vec3d d, float t_max) const;
 
+    /// How far a triangle may be from its place when a ray from x meets it, m.
+    float error(Vec3f x) const;
     /// Returns by how much a point x (relative to the origin) of an instance's surface is moved along its normal, so
     /// that no ray from there to that side meets the surface under the point; m.
     double offset(std::uint32_t instance, Vec3d x) const;
 
 private:
     struct Made;
+    struct Traversal;
     std::vector<MeshInstance> instances_;
     std::shared_ptr<const Made> made_;
 };
