@@ -1,5 +1,5 @@
-// Random numbers: the first pair of the first sampler is that of every built-in sampler, the first pair of the second
-// that of a built-in pair of samplers; further pairs come from blocks that no built-in sampler uses.
+// Combinations of built-in samplers without resampling are estimated by the kernels (kernel_combination.h). Others draw
+// here, many shading points in one batch, and the scalar kernel takes their directions.
 #include "render/combination.h"
 
 #include <algorithm>
@@ -15,16 +15,7 @@ namespace crescent::inline render {
 namespace {
 
 constexpr std::size_t batch_rows = 4096;       // directions of a batch: they stay in a cache of the processor
-constexpr std::uint32_t repeat_stride = 1024;  // blocks of one set of directions: 16 samplers, at most 4 pairs each
 constexpr std::uint32_t selection = 0x800000;  // the block that chooses among candidates
-
-/// The block of pair `pair` of repetition `repeat` of sampler k.
-std::uint32_t block_of(std::size_t k, std::size_t pair, std::size_t repeat) {
-    const auto sampler = static_cast<std::uint32_t>(k), of_pair = static_cast<std::uint32_t>(pair),
-               again = static_cast<std::uint32_t>(repeat);
-    if (repeat == 0 && pair == 0 && k < 2) return sampler;
-    return again * repeat_stride + 16 * (sampler + 1) + of_pair;
-}
 
 /// The numbers of sampler k for every row.
 std::vector<double> numbers_of(
@@ -39,6 +30,10 @@ std::vector<double> numbers_of(
                 if (pair + 1 < count) out.push_back(static_cast<double>(two.y));
             }
     return out;
+}
+
+PointRun run_of(const ShadingPoints& points, std::size_t at, std::size_t rows) {
+    return {at, {points.wox[at], points.woy[at], points.woz[at]}, rows};
 }
 
 WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight) {
@@ -142,6 +137,51 @@ Combination::Combination(std::string name, CombinationPlan plan, Techniques of, 
     if (plan_.kind == CombinationKind::mixture) mixture_ = mixture_technique(of_, weights_);
     if (!plan_.target) plan_.target = target_product;
     if (plan_.samples.size() == 1) plan_.samples.assign(of_.size(), plan_.samples[0]);
+    for (std::size_t k = 0; k < of_.size(); ++k) {
+        built_in_.push_back(of_[k]->built_in());
+        repeats_.push_back(samples_of(k));
+    }
+}
+
+bool Combination::runs_in_kernels() const {
+    return plan_.kind != CombinationKind::ris && !weigh_ && of_.size() <= most_parts &&
+        std::ranges::all_of(built_in_, [](int k) { return k >= 0; });
+}
+
+CombinationCall Combination::kernel_call(const PixelNumbers* numbers) const {
+    CombinationCall out;
+    out.combination = this;
+    out.form = mixture_              ? CombinationCall::Form::mixture
+        : plan_.draw == MisDraw::one ? CombinationCall::Form::one
+                                     : CombinationCall::Form::every;
+    out.power = plan_.heuristic == MisHeuristic::power, out.has_weights = !plan_.weights.empty();
+    out.samplers = of_.size(), out.sampler = built_in_.data(), out.repeats = repeats_.data();
+    out.numbers = numbers;
+    return out;
+}
+
+void CombinationCall::shares(const ShadingPoints& points, std::size_t point, double* out) const {
+    combination->shares_at(points, point, std::span(out, samplers));
+}
+
+double CombinationCall::weight(
+    const ShadingPoints& points, std::size_t point, std::size_t k, float cos_i, const double* p) const {
+    FormulaInputs in = formula_inputs(points, run_of(points, point, 0));
+    in.cos_i = double(cos_i);
+    return combination->mis_weight(k, in, std::span(p, samplers));
+}
+
+void CombinationCall::read_numbers(const std::uint32_t* pixel, std::size_t count, std::uint64_t sample,
+    std::uint32_t block, float* x, float* y) const {
+    for (std::size_t l = 0; l < count; ++l) {
+        const Vec2<float> u = (*numbers)(pixel[l], sample, block);
+        x[l] = as_float(double(u.x)), y[l] = as_float(double(u.y));
+    }
+}
+
+void Combination::shares_at(const ShadingPoints& points, std::size_t point, std::span<double> out) const {
+    const WeightList& list = mixture_ ? weights_ : probabilities_;
+    list.evaluate(formula_inputs(points, run_of(points, point, 0)), out);
 }
 
 void Combination::draw(const ExternalBatch& /*batch*/, const ExternalDraws& /*out*/) const {
@@ -344,13 +384,11 @@ template <class F> struct DirectionsOfSamples {
 
 }  // namespace
 
-void estimate_combination(const Combination& combination, const KernelCall& call) {
-    estimate_combination(combination, call, [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
-        return simd::draw(call.seed, pixel, sample, block);
-    });
-}
-
-void estimate_combination(const Combination& combination, const KernelCall& call, const PixelNumbers& numbers) {
+void estimate_combination(const Combination& combination, const KernelCall& call, const std::string& isa,
+    const PixelNumbers* numbers, bool in_kernels) {
+    if (in_kernels && combination.runs_in_kernels())
+        return kernels_for(isa).of_combinations[call.shading_points->around ? 1 : 0](
+            call, combination.kernel_call(numbers));
     const ShadingPoints& points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
     const std::size_t count = combination.directions();
@@ -367,13 +405,14 @@ void estimate_combination(const Combination& combination, const KernelCall& call
             if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
             const auto rows = static_cast<std::size_t>(std::min(longest, n - first));
             runs.clear();
-            for (std::size_t at = i; at < end; ++at)
-                runs.push_back({at, {points.wox[at], points.woy[at], points.woz[at]}, rows});
+            for (std::size_t at = i; at < end; ++at) runs.push_back(run_of(points, at, rows));
             part.resize(runs.size() * rows * count);
             combination.sample(
                 {points, runs},
                 [&](std::size_t run, std::size_t row, std::uint32_t block) {
-                    return numbers(points.pixel[runs[run].point], first + row, block);
+                    const std::uint32_t pixel = points.pixel[runs[run].point];
+                    return numbers ? (*numbers)(pixel, first + row, block)
+                                   : simd::draw(call.seed, pixel, first + row, block);
                 },
                 part);
             for (std::size_t r = 0; r < runs.size(); ++r) {

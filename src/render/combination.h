@@ -1,5 +1,5 @@
 // Estimates with a combination of samplers (samplers/combination_plan.h): one sample of it is one direction or several,
-// each with its weight. Scalar code, so that films have the same bits on every instruction set.
+// each with its weight. Films have the same bits on every instruction set.
 #pragma once
 
 #include <cstdint>
@@ -67,6 +67,13 @@ public:
     std::vector<double> mis_weights(const PointRows& at, std::span<const std::size_t> k,
         std::span<const Vec3<float>> wi, const std::vector<std::vector<double>>& p) const;
 
+    /// Whether kernels can estimate it: all samplers are built in, and it needs neither candidates nor a function.
+    bool runs_in_kernels() const;
+    /// Refers to this object. `numbers`: see estimate_combination().
+    CombinationCall kernel_call(const PixelNumbers* numbers) const;
+    /// The probabilities with which its samplers are chosen at a point, or their shares of the mixture.
+    void shares_at(const ShadingPoints& points, std::size_t point, std::span<double> out) const;
+
 private:
     void sample_every(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
     void sample_mixture(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
@@ -83,14 +90,13 @@ private:
     WeightList weights_, probabilities_;
     std::shared_ptr<const Technique> mixture_;  // of a mixture
     std::shared_ptr<const ExternalSampler> weigh_;
+    std::vector<int> built_in_;           // of each sampler, see Technique
+    std::vector<std::uint64_t> repeats_;  // samples_of each
 };
 
-/// Has the form of a kernel of the table.
-void estimate_combination(const Combination& combination, const KernelCall& call);
-
-/// Two random numbers in (0, 1) of a sample of a pixel; each block has others.
-using PixelNumbers = std::function<Vec2<float>(std::uint32_t pixel, std::uint64_t sample, std::uint32_t block)>;
-/// The same with other random numbers.
-void estimate_combination(const Combination& combination, const KernelCall& call, const PixelNumbers& numbers);
+/// Estimates like a kernel of the table. `isa`: a name of isas(), "" for the best. `numbers`: others than those of
+/// films, or null. `in_kernels`: false for the general path alone, which has the same bits.
+void estimate_combination(const Combination& combination, const KernelCall& call, const std::string& isa,
+    const PixelNumbers* numbers = nullptr, bool in_kernels = true);
 
 }  // namespace crescent::inline render

@@ -23,7 +23,8 @@ namespace {
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
     std::vector<std::byte> memory(call.shading_points->kernel_memory());
     call.memory = memory.data();
-    if (arm.outside && arm.outside->as_combination()) return estimate_combination(*arm.outside->as_combination(), call);
+    if (arm.outside && arm.outside->as_combination())
+        return estimate_combination(*arm.outside->as_combination(), call, isa);
     if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/combination_call.h"
 #include "render/shading_points.h"
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
@@ -51,12 +52,14 @@ struct KernelCall {
 };
 
 using Kernel = void (*)(const KernelCall&);
+using CombinationKernel = void (*)(const KernelCall&, const CombinationCall&);
 
 /// The kernels of one instruction set, by the index of the sampler in its list.
 struct KernelTable {
     std::string_view isa;
     std::array<std::array<Kernel, Lobes::count + 1>, Samplers::count> of_lights;  // [lobe + 1]
     std::array<Kernel, Samplers::count> of_surroundings;                          // for points with surroundings
+    std::array<CombinationKernel, 2> of_combinations;                             // without and with surroundings
 
     /// Returns the kernel for these points.
     Kernel kernel(int sampler, const ShadingPoints& points) const {

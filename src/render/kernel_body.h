@@ -8,6 +8,7 @@
 #include <concepts>
 
 #include "math/simd/random.h"
+#include "render/kernel_combination.h"
 #include "render/kernel_surroundings.h"
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
@@ -88,6 +89,33 @@ template <class A, class L, class E, class F> struct Lane : E {
         return this->gather(c.first, drawn, g, lobe, x, up);
     }
 
+    /// The same for a direction whose weight and density are work: weigh(lanes) is called for those lanes where X may
+    /// not be 0. `drawn` receives the texel of the sky that it meets.
+    template <class D, class Weigh>
+    F accumulate_seen(RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, D& drawn, const Weigh& weigh) {
+        const F zero = number<F>(0);
+        const F cos = drawn.wi.z;
+        auto down = cos <= zero;
+        if constexpr (requires { this->below_face(drawn.wi); }) down = down | this->below_face(drawn.wi);
+        const auto up = !(down | (drawn.pdf.v == zero));
+        to.horizon = plus_one_where(down, to.horizon);
+        if (!any(up)) return zero;
+        const auto seen = this->look(drawn, up);
+        const auto counts =
+            up & (seen.lit() | (c.fill_d > zero) | (c.fill_s > zero) | !(drawn.pdf.v >= zero));  // NaN is counted
+        F g = zero, lobe = zero;
+        if (any(counts)) {
+            if constexpr (requires { seen.texel; }) drawn.texel = seen.texel.pack();
+            const auto [weight, pdf] = weigh(counts);
+            const auto some = counts & !(pdf == zero);
+            g = select(some, weight * (cos / pdf), zero);
+            lobe = select(some, brdf(c.wo, drawn.wi), zero);
+        }
+        to.g = to.g + g;
+        to.g_lobe = to.g_lobe + g * lobe;
+        return this->add_seen(drawn, seen, g, lobe, g * (c.fill_d + lobe * c.fill_s));
+    }
+
     [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<E, F>& c, const A& arm, const L& brdf,
         const Vec4u<U>& h, bool odd, std::uint64_t j, const KernelCall& call) {
         const Vec2<F> u =
@@ -97,6 +125,9 @@ template <class A, class L, class E, class F> struct Lane : E {
             x = accumulate(to, c, brdf, arm.next->drawn, arm.next->weight), ++arm.next;
             for (std::size_t k = 1; k < arm.count; ++k, ++arm.next)
                 x = x + accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
+        } else if constexpr (requires { A::combines; }) {
+            x = arm.sample(c.pixel, j, call.seed, u,
+                [&](auto& drawn, const auto& weigh) { return accumulate_seen(to, c, brdf, drawn, weigh); });
         } else if constexpr (requires { A::techniques; }) {
             const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
             const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)}
@@ -254,13 +285,24 @@ template <class A, class L, class E, class F> void estimate(const KernelCall& ca
             call, at, room, [](const ShadingPoint<F>& shading_point) { return A(shading_point); });
 }
 
+template <class E, class F> void estimate_combined(const KernelCall& call, const CombinationCall& combination) {
+    typename E::Room room(*call.shading_points, call.memory);
+    for (std::size_t at = 0; at < call.shading_points->count; at += Lanes<F>::count) {
+        if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
+        estimate_pack<CombinedArm<F>, AnyLobe<F>, E, F>(call, at, room, [&](const ShadingPoint<F>& shading_point) {
+            return CombinedArm<F>(combination, *call.shading_points, at, shading_point);
+        });
+    }
+}
+
 /// The kernels of one sampler, [lobe + 1].
 template <class F, template <class> class A, template <class> class... L>
 constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
     return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};
 }
 template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
-    return {isa, {{kernels_on<F, A>(Lobes{})...}}, {{estimate<A<F>, AnyLobe<F>, Surrounded<F>, F>...}}};
+    return {isa, {{kernels_on<F, A>(Lobes{})...}}, {{estimate<A<F>, AnyLobe<F>, Surrounded<F>, F>...}},
+        {estimate_combined<Lights<F>, F>, estimate_combined<Surrounded<F>, F>}};
 }
 
 }  // namespace CRESCENT_ISA

@@ -185,17 +185,30 @@ template <class F> struct Lights {
         return out;
     }
 
-    /// Handles samples that may have met a light: finds the nearest light, then tests the bodies before it. Returns X
-    /// if one was met.
-    template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+    /// The light that each direction meets, and 1 where no body hides it.
+    struct Seen {
+        F light, open;
+        MaskOf<F> lit() const { return open > number<F>(0); }
+    };
+    /// Finds the nearest light, then tests the bodies before it.
+    template <class D> [[gnu::always_inline]] Seen look(const D& drawn, MaskOf<F> up) const {
         const Met nearest = nearest_light(drawn);
-        F seen = select(up & (nearest.distance < number<F>(far)), number<F>(1), number<F>(0));
+        const F seen = select(up & (nearest.distance < number<F>(far)), number<F>(1), number<F>(0));
         const WorldRay ray = ray_of(drawn.wi);
-        seen = seen_past_bodies(ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), seen);
-        x = add_light(nearest.light, seen, g, lobe, x);
-        met.hits = plus_one_where(seen > number<F>(0), met.hits);
+        return {nearest.light,
+            seen_past_bodies(ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), seen)};
+    }
+    /// Returns X if a light was met; x is the part from the fill.
+    template <class D> [[gnu::always_inline]] F add_seen(const D& /*drawn*/, const Seen& seen, F g, F lobe, F x) {
+        x = add_light(seen.light, seen.open, g, lobe, x);
+        met.hits = plus_one_where(seen.lit(), met.hits);
         met.any = true;
         return x;
+    }
+
+    /// Handles samples that may have met a light. Returns X if one was met.
+    template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+        return add_seen(drawn, look(drawn, up), g, lobe, x);
     }
 
 protected:

@@ -104,8 +104,14 @@ template <class F> struct Surrounded : Lights<F> {
             number<F>(0);
     }
 
-private:
-    template <class D> [[gnu::noinline]] F resolve(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+    /// What each direction meets first: a light of one radiance, or an emitting triangle, or a texel of the sky.
+    struct Seen {
+        F light, open;  // open: 1 if one of them is met and nothing hides it
+        MaskOf<F> of_lights;
+        LaneIntegers<F> triangle, texel;
+        MaskOf<F> lit() const { return open > number<F>(0); }
+    };
+    template <class D> [[gnu::noinline]] Seen look(const D& drawn, MaskOf<F> up) const {
         const F zero = number<F>(0), one = number<F>(1);
         const Surroundings& scene = *shading_points.around;
         const auto lights = this->nearest_light(drawn);
@@ -123,15 +129,24 @@ private:
         F open = select(seen.pack() > zero, number<F>(sky ? 1 : 0), zero);
         open = select((seen.pack() > zero) & met_one, one, open);
         if (any(open > zero)) open = this->seen_past_bodies(ray, lo, distance * number<F>(1 - 1e-5), open);
-        const LaneArray<F> lit(open);
         // A light of one radiance, unless a triangle is before it.
-        const auto of_lights = (distance == lights.distance) & met_one & !on_triangle(triangle);
-        x = this->add_light(lights.light, select(of_lights, open, zero), g, lobe, x);
-        const auto varies = (open > zero) & !of_lights;
-        x = select(varies, add(radiance(drawn, ray.d, lit, triangle, of_lights), select(varies, g, zero), lobe), x);
-        met.hits = plus_one_where(open > zero, met.hits);
+        const MaskOf<F> of_lights = (distance == lights.distance) & met_one & !on_triangle(triangle);
+        return {lights.light, open, of_lights, triangle, texels(drawn, ray.d, (open > zero) & !of_lights, triangle)};
+    }
+    /// Adds the samples to the sums and returns their X; x is the part from the fill.
+    template <class D> [[gnu::noinline]] F add_seen(const D& /*drawn*/, const Seen& seen, F g, F lobe, F x) {
+        const F zero = number<F>(0);
+        x = this->add_light(seen.light, select(seen.of_lights, seen.open, zero), g, lobe, x);
+        const auto varies = seen.lit() & !seen.of_lights;
+        x = select(varies, add(radiance(seen, varies), select(varies, g, zero), lobe), x);
+        met.hits = plus_one_where(seen.lit(), met.hits);
         met.any = true;
         return x;
+    }
+
+private:
+    template <class D> [[gnu::noinline]] F resolve(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+        return add_seen(drawn, look(drawn, up), g, lobe, x);
     }
 
     static MaskOf<F> on_triangle(const LaneIntegers<F>& triangle) {
@@ -172,19 +187,28 @@ private:
         return g * worth;
     }
 
-    /// The radiance of the triangle, or of the sky in the world's direction d, where `lit`, and no light is met; else
-    /// 0.
-    template <class D> Vec3<F> radiance(const D& drawn, Vec3<F> d, const LaneArray<F>& lit,
-        const LaneIntegers<F>& triangle, MaskOf<F> of_lights) const {
-        const LaneArray<F> dx(d.x), dy(d.y), dz(d.z), other(select(of_lights, number<F>(1), number<F>(0)));
-        LaneIntegers<F> texel{UintOf<F>(no_texel)};
-        if constexpr (requires { drawn.texel; }) texel = LaneIntegers<F>(drawn.texel);
+    /// The texel of the sky in the world's direction d, in lanes of `where` that meet no triangle.
+    template <class D>
+    LaneIntegers<F> texels(const D& drawn, Vec3<F> d, MaskOf<F> where, const LaneIntegers<F>& triangle) const {
+        const LaneArray<F> dx(d.x), dy(d.y), dz(d.z), on(select(where, number<F>(1), number<F>(0)));
+        LaneIntegers<F> out{UintOf<F>(no_texel)};
+        if constexpr (requires { drawn.texel; }) out = LaneIntegers<F>(drawn.texel);
+        for (std::size_t l = 0; l < Lanes<F>::count; ++l)
+            if (on.at[l] > 0 && triangle.at[l] == no_triangle && out.at[l] == no_texel)
+                out.at[l] = sky_texel(*shading_points.around, {dx.at[l], dy.at[l], dz.at[l]});
+        return out;
+    }
+
+    /// The radiance of the triangle, or of the texel of the sky, in lanes of `where`; else 0.
+    Vec3<F> radiance(const Seen& seen, MaskOf<F> where) const {
+        const LaneArray<F> on(select(where, number<F>(1), number<F>(0)));
         LaneArray<F> r, g, b;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
             float rgb[3] = {0, 0, 0};
-            if (lit.at[l] > 0 && !(other.at[l] > 0)) {
-                if (triangle.at[l] != no_triangle) triangle_radiance(*shading_points.around, triangle.at[l], rgb);
-                else sky_radiance(*shading_points.around, texel.at[l], {dx.at[l], dy.at[l], dz.at[l]}, rgb);
+            if (on.at[l] > 0) {
+                if (seen.triangle.at[l] != no_triangle)
+                    triangle_radiance(*shading_points.around, seen.triangle.at[l], rgb);
+                else texel_radiance(*shading_points.around, seen.texel.at[l], rgb);
             }
             r.at[l] = rgb[0], g.at[l] = rgb[1], b.at[l] = rgb[2];
         }

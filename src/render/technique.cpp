@@ -18,12 +18,10 @@ namespace {
 
 constexpr double not_usable = std::numeric_limits<double>::quiet_NaN();
 
-/// A random number in single precision, as built-in samplers take it: in (0, 1).
-float as_float(double u) { return std::clamp(static_cast<float>(u), 0x1p-24f, 1 - 0x1p-24f); }
-
 template <template <class> class A> class BuiltInTechnique : public Technique {
 public:
     int numbers() const override { return 2; }
+    int built_in() const override { return arm_index(A<float>::name); }
 
     void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
         std::size_t row = 0;
@@ -226,17 +224,10 @@ Choices choose(const PointRows& at, std::span<const double> u, std::size_t numbe
     std::size_t row = 0;
     for (std::size_t r = 0; r < at.runs.size(); ++r) {
         const std::span<const double> w = weights.subspan(r * parts, parts);
-        std::size_t last = 0;  // a part with weight 0 is never chosen
-        for (std::size_t k = 0; k < parts; ++k)
-            if (w[k] > 0) last = k;
         for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) {
-            const double at_u = u[row * numbers];
-            std::size_t k = 0;
-            double below = 0;
-            while (k < last && at_u >= below + w[k]) below += w[k++];
-            const double width = k == last ? 1 - below : w[k];
-            out.part.push_back(k);
-            out.stretched.push_back(std::clamp((at_u - below) / width, 0x1p-53, 1 - 0x1p-53));
+            out.part.emplace_back();
+            out.stretched.push_back(
+                choose_part([&](std::size_t k) { return w[k]; }, parts, u[row * numbers], out.part.back()));
         }
     }
     return out;

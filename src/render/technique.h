@@ -47,6 +47,8 @@ public:
     virtual void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const = 0;
     /// Evaluates the density of each row's direction, 0 where it is never drawn.
     virtual void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const = 0;
+    /// The index of the sampler in samplers/all.h; -1: another one.
+    virtual int built_in() const { return -1; }
 };
 
 using Techniques = std::vector<std::shared_ptr<const Technique>>;

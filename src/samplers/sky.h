@@ -50,14 +50,26 @@ template <class F> struct SkyByTexel {
         return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, texel.pack()};
     }
 
-    [[gnu::noinline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+    PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+        const F zero = number<F>(0);
+        return pdf_of(wi, LaneIntegers<F>(UintOf<F>(no_texel)), !(zero > zero));
+    }
+    /// The density of a drawn direction, whose texel may be known, in these lanes.
+    PerSr<F> pdf_where(const DrawnByAny<F>& drawn, MaskOf<F> where) const {
+        return pdf_of(drawn.wi, LaneIntegers<F>(drawn.texel), where);
+    }
+
+private:
+    [[gnu::noinline]] PerSr<F> pdf_of(Vec3<F> wi, const LaneIntegers<F>& texel, MaskOf<F> where) const {
         if (!around) return {number<F>(0)};
         using Scalar = typename LaneArray<F>::Scalar;
         const Vec3<F> d = frame.to_world(wi);
-        const LaneArray<F> x(d.x), y(d.y), z(d.z);
-        LaneArray<F> p;
+        const LaneArray<F> x(d.x), y(d.y), z(d.z), on(select(where, number<F>(1), number<F>(0)));
+        LaneArray<F> p(number<F>(0));
         for (std::size_t l = 0; l < Lanes<F>::count; ++l)
-            p.at[l] = static_cast<Scalar>(sky_pdf(*around, {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+            if (on.at[l] > 0)
+                p.at[l] = static_cast<Scalar>(
+                    sky_pdf(*around, texel.at[l], {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
         return {p.pack()};
     }
 };

@@ -14,13 +14,18 @@ void put(const Rgb& radiance, float* rgb) {
 }  // namespace
 
 MeshesBefore meshes_before(const Surroundings& around, Vec3f x, Vec3f d, float light, std::uint32_t aimed) {
-    constexpr float before = 1 - 1e-5f;
+    constexpr float before = 1 - 1e-5f, nothing = 1e30f;
     MeshesBefore out;
     if (!around.triangles) {
         out.hidden = around.rays.occluded(x, d, light * before);
         return out;
     }
     float end = light * before;
+    if (aimed == no_triangle && light == nothing && !around.sky &&
+        !around.triangles->may_meet(x, d, 2 * around.rays.error(x))) {
+        out.hidden = true;  // or it leaves the scene: there is no light either way
+        return out;
+    }
     if (aimed != no_triangle) {
         out.distance = static_cast<float>(around.triangles->distance(aimed, widen(x), widen(d)));
         if (out.distance > 0 && out.distance < light) out.triangle = aimed, end = std::min(end, out.distance * before);
@@ -34,7 +39,15 @@ MeshesBefore meshes_before(const Surroundings& around, Vec3f x, Vec3f d, float l
 }
 
 void sky_radiance(const Surroundings& around, std::uint32_t texel, Vec3f d, float* rgb) {
-    if (around.sky) put(around.sky->radiance(texel == no_texel ? around.sky->texel_at(widen(d)) : texel), rgb);
+    texel_radiance(around, texel == no_texel ? sky_texel(around, d) : texel, rgb);
+}
+
+void texel_radiance(const Surroundings& around, std::uint32_t texel, float* rgb) {
+    if (around.sky && texel != no_texel) put(around.sky->radiance(texel), rgb);
+}
+
+std::uint32_t sky_texel(const Surroundings& around, Vec3f d) {
+    return around.sky ? around.sky->texel_at(widen(d)) : no_texel;
 }
 
 void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float* rgb) {
@@ -55,12 +68,12 @@ SkyDraw sample_sky(const Surroundings& around, double u, double v) {
     return around.sky ? around.sky->sample(u, v) : SkyDraw{{0, 1, 0}, no_texel, 0};
 }
 
-double sky_pdf(const Surroundings& around, Vec3d d) {
-    return around.sky ? around.sky->pdf(around.sky->texel_at(d)) : 0;
+double sky_pdf(const Surroundings& around, std::uint32_t texel, Vec3d d) {
+    return around.sky ? around.sky->pdf(texel == no_texel ? around.sky->texel_at(d) : texel) : 0;
 }
 
-TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v) {
-    return around.triangles ? around.triangles->sample(x, u, v) : TriangleDraw{{0, 1, 0}, no_triangle, 0};
+TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v, bool whole) {
+    return around.triangles ? around.triangles->sample(x, u, v, whole) : TriangleDraw{{0, 1, 0}, no_triangle, 0};
 }
 
 double triangles_pdf(const Surroundings& around, Vec3d x, Vec3d d) {

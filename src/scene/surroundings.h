@@ -25,7 +25,7 @@ struct Surroundings {
 
 /// Of a ray towards a light: the meshes before it.
 struct MeshesBefore {
-    bool hidden = false;                   // a triangle that does not emit towards x is met first
+    bool hidden = false;  // a triangle that does not emit towards x is met first, or there is no light behind
     std::uint32_t triangle = no_triangle;  // an emitting one that is met first
     float distance = 0;                    // to that
 };
@@ -35,6 +35,10 @@ MeshesBefore meshes_before(const Surroundings& around, Vec3f x, Vec3f d, float l
 
 /// Writes the radiance of the sky in direction d of the world, or in a texel if that is known; 0 without a sky.
 void sky_radiance(const Surroundings& around, std::uint32_t texel, Vec3f d, float* rgb);
+/// Writes the radiance of a texel of the sky; 0 of no_texel.
+void texel_radiance(const Surroundings& around, std::uint32_t texel, float* rgb);
+/// The texel of the sky in direction d of the world; no_texel without a sky.
+std::uint32_t sky_texel(const Surroundings& around, Vec3f d);
 /// Writes the radiance of an emitting triangle.
 void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float* rgb);
 /// Returns whether there is a sky, and whether there are meshes.
@@ -48,8 +52,10 @@ double open_radiance(const Surroundings& around, Vec3d x, Vec3d d);
 // ---- The samplers: a direction, and its density in 1/sr; 0 where there is nothing to aim at.
 
 SkyDraw sample_sky(const Surroundings& around, double u, double v);
-double sky_pdf(const Surroundings& around, Vec3d d);
-TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v);
+/// Of direction d, or of a texel if that is known.
+double sky_pdf(const Surroundings& around, std::uint32_t texel, Vec3d d);
+/// `whole`: the density is that of all triangles that the direction meets, else that of the drawn one.
+TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v, bool whole);
 double triangles_pdf(const Surroundings& around, Vec3d x, Vec3d d);
 
 }  // namespace crescent::inline scene

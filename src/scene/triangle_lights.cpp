@@ -11,6 +11,21 @@
 
 namespace crescent::inline scene {
 
+namespace {
+
+/// Whether a ray meets the box of a leaf, compiled as the caller is (see bvh_tree.h). Leaves are visited if it is met.
+[[gnu::always_inline]] inline bool meets_leaf(const BvhTree& tree, Vec3f x, Vec3f w, float error) {
+    const auto found = [](std::size_t) __attribute__((always_inline)) { return true; };
+    return visit_leaves(tree.nodes, BoxRay(x, w, error), infinity, found, [](std::size_t) {});
+}
+#ifdef CRESCENT_EIGHT_LANES
+CRESCENT_EIGHT_LANES bool meets_leaf_wide(const BvhTree& tree, Vec3f x, Vec3f w, float error) {
+    return meets_leaf(tree, x, w, error);
+}
+#endif
+
+}  // namespace
+
 TriangleLights::TriangleLights(std::vector<EmittingTriangle> triangles) : triangles_(std::move(triangles)) {
     std::vector<Bounds> boxes;
     double total = 0;
@@ -37,10 +52,14 @@ double TriangleLights::density(std::uint32_t k, double distance, Vec3d w) const 
     return cos > 0 ? luminance(triangles_[k].radiance) / powers_.back() * distance * distance / cos : 0;
 }
 
-TriangleDraw TriangleLights::sample(Vec3d x, double u, double v) const {
+TriangleDraw TriangleLights::sample(Vec3d x, double u, double v, bool whole) const {
     const double at = u * powers_.back();
-    const auto k =
-        static_cast<std::uint32_t>(std::upper_bound(powers_.begin(), powers_.end() - 1, at) - powers_.begin());
+    std::uint32_t k = 0;  // the first power above `at`, or the last: without branches, which chance decides
+    for (auto left = static_cast<std::uint32_t>(powers_.size()) - 1; left > 0;) {
+        const std::uint32_t half = (left + 1) / 2;
+        k += half & (0u - static_cast<std::uint32_t>(powers_[k + half - 1] <= at));
+        left -= half;
+    }
     const double low = k > 0 ? powers_[k - 1] : 0;
     const double root = std::sqrt(std::clamp((at - low) / (powers_[k] - low), 0.0, 1.0));
     const Side& side = sides_[k];
@@ -49,7 +68,7 @@ TriangleDraw TriangleLights::sample(Vec3d x, double u, double v) const {
     if (!(distance > 0)) return {{0, 0, 1}, no_triangle, 0};
     const Vec3d w = (1 / distance) * to;
     const double own = density(k, distance, w);
-    return {w, k, own > 0 ? own + pdf(x, w, k) : 0};
+    return {w, k, own > 0 ? own + (whole ? pdf(x, w, k) : 0) : 0};
 }
 
 template <class Work> void TriangleLights::each_met(Vec3d x, Vec3d w, Work&& work) const {
@@ -71,6 +90,13 @@ template <class Work> void TriangleLights::each_met(Vec3d x, Vec3d w, Work&& wor
         return false;
     };
     visit_leaves(tree_->nodes, ray, infinity, test, [](std::size_t) {});
+}
+
+bool TriangleLights::may_meet(Vec3f x, Vec3f w, float error) const {
+#ifdef CRESCENT_EIGHT_LANES
+    if (has_eight_lanes) return meets_leaf_wide(*tree_, x, w, error);
+#endif
+    return meets_leaf(*tree_, x, w, error);
 }
 
 double TriangleLights::pdf(Vec3d x, Vec3d w, std::uint32_t but) const {

@@ -42,10 +42,13 @@ public:
     explicit TriangleLights(std::vector<EmittingTriangle> triangles);
 
     const std::vector<EmittingTriangle>& triangles() const { return triangles_; }
-    /// Draws a direction from x; u and v in [0, 1).
-    TriangleDraw sample(Vec3d x, double u, double v) const;
+    /// Draws a direction from x; u and v in [0, 1). `whole`: with the density of all triangles that it meets, else with
+    /// that of the drawn one.
+    TriangleDraw sample(Vec3d x, double u, double v, bool whole = true) const;
     /// The density with which w, of unit length, is drawn from x, except by triangle `but`; 1/sr.
     double pdf(Vec3d x, Vec3d w, std::uint32_t but = no_triangle) const;
+    /// Whether w may meet a triangle that is off by at most `error`, m. False only if it meets none.
+    bool may_meet(Vec3f x, Vec3f w, float error) const;
     /// The nearest front that w meets; no_triangle: none.
     std::uint32_t nearest(Vec3d x, Vec3d w) const;
     /// How far the plane of a triangle is from x along w, m.

@@ -1,5 +1,4 @@
-// The estimates are those of a declared combination with other random numbers, in scalar code, so their bits are the
-// same on every instruction set.
+// The estimates are those of a declared combination with other random numbers.
 #include "render/reference/paired.h"
 
 #include <cmath>
@@ -36,11 +35,12 @@ Moments estimate(const ShadingPoints& points, const Combination& combination, st
     std::vector<std::byte> memory(points.kernel_memory());
     const std::array<std::uint64_t, 1> counts = {n};
     const KernelCall call{&points, counts, seed, moments, stop, nullptr, memory.data()};
-    estimate_combination(combination, call, [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
+    const PixelNumbers numbers = [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
         constexpr std::uint32_t salt = 0x50b01;  // the hashes of films have small numbers of pairs here
         const auto scramble = simd::pcg4d(simd::Vec4u<std::uint32_t>{pixel, block, seed, salt});
         return math::scrambled_sobol(static_cast<std::uint32_t>(sample), scramble);
-    });
+    };
+    estimate_combination(combination, call, "", &numbers);
     return std::move(moments[0]);
 }
 

@@ -1,0 +1,268 @@
+// A combination of built-in samplers as a kernel's arm: the directions of one sample at a pack of pixels, and their
+// weights. Densities are those of the samplers in single precision; what is made of them is in double, lane by lane, in
+// the order of combination.cpp, so both have the same bits. Included only by kernel_body.h.
+#pragma once
+
+#include <limits>
+#include <new>
+
+#include "math/simd/random.h"
+#include "render/combination_call.h"
+#include "render/kernel_lights.h"
+#include "samplers/all.h"
+
+namespace crescent::inline render {
+namespace CRESCENT_ISA {
+
+template <class F> MaskOf<F> no_lane() { return number<F>(1) < number<F>(0); }
+template <class F> CRESCENT_INLINE Vec3<F> select_each(MaskOf<F> m, Vec3<F> a, Vec3<F> b) {
+    return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+/// One built-in sampler, whose type is known from its index alone. `at`: where it was made.
+template <class F> struct PackSampler {
+    void (*make)(std::byte* at, const ShadingPoint<F>& point);
+    /// Draws; the density may be a part of it, which is above 0 if it is.
+    void (*draw)(const std::byte* at, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out);
+    /// The density of a drawn direction where it may be only a part; null: it never is.
+    F (*whole_pdf)(const std::byte* at, Vec2<F> u, MaskOf<F> where);
+    /// The density of a direction of another sampler. Lanes outside of `where` may have any value.
+    F (*pdf)(const std::byte* at, Vec3<F> wo, const DrawnByAny<F>& drawn, MaskOf<F> where);
+};
+
+template <class F, class A> const A& sampler_at(const std::byte* at) {
+    return *std::launder(reinterpret_cast<const A*>(at));
+}
+
+template <class F, class A> void make_sampler(std::byte* at, const ShadingPoint<F>& point) {
+    ::new (static_cast<void*>(at)) A(point);
+}
+template <class F, class A>
+[[gnu::noinline]] void draw_direction(const std::byte* at, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out) {
+    const A& arm = sampler_at<F, A>(at);
+    const auto take = [&](const auto& drawn) {
+        out.wi = drawn.wi, out.pdf = drawn.pdf, out.disk = number<F>(-1), out.met = no_lane<F>();
+        out.texel = UintOf<F>(no_texel), out.triangle = UintOf<F>(no_triangle);
+        if constexpr (requires { drawn.met; }) out.disk = drawn.disk, out.met = drawn.met;
+        if constexpr (requires { drawn.texel; }) out.texel = drawn.texel;
+        if constexpr (requires { drawn.triangle; }) out.triangle = drawn.triangle;
+    };
+    if constexpr (requires { arm.sample_part(u); }) take(arm.sample_part(u));
+    else take(arm.sample(wo, u));
+}
+template <class F, class A> [[gnu::noinline]] F whole_density(const std::byte* at, Vec2<F> u, MaskOf<F> where) {
+    return sampler_at<F, A>(at).whole_pdf(u, where).v;
+}
+template <class F, class A>
+[[gnu::noinline]] F density_of(const std::byte* at, Vec3<F> wo, const DrawnByAny<F>& drawn, MaskOf<F> where) {
+    const A& arm = sampler_at<F, A>(at);
+    if constexpr (requires { arm.pdf_where(drawn, where); }) return arm.pdf_where(drawn, where).v;
+    else return arm.pdf(wo, drawn.wi).v;
+}
+
+template <class F, class A> constexpr PackSampler<F> pack_sampler() {
+    if constexpr (requires { A::techniques; }) {
+        return {};
+    } else {
+        PackSampler<F> out = {make_sampler<F, A>, draw_direction<F, A>, nullptr, density_of<F, A>};
+        if constexpr (requires(const A& arm, Vec2<F> u) { arm.sample_part(u); }) out.whole_pdf = whole_density<F, A>;
+        return out;
+    }
+}
+
+template <class F> struct PackSamplers {
+    template <template <class> class... A>
+    static constexpr std::array<PackSampler<F>, sizeof...(A)> table(ArmList<A...>) {
+        return {pack_sampler<F, A<F>>()...};
+    }
+    template <template <class> class... A> static constexpr std::size_t largest(ArmList<A...>) {
+        std::size_t most = 0;
+        ((most = sizeof(A<F>) > most ? sizeof(A<F>) : most), ...);
+        return most;
+    }
+    static constexpr auto all = table(Samplers{});
+    static constexpr std::size_t size = (largest(Samplers{}) + 63) / 64 * 64;
+};
+
+/// What a direction is weighted by.
+template <class F> struct WeightAndPdf {
+    F weight, pdf;
+};
+
+template <class F> class CombinedArm {
+public:
+    static constexpr bool combines = true;
+    static constexpr std::size_t lanes = Lanes<F>::count;
+    using Form = CombinationCall::Form;
+
+    CombinedArm(const CombinationCall& of, const ShadingPoints& points, std::size_t at, const ShadingPoint<F>& point)
+        : of_(of), points_(points), at_(at), wo_(point.wo) {
+        for (std::size_t k = 0; k < of_.samplers; ++k) sampler(k).make(place(k), point);
+        if (of_.form == Form::every) {
+            for (std::size_t k = 0; k < of_.samplers; ++k)
+                for (double& lane : share_[k]) lane = static_cast<double>(of_.repeats[k]);
+            return;
+        }
+        double at_lane[most_parts];
+        for (std::size_t l = 0; l < lanes; ++l) {
+            of_.shares(points_, at_ + l, at_lane);
+            for (std::size_t k = 0; k < of_.samplers; ++k) share_[k][l] = at_lane[k];
+        }
+    }
+
+    /// Calls take(drawn, weigh) for each direction of sample j and returns the sum of what it returns; weigh(where) is
+    /// a WeightAndPdf. `u`: the first two random numbers of films.
+    template <class Take> [[gnu::always_inline]] F sample(
+        UintOf<F> pixel, std::uint64_t j, std::uint32_t seed, Vec2<F> u, Take&& take) const {
+        DrawnByAny<F> drawn;
+        Indices chosen;
+        if (of_.form != Form::every) {
+            const Vec2<F> stretched = choose(of_.numbers ? numbers(pixel, j, 0, seed) : u, chosen);
+            draw_chosen(stretched, chosen, drawn);
+            return take(drawn, [&](MaskOf<F> where) { return weigh(drawn, stretched, chosen, where); });
+        }
+        F x = number<F>(0);
+        for (std::size_t k = 0; k < of_.samplers; ++k)
+            for (std::uint64_t repeat = 0; repeat < of_.repeats[k]; ++repeat) {
+                const bool first = k == 0 && repeat == 0;
+                const Vec2<F> v = first && !of_.numbers
+                    ? u
+                    : numbers(pixel, j, block_of(k, 0, static_cast<std::size_t>(repeat)), seed);
+                for (std::size_t& lane : chosen.of) lane = k;
+                sampler(k).draw(place(k), wo_, v, drawn);
+                const F one = take(drawn, [&](MaskOf<F> where) { return weigh(drawn, v, chosen, where); });
+                x = first ? one : x + one;
+            }
+        return x;
+    }
+
+private:
+    /// The sampler of each lane.
+    struct Indices {
+        std::size_t of[lanes];
+        /// The lanes of sampler k.
+        MaskOf<F> mask(std::size_t k) const {
+            LaneArray<F> on;
+            for (std::size_t l = 0; l < lanes; ++l) on.at[l] = of[l] == k ? 1.0f : 0.0f;
+            return on.pack() > number<F>(0);
+        }
+    };
+
+    const PackSampler<F>& sampler(std::size_t k) const {
+        return PackSamplers<F>::all[static_cast<std::size_t>(of_.sampler[k])];
+    }
+    std::byte* place(std::size_t k) { return memory_ + k * PackSamplers<F>::size; }
+    const std::byte* place(std::size_t k) const { return memory_ + k * PackSamplers<F>::size; }
+
+    Vec2<F> numbers(UintOf<F> pixel, std::uint64_t j, std::uint32_t block, std::uint32_t seed) const {
+        if (!of_.numbers) {
+            const Vec4u<UintOf<F>> h = draws<UintOf<F>>(pixel, static_cast<std::uint32_t>(j >> 1), block, seed);
+            return j & 1 ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)}
+                         : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
+        }
+        LaneArray<F> x, y;
+        const LaneIntegers<F> pixels(pixel);
+        of_.read_numbers(pixels.at, lanes, j, block, x.at, y.at);
+        return {x.pack(), y.pack()};
+    }
+
+    /// Chooses a sampler for each lane by u.x, and stretches that back to (0, 1).
+    Vec2<F> choose(Vec2<F> u, Indices& chosen) const {
+        const LaneArray<F> by(u.x);
+        LaneArray<F> out;
+        for (std::size_t l = 0; l < lanes; ++l)
+            out.at[l] = as_float(choose_part([&](std::size_t k) { return share_[k][l]; }, of_.samplers,
+                static_cast<double>(by.at[l]), chosen.of[l]));
+        return {out.pack(), u.y};
+    }
+
+    void draw_chosen(Vec2<F> u, const Indices& chosen, DrawnByAny<F>& out) const {
+        bool some = false;
+        for (std::size_t k = 0; k < of_.samplers; ++k) {
+            const auto here = chosen.mask(k);
+            if (!any(here)) continue;
+            DrawnByAny<F> drawn;
+            sampler(k).draw(place(k), wo_, u, drawn);
+            if (!some) out = drawn, some = true;
+            out.wi = select_each(here, drawn.wi, out.wi), out.pdf.v = select(here, drawn.pdf.v, out.pdf.v);
+            out.disk = select(here, drawn.disk, out.disk), out.met = (here & drawn.met) | (!here & out.met);
+            out.texel = select(here, drawn.texel, out.texel);
+            out.triangle = select(here, drawn.triangle, out.triangle);
+        }
+    }
+
+    [[gnu::noinline]] WeightAndPdf<F> weigh(
+        const DrawnByAny<F>& drawn, Vec2<F> u, const Indices& chosen, MaskOf<F> where) const {
+        float p[most_parts][lanes];
+        F own = drawn.pdf.v;
+        const bool one_sampler = of_.form == Form::every;
+        for (std::size_t k = 0; k < of_.samplers; ++k) {
+            if (one_sampler ? k != chosen.of[0] : !any(chosen.mask(k))) continue;
+            const auto here = one_sampler ? where : where & chosen.mask(k);
+            if (sampler(k).whole_pdf && any(here)) own = select(here, sampler(k).whole_pdf(place(k), u, here), own);
+        }
+        for (std::size_t k = 0; k < of_.samplers; ++k) {
+            if (one_sampler && k == chosen.of[0]) {
+                store(own, p[k]);
+                continue;
+            }
+            const MaskOf<F> here = one_sampler ? no_lane<F>() : chosen.mask(k), others = where & !here;
+            store(any(others) ? select(here, own, sampler(k).pdf(place(k), wo_, drawn, others)) : own, p[k]);
+        }
+        LaneArray<F> weight;
+        if (of_.form == Form::mixture) {
+            for (std::size_t l = 0; l < lanes; ++l) {
+                double sum = 0;
+                for (std::size_t k = 0; k < of_.samplers; ++k) sum += share_[k][l] * static_cast<double>(p[k][l]);
+                weight.at[l] = static_cast<float>(sum);
+            }
+            return {number<F>(1), weight.pack()};
+        }
+        double w[lanes], count[lanes];
+        for (std::size_t l = 0; l < lanes; ++l) count[l] = share_[chosen.of[l]][l];
+        if (of_.has_weights) ask_for_weights(drawn, chosen, where, p, w);
+        else heuristic(chosen, count, p, w);
+        for (std::size_t l = 0; l < lanes; ++l) weight.at[l] = static_cast<float>(w[l] / count[l]);
+        return {weight.pack(), own};
+    }
+
+    /// Relative to the own density: a large one does not overflow. As Combination::mis_weight().
+    void heuristic(const Indices& chosen, const double (&count)[lanes], const float (&p)[most_parts][lanes],
+        double (&w)[lanes]) const {
+        double own[lanes], sum[lanes], least[lanes];
+        for (std::size_t l = 0; l < lanes; ++l)
+            own[l] = static_cast<double>(p[chosen.of[l]][l]), sum[l] = 0, least[l] = 0;
+        for (std::size_t k = 0; k < of_.samplers; ++k)
+            for (std::size_t l = 0; l < lanes; ++l) {
+                const double density = static_cast<double>(p[k][l]);
+                const double ratio = chosen.of[l] == k ? 1 : share_[k][l] * density / (count[l] * own[l]);
+                sum[l] += of_.power ? ratio * ratio : ratio;
+                least[l] = density >= least[l] || density < 0 ? least[l] : density;  // NaN if one is
+                least[l] = density < 0 ? std::numeric_limits<double>::quiet_NaN() : least[l];
+            }
+        for (std::size_t l = 0; l < lanes; ++l) {
+            w[l] = count[l] > 0 && own[l] > 0 ? 1 / sum[l] : 0;
+            if (!(least[l] >= 0)) w[l] = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+
+    void ask_for_weights(const DrawnByAny<F>& drawn, const Indices& chosen, MaskOf<F> where,
+        const float (&p)[most_parts][lanes], double (&w)[lanes]) const {
+        const LaneArray<F> cos(drawn.wi.z), on(select(where, number<F>(1), number<F>(0)));
+        for (std::size_t l = 0; l < lanes; ++l) {
+            double here[most_parts];
+            for (std::size_t k = 0; k < of_.samplers; ++k) here[k] = static_cast<double>(p[k][l]);
+            w[l] = on.at[l] > 0 ? of_.weight(points_, at_ + l, chosen.of[l], cos.at[l], here) : 0;
+        }
+    }
+
+    const CombinationCall& of_;
+    const ShadingPoints& points_;
+    std::size_t at_;
+    Vec3<F> wo_;
+    double share_[most_parts][lanes];
+    alignas(64) std::byte memory_[most_parts * PackSamplers<F>::size];
+};
+
+}  // namespace CRESCENT_ISA
+}  // namespace crescent::inline render
