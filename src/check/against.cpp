@@ -180,6 +180,7 @@ private:
 
     void note_distribution(const Differences& d, Verdict& v) const {
         const bool differ = !d.found.empty();
+        v.same = !differ;
         v.evidence["same"] = !differ;
         v.evidence["draws"] = {draws_a_.independent + draws_a_.scrambled, draws_b_.independent + draws_b_.scrambled};
         for (const auto& [family, p] : d.p) v.evidence["p"][std::string(name_of(family))] = p;

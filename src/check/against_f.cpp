@@ -89,7 +89,8 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
         ++count;
         if (off / size > most) most = off / size, worst = i;
     }
-    v.evidence["same"] = count == 0;
+    v.same = count == 0;
+    v.evidence["same"] = *v.same;
     v.evidence["directions"] = both.wi.size();
     v.evidence["differ"] = count;
     if (count == 0) {
@@ -144,11 +145,12 @@ void compare_f(const AgainstCase& c, Verdict& v) {
         note_difference(c, f_of_both(c), v);
     }
     if (const std::string delta = differing_delta(c); !delta.empty()) {
+        v.same = false;
         v.evidence["same"] = false;
         v.message += (v.message.empty() ? "" : " ") + delta;
         v.state = State::right;
     }
-    if (c.expect_same && v.evidence.contains("same") && !v.evidence["same"].get<bool>()) v.state = State::wrong;
+    if (c.expect_same && !v.same.value_or(true)) v.state = State::wrong;
 }
 
 namespace {
@@ -334,7 +336,7 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
 
 void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
     const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
-    if (of_f.evidence.contains("same") && !of_f.evidence["same"].get<bool>())
+    if (!of_f.same.value_or(true))
         return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
         return skip(v,

@@ -28,7 +28,7 @@ using VerdictsByCase = std::vector<std::vector<Verdict>>;
 
 /// A heavy tail or an equal rank does not make a sampler wrong.
 bool may_stay_open(const Verdict& v) {
-    return v.name == "tail" || v.name == "mean" || v.name == "efficiency" || v.evidence.contains("unmet_share");
+    return v.name == "tail" || v.name == "mean" || v.name == "efficiency" || v.unmet_tail;
 }
 
 /// Sets whether the state is the expected one, for a right sampler or for a built-in arm.
@@ -48,6 +48,11 @@ void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
         v.expected = v.state == State::right || v.state == State::skipped ||
             (v.state == State::inconclusive && may_stay_open(v));
     }
+}
+
+void note_first_failure(const std::string& what, Verdict& v) {
+    v.first_failure = true;
+    v.evidence["first_fault"] = what;
 }
 
 /// Messages of the verdicts of a case that ended early: of the first verdict, and of the others.
@@ -80,7 +85,7 @@ void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings&
         v.state = text.state;
         v.message = first ? text.first : text.rest;
         v.evidence = nlohmann::ordered_json::object();
-        if (first && cut.why == Cut::Why::fault) v.evidence["first_fault"] = cut.what;
+        if (first && cut.why == Cut::Why::fault) note_first_failure(cut.what, v);
         if (v.state == State::inconclusive) v.next.kind = NextStep::Kind::more_time;
         left.verdicts.push_back(v.name);
     }
@@ -92,7 +97,7 @@ void report_whole_cut(const Cut& cut, const CheckCase& check_case, const TestSet
     if (valid.state != State::right) return;
     const AbortText text = abort_text(cut, check_case, settings);
     valid.state = text.state, valid.message = text.first;
-    if (cut.why == Cut::Why::fault) valid.evidence["first_fault"] = cut.what;
+    if (cut.why == Cut::Why::fault) note_first_failure(cut.what, valid);
 }
 
 /// Upper bounds of the evaluations that no estimate includes. At each w_o: f at the draws of two baselines, seven timed

@@ -22,6 +22,18 @@ struct NextStep {
     double times = 0;  // required factor on the number of draws; 0: unknown
 };
 
+/// The density that the draws of a sampler without pdf(w) imply, with standard errors, 1/sr: means over rings about n, and
+/// the highest of the cells.
+struct ImpliedDensity {
+    struct Ring {
+        double from = 0, to = 0;  // degrees from n
+        double pdf = 0, error = 0;
+    };
+    std::vector<Ring> rings;
+    double peak = 0, peak_error = 0;
+};
+
+/// `evidence` is written for the JSON and never read: whatever another part of the program needs has a member.
 struct Verdict {
     std::string arm;
     std::string check_case;  // w_o and parameters
@@ -35,6 +47,10 @@ struct Verdict {
     double size = 0;                                // in standard errors: orders verdicts of one name
     std::map<std::string, double> hidden{};         // of a right verdict: the size that it could hide, by kind of fault
     double nothing = 0;                             // of `valid`: the share of the draws without a sample
+    bool first_failure = false;                     // of an error: the sampler failed here, and all others follow
+    bool unmet_tail = false;                        // inconclusive since weights are larger than those drawn
+    std::optional<bool> same{};                     // of a comparison: whether A and B agree
+    std::optional<ImpliedDensity> implied{};        // of `density`, without a pdf(w)
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
     // Values that vary between runs are separate, so that equal calls give equal verdicts.
     double seconds = 0;

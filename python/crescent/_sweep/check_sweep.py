@@ -167,7 +167,8 @@ def run_check_sweep(
     if new:
         with DaskEngine(engine, workers) as dask:
             dask.wait_for_workers()
-            say(f"dashboard: {dask.dashboard}")
+            if address := dask.dashboard:
+                say(f"dashboard: {address}")
             bar = Progress(len(new), 0, progress)
             jobs = (
                 Job(

@@ -16,6 +16,7 @@ import queue
 import threading
 import time
 import tomllib
+import urllib.request
 import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -236,8 +237,13 @@ class DaskEngine:
 
     @property
     def dashboard(self) -> str:
-        """The address of Dask's dashboard."""
-        return str(self.client.dashboard_link)
+        """The address of Dask's dashboard; "" if this scheduler has none, or bokeh is missing there."""
+        address = str(self.client.dashboard_link)
+        try:
+            with urllib.request.urlopen(address, timeout=2):
+                return address
+        except (OSError, ValueError):
+            return ""
 
     def workers(self) -> dict[str, Any]:
         """The scheduler's information about its workers, by address."""

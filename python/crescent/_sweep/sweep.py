@@ -445,7 +445,8 @@ def run_sweep(base: Experiment, options: Options, dry_run: bool = False) -> Swee
             say(line)
         with DaskEngine(options.engine, options.workers) as engine:
             engine.wait_for_workers()
-            say(f"dashboard: {engine.dashboard}")
+            if address := engine.dashboard:
+                say(f"dashboard: {address}")
             try:
                 run.execute(plan, engine)
             finally:

@@ -17,11 +17,6 @@ namespace crescent::check {
 
 namespace {
 
-/// Standard errors beyond the critical value: P(Z < 2.05) = 0.98. The least size of several tests is stated, and each
-/// has an uncertainty of 13 %, that of a standard deviation from 32 replicates. Measured by planting faults of these
-/// sizes: the least of them is found with `stated_power` only if each by itself is found with 0.98.
-constexpr double power_of_each = 2.05;
-
 /// The difference d for which Bennett's exponent is z2: Newton's method from Bernstein's bound, which is above it.
 double bennett_difference(double z2, double v, double b) {
     v = std::max(v, 1e-30);

@@ -91,6 +91,7 @@ void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) 
 void describe_unseen(const WeightTail& t, Verdict& v) {
     const double share = t.unseen / t.integral;
     v.state = State::inconclusive;
+    v.unmet_tail = true;
     v.evidence["unmet_share"] = share;
     v.evidence["unmet_share_error"] = t.unseen_error / t.integral;
     v.evidence["unmet_chance_of_a_draw"] = t.unseen_chance;
@@ -100,7 +101,6 @@ void describe_unseen(const WeightTail& t, Verdict& v) {
         "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
         "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
         100 * share, 196 * t.unseen_error / t.integral, t.spread.n, t.spread.largest, t.half_chance);
-    constexpr double within_reach = 64;  // times the number of draws; a thorough check has twelve times as many
     const double times = t.half_chance > 0 ? 1 / (t.half_chance * t.spread.n) : 1e300;
     if (times <= within_reach) v.next = {NextStep::Kind::more_draws, std::max(times, 2.0)};
     else v.next.kind = NextStep::Kind::heavier_pdf;

@@ -219,6 +219,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
                 continue;
             }
         }
+        if (is_below_map(c.hypothesis, places)) continue;
         if (checks++ == most_checks) break;
         if (!passes(c.hypothesis, places, 1)) continue;
         if (found) return several = true, std::nullopt;
@@ -250,12 +251,9 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
 /// The density of the sampling map over p, from its derivatives at a few points of each place.
 std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     std::vector<KnownRatio> out;
-    for (const Place& place : places) {
-        Source source = place.source();
-        const StreamKey key = place.key(23, Purpose::jacobian, 1);
-        for (const MapDensity& m : map_densities(source, key))
+    for (const Place& place : places)
+        for (const MapDensity& m : place.map)
             out.push_back({place.check_case->wo, m.draw.wi, m.drawn / m.p, m.error});
-    }
     return out;
 }
 
@@ -279,25 +277,11 @@ std::optional<Cause> cause_from_map(std::span<const KnownRatio> ratios, std::spa
     return candidate->make_cause(candidate->hypothesis);
 }
 
-/// The density of the draws is at least that of the map at one u, so p over the latter is nowhere below a constant
-/// factor of p.
-bool can_be_constant(std::span<const KnownRatio> ratios, const Cause& constant) {
-    const double off = std::fabs(math::log(constant.exponent));
-    double below = 0;
-    for (const KnownRatio& r : ratios)
-        below += 1 / r.value < constant.exponent * (1 - 0.1 * off - 2 * r.error) - 2 * constant.error;
-    return below <= 0.1 * static_cast<double>(ratios.size());
-}
-
 std::optional<Cause> explained_by(std::span<const Place> places) {
-    const std::vector<KnownRatio> ratios = map_ratios(places);
-    if (std::optional<Cause> c = cause_from_map(ratios, places)) return c;
+    if (std::optional<Cause> c = cause_from_map(map_ratios(places), places)) return c;
     Candidates plain = plain_candidates(places);
     bool several = false;
-    if (std::optional<Cause> c = passing(plain, places, several); c || several) {
-        if (c && c->factor == "constant" && !can_be_constant(ratios, *c)) return {};
-        return c;
-    }
+    if (std::optional<Cause> c = passing(plain, places, several); c || several) return c;
     if (std::optional<Cause> c = lobe_cause(places)) return c;
     Candidates fitted = fitted_candidates(places);
     if (std::optional<Cause> c = passing(fitted, places, several); c || several) return c;

@@ -80,6 +80,7 @@ void draw_at(Place& place, std::uint32_t count) {
                                                                      : here / (n * area)));
     }
     place.of = count;
+    place.map = map_densities(source, place.key(23, Purpose::jacobian, 1));
 }
 
 }  // namespace
@@ -152,6 +153,23 @@ void score(Hypothesis& h, std::span<const Place> places) {
     h.gain = gain.sum / draws, h.draws = draws;
     h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
     h.explained = before > 0 ? std::min(1 - left / before, 1.0) : 0;
+}
+
+bool is_below_map(const Hypothesis& h, std::span<const Place> places) {
+    constexpr double most_below = 0.1;
+    double below = 0, points = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        std::vector<Pair> at;
+        for (const MapDensity& m : places[k].map) at.push_back({places[k].check_case->wo, m.draw.wi});
+        std::vector<double> supposed(at.size());
+        h.density(places[k].adapter(), places[k].technique(), at, supposed);
+        for (std::size_t i = 0; i < at.size(); ++i, ++points) {
+            const MapDensity& m = places[k].map[i];
+            const double density = supposed[i] * h.constant(k);
+            below += density + std::fabs(density - m.p) / 2 + 2 * m.error * m.drawn < m.drawn;
+        }
+    }
+    return below > most_below * points;
 }
 
 bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places) {

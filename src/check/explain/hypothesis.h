@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "check/decide/check_sampler.h"
+#include "check/decide/small_tests.h"
 #include "check/estimate/source.h"
 
 namespace crescent::check {
@@ -60,6 +61,7 @@ struct Place {
     std::vector<double> p;
     std::vector<double> implied;  // density of the draws from the counts of the leaves, 1/sr
     double of = 0;                // number of draws
+    std::vector<MapDensity> map;  // the density of the sampling map at a few points
     /// Whether draws where p is 0 count as draws; otherwise they count as no sample because their pdf is 0 too.
     bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
     const SamplerAdapter& adapter() const { return *check_case->adapter; }
@@ -103,6 +105,9 @@ struct Hypothesis {
 
 /// Sets gain, error and explained.
 void score(Hypothesis& h, std::span<const Place> places);
+/// The density of the draws is at least that of the map at one u. Whether the supposed density is less at more than one
+/// of ten points, by half of its difference from p or more: a fitted number that is clear is known to a quarter.
+bool is_below_map(const Hypothesis& h, std::span<const Place> places);
 /// Whether both have the same density at nine of ten draws.
 bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places);
 /// Whether all tests of the density pass at all places with the supposed density in place of p. Sets free constants.

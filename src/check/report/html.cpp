@@ -146,14 +146,11 @@ Json rose_of(const WeightHistogram& w) {
 
 /// The density that the draws imply, by rings about n; null for any other verdict.
 Json implied_of(const Verdict& v) {
-    const auto found = v.evidence.find("implied_rings");
-    if (found == v.evidence.end()) return {};
+    if (!v.implied) return {};
     Json rings = Json::array();
-    for (const auto& row : found->at("rows"))
-        rings.push_back(
-            {{"from", fmt::format("{:.0f}", row[0].get<double>())}, {"to", fmt::format("{:.0f}", row[1].get<double>())},
-                {"density", fmt::format("{:.4g}", row[2].get<double>())},
-                {"error", fmt::format("{:.2g}", row[3].get<double>())}});
+    for (const ImpliedDensity::Ring& r : v.implied->rings)
+        rings.push_back({{"from", fmt::format("{:.0f}", r.from)}, {"to", fmt::format("{:.0f}", r.to)},
+            {"density", fmt::format("{:.4g}", r.pdf)}, {"error", fmt::format("{:.2g}", r.error)}});
     return {{"rings", rings}};
 }
 

@@ -58,19 +58,19 @@ std::vector<std::size_t> cells_of(const Tree& tree, const std::vector<double>& d
     return out;
 }
 
-nlohmann::ordered_json rows_by_rings(const CheckAt& c) {
+std::vector<ImpliedDensity::Ring> rings_of(const CheckAt& c) {
     const auto& rings = c.observations.rings;
     std::size_t last = rings.size() / 2;
     for (std::size_t i = 0; i < rings.size(); ++i)
         if (rings[i] > 0) last = std::max(last, i + 1);
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    std::vector<ImpliedDensity::Ring> out;
     for (std::size_t i = 0; i < last; ++i) {
         const double from = static_cast<double>(i) * degrees_per_ring, to = from + degrees_per_ring;
         const double angle = two_pi * (math::cos(from * two_pi / 360) - math::cos(to * two_pi / 360));
         const Implied here(rings[i], c.observations.independent, angle);
-        rows.push_back({from, to, here.p, here.se});
+        out.push_back({from, to, here.p, here.se});
     }
-    return rows;
+    return out;
 }
 
 }  // namespace
@@ -94,8 +94,12 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
     const Implied peak(draws[highest], n, r.area());
     v.evidence["implied_by"] = "tree";
     v.evidence["implied_peak"] = {{"wi", {w.x, w.y, w.z}}, {"pdf", peak.p}, {"standard_error", peak.se}};
+    v.implied = {rings_of(c), peak.p, peak.se};
+    nlohmann::ordered_json by_rings = nlohmann::ordered_json::array();
+    for (const ImpliedDensity::Ring& ring : v.implied->rings)
+        by_rings.push_back({ring.from, ring.to, ring.pdf, ring.error});
     v.evidence["implied_rings"] = {
-        {"columns", {"from_deg", "to_deg", "pdf", "standard_error"}}, {"rows", rows_by_rings(c)}};
+        {"columns", {"from_deg", "to_deg", "pdf", "standard_error"}}, {"rows", std::move(by_rings)}};
     v.evidence["implied_bins"] = {
         {"columns", {"cos_theta_from", "cos_theta_to", "phi_from", "phi_to", "pdf", "standard_error"}},
         {"rows", std::move(rows)}};

@@ -128,7 +128,7 @@ std::vector<Finding> findings_of(const CheckResult& j) {
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
         else
             for (const Verdict* v : members[i])
-                if (v->evidence.contains("first_fault")) out[i].worst = v;
+                if (v->first_failure) out[i].worst = v;
         if (out[i].state == State::error) out[i].of = j.verdicts.size(), out[i].cases = "verdicts";
     }
     const auto order = [](const Finding& f) {
@@ -267,8 +267,8 @@ std::string nothing_drawn_text(const CheckResult& result) {
         100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
 }
 
-// ---- The text of implied_rings and implied_peak, evidence of density (check/report/implied.cpp). Rings of 15 degrees
-// are means of the finer rings of the evidence, weighted by solid angle.
+// ---- The text of a density that draws imply (check/report/implied.cpp). Rings of 15 degrees are means of the finer
+// rings, weighted by solid angle.
 
 namespace {
 
@@ -284,25 +284,23 @@ std::string with_error(double v, double se) {
     return fmt::format("{:.{}f} +- {:.{}f}", v, -digits, se, -digits);
 }
 
-/// The mean over the rows between two angles.
-std::string ring_text(const nlohmann::ordered_json& rows, double from, double to) {
+/// The mean over the rings between two angles.
+std::string ring_text(const std::vector<ImpliedDensity::Ring>& fine, double from, double to) {
     double sum = 0, square = 0, whole = 0;
-    for (const auto& row : rows) {
-        const double low = row[0].get<double>(), high = row[1].get<double>();
-        if (low < from || high > to) continue;
-        const double angle = math::cos(low * pi / 180) - math::cos(high * pi / 180);
-        sum += row[2].get<double>() * angle, square += sqr(row[3].get<double>() * angle);
+    for (const ImpliedDensity::Ring& r : fine) {
+        if (r.from < from || r.to > to) continue;
+        const double angle = math::cos(r.from * pi / 180) - math::cos(r.to * pi / 180);
+        sum += r.pdf * angle, square += sqr(r.error * angle);
         whole += angle;
     }
-    if (to > 90) whole = 1;  // rows end at the last ring with draws
+    if (to > 90) whole = 1;  // the list ends at the last ring with draws
     return whole > 0 ? with_error(sum / whole, std::sqrt(square) / whole) : "-";
 }
 
-std::string line_of(const Verdict& v, const std::string& name) {
-    const nlohmann::ordered_json &rows = v.evidence["implied_rings"]["rows"], &peak = v.evidence["implied_peak"];
+std::string line_of(const ImpliedDensity& d, const std::string& name) {
     std::string out = fmt::format("{:<20}", name);
-    for (std::size_t k = 0; k < rings; ++k) out += fmt::format(" {:<15}", ring_text(rows, edges[k], edges[k + 1]));
-    return out + " " + with_error(peak["pdf"].get<double>(), peak["standard_error"].get<double>()) + "\n";
+    for (std::size_t k = 0; k < rings; ++k) out += fmt::format(" {:<15}", ring_text(d.rings, edges[k], edges[k + 1]));
+    return out + " " + with_error(d.peak, d.peak_error) + "\n";
 }
 
 }  // namespace
@@ -311,7 +309,7 @@ std::string implied_text(const CheckResult& j) {
     std::vector<const Verdict*> all;
     bool one_arm = true;
     for (const Verdict& v : j.verdicts)
-        if (v.evidence.contains("implied_rings")) {
+        if (v.implied) {
             all.push_back(&v);
             one_arm = one_arm && v.arm == all[0]->arm;
         }
@@ -321,7 +319,7 @@ std::string implied_text(const CheckResult& j) {
         out += fmt::format(" {:<15}", fmt::format("{:g} to {:g}", edges[k], edges[k + 1]));
     out += " highest\n";
     for (std::size_t i = 0; i < std::min(all.size(), most_lines); ++i)
-        out += line_of(*all[i], one_arm ? all[i]->check_case : all[i]->arm + " " + all[i]->check_case);
+        out += line_of(*all[i]->implied, one_arm ? all[i]->check_case : all[i]->arm + " " + all[i]->check_case);
     if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
     return "The density that the draws imply, since there is no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +

@@ -31,7 +31,6 @@ inline double bennett_z2(double d, double v, double b, double nu) {
 /// Two-sided.
 inline double bennett_p(double z2) { return std::min(1.0, 2 * math::exp(-z2 / 2)); }
 
-inline constexpr double power_quantile = 1.2816;  // P(Z < 1.2816) = stated_power
 /// The difference that Bennett's test detects with the stated power.
 inline double needed_by_bennett(double floor, double v, double b, double nu, double level) {
     const double z2 = -2 * math::log(level / 2);
