@@ -64,14 +64,17 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
               << (peak > 0 ? " of the peak |" : "") << "\n|---|--:|--:|--:|--:|" << (peak > 0 ? "--:|" : "")
               << std::endl;
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
-        const std::string name(A<float>::name);
-        const double operations = share * static_cast<double>(bench::operations_per_sample<A, PhongLobe<Counted>>()) +
-            (1 - share) * static_cast<double>(bench::operations_per_sample<A, NoLobe<Counted>>());
-        const Figures f = measure_arm(scene, *gl, name, n, static_cast<double>(pixels * n));
-        std::cout << fmt::format(
-            "| {} | {:.1f} | {:.1f} | {:.2f} | {:.0f} |", name, f.cpu, f.gl, f.cpu / f.gl, operations);
-        if (peak > 0) std::cout << fmt::format(" {:.1f} % |", 100 * f.gl * 1e-3 * operations / peak);
-        std::cout << std::endl;
+        if constexpr (A<float>::manual.gl.relative > 0) {
+            const std::string name(A<float>::name);
+            const double operations =
+                share * static_cast<double>(bench::operations_per_sample<A, PhongLobe<Counted>>()) +
+                (1 - share) * static_cast<double>(bench::operations_per_sample<A, NoLobe<Counted>>());
+            const Figures f = measure_arm(scene, *gl, name, n, static_cast<double>(pixels * n));
+            std::cout << fmt::format(
+                "| {} | {:.1f} | {:.1f} | {:.2f} | {:.0f} |", name, f.cpu, f.gl, f.cpu / f.gl, operations);
+            if (peak > 0) std::cout << fmt::format(" {:.1f} % |", 100 * f.gl * 1e-3 * operations / peak);
+            std::cout << std::endl;
+        }
     });
 }
 
