@@ -490,7 +490,7 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     for (std::size_t i = 0; i < sample.w.size(); ++i) places.push_back(place_of(e, sample.w[i], sample.p[i]));
     std::array<std::vector<std::vector<double>>, axes> ratios;
     std::array<double, axes> changed{};
-    for (double by : {1.0, growth, growth * growth}) {
+    for (double by : {1.0, growth, growth * growth, growth * growth * growth}) {
         const auto shown = [](const std::vector<std::vector<double>>& of_axis) {
             return std::ranges::any_of(of_axis,
                 [](const std::vector<double>& r) { return std::ranges::any_of(r, [](double x) { return x >= 1; }); });

@@ -33,6 +33,7 @@ struct Candidate {
     std::function<Cause(const Hypothesis&)> make_cause{};
     double in_part = 2;  // also named if it explains this share of the divergence; above 1: only if it passes
     int preference = 0;  // of two equivalent candidates the one with the larger value is named
+    bool clear = true;   // whether its number is known well enough to name it, and not only to doubt another cause
 };
 
 std::optional<Candidate> constant_candidate(std::span<const Place> places) {
@@ -125,6 +126,12 @@ Candidate candidate_of_power(FactorHypothesis f) {
     return out;
 }
 
+Candidate candidate_of(const Leak& leak) {
+    Candidate out{leak.hypothesis, {}, enough_for_fit, -1, leak.is_clear()};
+    out.make_cause = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
+    return out;
+}
+
 Candidate candidate_of(const Hypothesis& frame) {
     Candidate out{frame, {}, enough_for_frame, -frame.place};
     out.make_cause = [name = frame.name](const Hypothesis& h) {
@@ -172,19 +179,21 @@ void sort_by_gain(Candidates& all) {
     std::ranges::sort(all, std::greater<>(), [](const Candidate& c) { return c.hypothesis.gain; });
 }
 
-/// Causes without a fitted number except a constant.
-Candidates plain_candidates(std::span<const Place> places) {
+/// Causes without a fitted number except a constant, or a share of uniform draws, which may look like one.
+Candidates plain_candidates(std::span<const Place> places, std::span<const Leak> leaks) {
     Candidates out;
     add_if(out, constant_candidate(places));
     for (FactorHypothesis& f : factor_hypotheses(places))
         if (std::fabs(f.fitted) > clear_errors * f.error) out.push_back(candidate_of(std::move(f), places));
     for (const Hypothesis& h : frame_hypotheses(places)) out.push_back(candidate_of(h));
+    for (const Leak& leak : leaks)
+        if (leak.is_clear()) out.push_back(candidate_of(leak));
     sort_by_gain(out);
     return out;
 }
 
 /// Causes with a fitted angle, exponent or share.
-Candidates fitted_candidates(std::span<const Place> places) {
+Candidates fitted_candidates(std::span<const Place> places, std::span<const Leak> leaks) {
     Candidates out;
     if (places[0].traits.wo == Traits::WoDomain::none)
         if (const auto turn = azimuth_hypothesis(places); turn && turn->is_clear())
@@ -193,11 +202,7 @@ Candidates fitted_candidates(std::span<const Place> places) {
         out.push_back(candidate_of(*turn, places, false));
     if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_errors * power->error)
         out.push_back(candidate_of_power(std::move(*power)));
-    for (const Leak& leak : leak_hypotheses(places)) {
-        Candidate c{leak.hypothesis, {}, enough_for_fit};
-        c.make_cause = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
-        out.push_back(std::move(c));
-    }
+    for (const Leak& leak : leaks) out.push_back(candidate_of(leak));
     sort_by_gain(out);
     return out;
 }
@@ -226,6 +231,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
         found = &c;
     }
     if (!found) return {};
+    if (!found->clear) return several = true, std::nullopt;
     found->hypothesis.explained = 1;
     return found->make_cause(found->hypothesis);
 }
@@ -234,7 +240,7 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
 std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     Candidate* best = nullptr;
     for (Candidate& c : all) {
-        if (c.in_part > 1) continue;
+        if (c.in_part > 1 || !c.clear) continue;
         score(c.hypothesis, places);
         if (c.hypothesis.gain > clear_errors * c.hypothesis.error && c.hypothesis.explained > c.in_part &&
             (!best || c.hypothesis.gain > best->hypothesis.gain))
@@ -252,8 +258,7 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
 std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     std::vector<KnownRatio> out;
     for (const Place& place : places)
-        for (const MapDensity& m : place.map)
-            out.push_back({place.check_case->wo, m.draw.wi, m.drawn / m.p, m.error});
+        for (const MapDensity& m : place.map) out.push_back({place.check_case->wo, m.draw.wi, m.drawn / m.p, m.error});
     return out;
 }
 
@@ -279,11 +284,12 @@ std::optional<Cause> cause_from_map(std::span<const KnownRatio> ratios, std::spa
 
 std::optional<Cause> explained_by(std::span<const Place> places) {
     if (std::optional<Cause> c = cause_from_map(map_ratios(places), places)) return c;
-    Candidates plain = plain_candidates(places);
+    const std::vector<Leak> leaks = leak_hypotheses(places);
+    Candidates plain = plain_candidates(places, leaks);
     bool several = false;
     if (std::optional<Cause> c = passing(plain, places, several); c || several) return c;
     if (std::optional<Cause> c = lobe_cause(places)) return c;
-    Candidates fitted = fitted_candidates(places);
+    Candidates fitted = fitted_candidates(places, leaks);
     if (std::optional<Cause> c = passing(fitted, places, several); c || several) return c;
     plain.insert(plain.end(), std::make_move_iterator(fitted.begin()), std::make_move_iterator(fitted.end()));
     return in_part(plain, places);

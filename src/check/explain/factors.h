@@ -117,6 +117,7 @@ struct Leak {
     Hypothesis hypothesis;
     double share = 0, error = 0;
     bool whole = true;  // sphere
+    bool is_clear() const;
 };
 std::vector<Leak> leak_hypotheses(std::span<const Place> places);
 std::string leak_sentence(const Leak& leak);

@@ -25,6 +25,7 @@ constexpr double least_draws = 400;   // so that the 5 % error of a cell biases 
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
 constexpr double fits_at = 1e-3;      // p-value of the remaining misfit
 constexpr double known_share = 0.02;  // of x, relative
+constexpr double left_out = 0.1;      // least x of a lobe that p has: others may have some density where it draws
 
 bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
 
@@ -212,6 +213,8 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
 bool explains(const Shares& s) {
     const double degrees = s.cells - static_cast<double>(s.x.size());
     if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
+    for (std::size_t k = 0; k < s.x.size(); ++k)
+        if (s.x[k] < -3 * s.errors[k]) return false;  // no share is negative
     // The rest is within chance, or a fiftieth of the original misfit.
     return statistics::chi_squared_tail(degrees, s.misfit) > fits_at ||
         s.misfit - degrees < 0.02 * (s.before - degrees);
@@ -226,20 +229,20 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);
     }
     for (std::size_t k : off)
-        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share))
+        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], left_out))
             return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}.",
                 by.number + 1, by.lobes[k].from, by.lobes[k].to);
     if (off.size() == 1) {
         const LobeInterval& lobe = by.lobes[off[0]];
         const double x = s.x[off[0]];
-        const bool left_out =
+        const bool no_chooser =
             std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
             "it draws in p, the others are right: {}.",
             by.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]],
-            left_out ? "the chooser's probability of that one lobe is left out"
-                     : "the chooser's probability of that one lobe, or a constant of its own, is off");
+            no_chooser ? "the chooser's probability of that one lobe is left out"
+                       : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
     return fmt::format(
         "The lobes that u{} chooses are drawn with {}; p has them with {}: the chooser's probability "

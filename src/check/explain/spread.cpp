@@ -11,7 +11,7 @@ namespace crescent::check {
 
 namespace {
 
-constexpr int em_steps = 60;
+constexpr int halvings = 24;
 constexpr double least_share = 1e-4;
 constexpr double least_errors = 8;        // least ratio of a share to its standard error
 constexpr double expected_at_least = 10;  // expected draws of an empty leaf that counts as unreached: e^-10
@@ -53,32 +53,40 @@ void refine_by_slope(std::span<const Place> places, double even, double& share, 
     share = sum / weights, error = 1 / std::sqrt(weights);
 }
 
-/// The share of a uniform density in a mixture with the q of the leaves, by expectation-maximisation. If draws where p
-/// is 0 count as no sample, the uniform part is visible only where p is positive, a fraction `seen` of it.
+/// The share of a uniform density in a mixture with the q of the leaves, of largest likelihood. The likelihood is that
+/// of Poisson counts, which is concave in the share. If draws where p is 0 count as no sample, the uniform part is
+/// visible only where p is positive.
 Leak fitted_leak(std::span<const Place> places, bool whole) {
     const double even = 1 / (whole ? 2 * two_pi : two_pi);
     Leak out;
     out.whole = whole;
     const bool at_zero = places[0].draws_at_zero();
-    double share = 0.01, information = 0;
-    for (int step = 0; step < em_steps; ++step) {
-        double sum = 0, seen = 0;
-        information = 0;
+    struct Derivatives {
+        double first = 0, second = 0;
+    };
+    const auto at = [&](double share) {
+        Derivatives d;
         for (const Place& place : places) {
             const Tree& tree = place.at->plan->tree;
-            seen += place.at->observations.independent * (at_zero ? 1 : even * support_of(place, whole));
+            d.first -= place.at->observations.independent * (at_zero ? 0 : even * support_of(place, whole) - 1);
             for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
                 const double count = place.at->observations.counts[l];
                 if (!(count > 0)) continue;
                 const double u = in_domain(tree.rect(tree.leaves()[l]), whole) ? even : 0;
                 const double p = tree.leaves()[l].met ? tree.leaves()[l].q : 0;
-                const double all = (1 - share) * p + share * u + 1e-300;
-                sum += count * share * u / all;
-                information += count * (u - p) * (u - p) / (all * all);
+                const double change = (u - p) / ((1 - share) * p + share * u + 1e-300);
+                d.first += count * change, d.second -= count * change * change;
             }
         }
-        share = seen > 0 ? std::min(sum / seen, 1.0) : 0;
+        return d;
+    };
+    double low = 0, high = 1;
+    for (int step = 0; step < halvings; ++step) {
+        const double middle = (low + high) / 2;
+        (at(middle).first > 0 ? low : high) = middle;
     }
+    double share = low;
+    const double information = -at(share).second;
     out.error = information > 0 ? 1 / std::sqrt(information) : 1;
     refine_by_slope(places, even, share, out.error);
     out.share = share;
@@ -126,11 +134,13 @@ Reach reach_at(const CheckAt& c) {
 
 }  // namespace
 
+bool Leak::is_clear() const { return share > least_errors * error; }
+
 std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     std::vector<Leak> out;
     for (bool whole : {true, false}) {
         Leak leak = fitted_leak(places, whole);
-        if (leak.share < std::max(least_share, least_errors * leak.error) || leak.share > 0.9) continue;
+        if (leak.share < least_share || leak.share > 0.9) continue;
         bool mass_agrees = true;
         for (const Place& place : places) {
             leak.hypothesis.masses.push_back(1 - leak.share +
