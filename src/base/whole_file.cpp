@@ -1,5 +1,5 @@
 // The file without a name is one of O_TMPFILE, which linkat() gives a name.
-#include "base/whole_file.h"
+#include "base/files.h"
 
 #include <cerrno>
 #include <cstdlib>

@@ -4,7 +4,6 @@
 // The level is split: half for the regions (Holm), a quarter each for tiles and pixels (false discovery rate); within
 // each, half for Y and a sixth for each channel (Bonferroni). If some values are not finite, half of the whole level is
 // for them.
-#include "compare/bias.h"
 #include "compare/noise.h"
 
 #include <algorithm>
@@ -14,11 +13,20 @@
 
 #include "base/parallel.h"
 #include "compare/compare.h"
-#include "compare/metrics.h"
+#include "compare/renders.h"
 #include "compare/outputs.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {
+
+// Tests of each pixel, defined below.
+
+/// Sets the pixel results of `out` and returns p of "no pixel differs"; `sides` are of the same renders, one entry per
+/// quantity. Sets nothing and returns NaN if the reference is one file that does not state its error at each pixel.
+double test_pixels(std::span<const BiasPair> sides, const BiasLevel& level, BiasResult& out);
+
+/// Returns the level that test_pixels() passes to BiasPair::missable_difference().
+double pixel_level(const BiasPair& sides, double alpha);
 
 namespace {
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <numeric>
 
-#include "math/hypotheses.h"
 #include "math/statistics.h"
 
 namespace crescent::inline comparison {

@@ -1,6 +1,5 @@
 // Single renders are not stored. The tests receive values with the mean and the variance of the renders instead: tests
 // of means depend on nothing else. Which renders share random numbers is unknown.
-#include "compare/moments.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -17,9 +16,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
-#include "compare/metrics.h"
+#include "compare/renders.h"
 #include "compare/results.h"
-#include "math/hypotheses.h"
+#include "math/statistics.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {

@@ -8,10 +8,9 @@
 
 #include "base/text.h"
 #include "compare/compare.h"
-#include "compare/metrics.h"
+#include "compare/renders.h"
 #include "compare/plan.h"
 #include "output/format.h"
-#include "output/junit.h"
 
 namespace crescent::inline comparison {
 

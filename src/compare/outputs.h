@@ -76,7 +76,7 @@ struct BiasPair {
     bool referred = false, dependent = false;
     bool count_pixel_p = true;   // see ComparePlan
     double low_frequencies = 1;  // power of the noise at low frequencies over that at high ones
-    std::size_t quantity = 0;    // see metrics.h
+    std::size_t quantity = 0;    // see renders.h
     const std::vector<RenderPair>* pairs = nullptr;
     const ArmStats* differences = nullptr;            // of the pairs; null: the renders are independent
     std::vector<double> tile_a, tile_b, tile_paired;  // variance of a pixel of one render, mean over a tile

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "compare/compare.h"
-#include "compare/metrics.h"
+#include "compare/renders.h"
 #include "compare/outputs.h"
 #include "compare/plan.h"
 #include "output/charts.h"

@@ -11,10 +11,8 @@
 
 #include "base/parallel.h"
 #include "compare/file_warnings.h"
-#include "compare/metrics.h"
-#include "compare/moments.h"
+#include "compare/renders.h"
 #include "compare/noise.h"
-#include "math/hypotheses.h"
 #include "math/statistics.h"
 
 namespace crescent::inline comparison {

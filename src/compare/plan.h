@@ -21,7 +21,7 @@ struct RenderArm {
     std::string name;
     SourceLocation at;
     std::vector<std::string> files;
-    bool moments = false;           // one file with the moments of the renders, see moments.h
+    bool moments = false;           // one file with the moments of the renders, see renders.h
     std::string layer;              // part or layer to read; "": the beauty
     std::optional<double> spp;      // samples per pixel of one render
     std::optional<double> seconds;  // the render time of one render

@@ -7,14 +7,14 @@
 #include <fmt/format.h>
 
 #include "compare/compare.h"
-#include "compare/metrics.h"
+#include "compare/renders.h"
 #include "compare/plan.h"
 #include "math/functions.h"
 #include "math/statistics.h"
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 #include "output/tone_map.h"
 #include "output/format.h"
-#include "report/plates/ladder_chart.h"
+#include "report/plates/charts.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {

@@ -3,17 +3,21 @@
 // of renders: 16 bytes per pixel and arm for grey renders, 64 for renders in colour, and one render.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/progress.h"
+#include "compare/exr_file.h"
 #include "compare/open_file.h"
 #include "compare/plan.h"
-#include "compare/exr_file.h"
 #include "metrics/metrics.h"
 
 namespace crescent::inline comparison {
@@ -22,6 +26,7 @@ namespace crescent::inline comparison {
 // bottom-up, pixel (i, j) is at j * width + i, as in a Film. Units are those of the renderer; Y is the luminance for
 // the file's primaries, Rec.709 if it has none.
 
+/// A render and what its file states about it.
 struct Render {
     std::string file;
     std::string layer;  // the part and layer that was read; "" if the file has only one
@@ -74,7 +79,7 @@ struct MeanPlane {
     std::vector<double> mean, m2;  // m2: sum of the squared deviations from the mean
 };
 
-/// Means of the quantities of metrics.h over K renders. A film of grey renders has only Y.
+/// Means of these quantities over K renders. A film of grey renders has only Y.
 struct MeanFilm {
     std::size_t count = 0;          // K
     std::vector<MeanPlane> planes;  // Y; also R, G, B if a render was not grey
@@ -92,6 +97,7 @@ struct MeanFilm {
     double variance(std::size_t i, std::size_t quantity = 0) const;
 };
 
+/// A file that was read.
 struct RenderFile {
     std::string path, hash;
     std::string layer, variance_channels, sample_channel;
@@ -126,6 +132,7 @@ struct QuantityReadings {
     double rise = 0, fall = 0;  // the largest deviations that are outliers of their pixels, see passes.cpp
 };
 
+/// The statistics of the renders of an arm, or of the reference.
 struct ArmStats {
     std::vector<RenderFile> files;
     MeanFilm film;
@@ -153,9 +160,11 @@ struct Tiles {
     int size = 8, across = 1, down = 1;
     Tiles() = default;
     Tiles(int width, int height);
+    /// Returns the number of tiles.
     std::size_t count() const { return static_cast<std::size_t>(across) * static_cast<std::size_t>(down); }
     /// Returns the pixels of a tile of an image.
     Box box(std::size_t tile, int width, int height) const;
+    /// Returns the tile of pixel (i, j).
     std::size_t of(int i, int j) const {
         return static_cast<std::size_t>(j / size) * static_cast<std::size_t>(across) +
             static_cast<std::size_t>(i / size);
@@ -167,11 +176,14 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, const 
 
 /// The source of renders: files, or a program's memory.
 struct RenderSource {
+    /// Returns the names of the renders that match patterns.
     std::function<std::vector<std::string>(const std::vector<std::string>&, const SourceLocation&)> expand =
         crescent::expand;
+    /// Returns one of them.
     std::function<Render(const std::string& path, const std::string& layer)> read = read_render;
 };
 
+/// The statistics of all renders of a comparison.
 struct RenderStats {
     RenderSource source;  // its renders fit each other, see view.h
     Chromaticities primaries;
@@ -193,5 +205,58 @@ Render in_rec709(const RenderStats& all, const MeanFilm& film);
 
 /// Reads all renders twice. Throws InputError if they do not fit each other.
 RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source = {});
+
+// ---- The quantities that are tested at a pixel: Y, and if some render is in colour also R, G and B. Half of a level
+// is for Y, a sixth for each channel. A difference in hue at equal luminance is found only in the channels.
+
+inline constexpr std::size_t colour_quantities = 4;
+inline constexpr const char* quantity_names[colour_quantities] = {"Y", "R", "G", "B"};
+
+/// Returns a quantity's share of a level if `of` quantities are tested.
+inline double level_share(std::size_t quantity, std::size_t of) {
+    if (of == 1) return 1;
+    return quantity == 0 ? 0.5 : 0.5 / static_cast<double>(of - 1);
+}
+
+/// The p of "no quantity differs" (Bonferroni with those shares), and its quantity; NaN: none was tested.
+struct JointP {
+    double p = std::nan("");
+    std::size_t quantity = 0;
+};
+/// `each`: p of each quantity, NaN if it was not tested.
+inline JointP joint_p(std::span<const double> each) {
+    JointP out;
+    for (std::size_t q = 0; q < each.size(); ++q) {
+        const double p = std::min(1.0, each[q] / level_share(q, each.size()));
+        if (std::isnan(each[q]) || p >= out.p) continue;
+        out = {p, q};
+    }
+    return out;
+}
+
+// ---- A baseline as moments: one OpenEXR file with the mean and the variance of each pixel over the renders of a view.
+// Its header has what the tests read from single renders (means of regions, spreads of tiles, largest deviations). R G
+// B or Y mean radiance, float; so the file is also a picture variance.Y variance of Y of one render, float deviation.R
+// deviation.G .B standard deviation of a channel of one render over "baseline.scale", half failed.N renders in which
+// the pixel is not finite, float; only if there are any 22 bytes per pixel in colour; a float render has 12.
+
+/// Returns whether the file contains moments.
+bool has_moments(const std::string& path);
+
+/// Writes one arm of `all`. `constant`: all renders had the same pixels. Throws OutputError.
+void write_moments(const std::string& path, const RenderStats& all, std::size_t arm, bool constant);
+
+/// The contents of the header, read without the pixels.
+struct MomentsHeader {
+    std::size_t renders = 0;
+    bool constant = false;
+};
+/// Reads the header of a file of moments. Throws InputError.
+MomentsHeader read_moments_header(const std::string& path);
+
+/// Reads the mean and the variance of each pixel, for the first pass; `weights` of R, G and B in Y. Throws InputError.
+void read_moments_film(const std::string& path, const Rgb& weights, RenderStats& all, ArmStats& to);
+/// Reads the results of the second pass; the regions of `all` must be among those of the file. Throws InputError.
+void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& all, ArmStats& to);
 
 }  // namespace crescent::inline comparison

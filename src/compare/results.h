@@ -12,7 +12,7 @@
 #include "compare/file_warnings.h"
 #include "compare/renders.h"
 #include "compare/noise.h"
-#include "math/hypotheses.h"
+#include "math/statistics.h"
 #include "metrics/metrics.h"
 
 namespace crescent::inline comparison {
@@ -64,7 +64,7 @@ struct MeanTest {
     std::string why;                 // why it was not tested; "" if it was
     std::string caveat;              // a cause other than a bias for a small p; "" if there is none
     std::vector<MeanTest> channels;  // R, G, B
-    double joint_p = std::nan("");   // of "no difference in any of them", see metrics.h
+    double joint_p = std::nan("");   // of "no difference in any of them", see renders.h
     /// Returns the names of the quantities that differ, Y first.
     std::vector<std::string> differs_in() const;
 };

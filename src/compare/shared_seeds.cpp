@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/hypotheses.h"
+#include "math/statistics.h"
 
 namespace crescent::inline comparison {
 

@@ -10,7 +10,7 @@
 
 #include "base/vec.h"
 #include "compare/compare.h"
-#include "compare/metrics.h"
+#include "compare/renders.h"
 #include "compare/plan.h"
 #include "math/functions.h"
 #include "math/statistics.h"

@@ -9,9 +9,8 @@
 #include <map>
 
 #include "experiment/parser.h"
-#include "experiment/queries.h"
-#include "experiment/sampler_files.h"
-#include "experiment/scene_files.h"
+#include "experiment/experiment.h"
+#include "experiment/input_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {

@@ -1,10 +1,18 @@
 // A combination and its parts are each made once, also if several combinations share a part.
-#include "experiment/combinations.h"
+#include "experiment/experiment.h"
 
+#include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <set>
 
 #include "base/errors.h"
+#include "base/vec.h"
+#include "experiment/parser.h"
+#include "math/simd/random.h"
 #include "render/combination.h"
+#include "samplers/info.h"
+#include "samplers/weight_formula.h"
 
 namespace crescent::inline experiment {
 
@@ -73,5 +81,210 @@ private:
 void add_combinations(const Experiment& experiment, ExternalSamplers& samplers) {
     Combinations(experiment, samplers).add_all();
 }
+
+// ---- Checks of arms that combine samplers: names that exist, no arm within itself, weights whose sum is one, parts
+// that can be combined.
+
+namespace {
+
+constexpr std::size_t most_samplers = 16;
+constexpr std::uint32_t probes = 64;  // points at which the sum of formulas is tested, for each shape
+
+class Checks {
+public:
+    explicit Checks(ParseContext& context) : context_(context) {}
+
+    void all() {
+        for (const ArmPlan& arm : context_.e.arms) {
+            const std::string path = "arms." + arm.name;
+            if (!context_.is_valid(path + ".kind")) continue;
+            if (!arm.is_combination()) {
+                keys_without_kind(arm, path);
+                continue;
+            }
+            names(arm, path);
+            form(arm, path);
+            const bool good = lists(arm, path);
+            if (good) sums(arm, path);
+        }
+    }
+
+private:
+    void report(const std::string& path, const std::string& message) {
+        context_.report(path, fmt::format("{}: {}", path, message));
+    }
+
+    void keys_without_kind(const ArmPlan& arm, const std::string& path) {
+        const CombinationPlan& c = arm.combination;
+        const std::array given = {std::pair("of", !c.of.empty()), std::pair("heuristic", c.heuristic.has_value()),
+            std::pair("draw", c.draw.has_value()), std::pair("weights", !c.weights.empty()),
+            std::pair("weights_python", c.weights_python.has_value()),
+            std::pair("probabilities", !c.probabilities.empty()), std::pair("samples", !c.samples.empty()),
+            std::pair("candidates", c.candidates.has_value()), std::pair("target", c.target.has_value())};
+        for (const auto& [key, has] : given)
+            if (has)
+                return report(fmt::format("{}.{}", path, key),
+                    fmt::format("expected a kind beside it in [{}]: one of mis, mixture, ris", path));
+    }
+
+    /// Arms, and built-in samplers.
+    std::vector<std::string> valid_names(const ArmPlan& arm) const {
+        std::vector<std::string> out;
+        for (const ArmPlan& other : context_.e.arms)
+            if (other.name != arm.name) out.push_back(other.name);
+        for (const std::string& name : sampler_names())
+            if (name != arm.name && std::ranges::find(out, name) == out.end()) out.push_back(name);
+        return out;
+    }
+
+    /// Returns why this name cannot be a part; "" if it can.
+    std::string why_no_part(const ArmPlan& arm, const std::string& name) const {
+        if (name == arm.name) return "expected other samplers, found the arm itself";
+        const ArmPlan* other = context_.e.find_arm(name);
+        if (other && other->is_combination()) {
+            if (contains(*other, arm.name)) return fmt::format("the arm '{}' combines '{}' itself", name, arm.name);
+            if (!has_density(*other))
+                return fmt::format("the arm '{}' has no density of a direction: expected a sampler or a mixture", name);
+            return "";
+        }
+        if (other && other->is_external()) return "";
+        const SamplerInfo* info = find_arm_info(other ? other->sampler : name);
+        if (!info) {
+            if (other) return "";  // reported at that arm
+            const std::vector<std::string> valid = valid_names(arm);
+            return fmt::format("no arm or sampler '{}': expected one of {}{}", name.substr(0, 64), listed(valid, ", "),
+                hint(name, valid));
+        }
+        if (info->needs_s && !(context_.e.s() > 0))
+            return fmt::format("'{}' needs an exponent: expected a key 's' in one of the shapes", name);
+        if (info->techniques > 1)
+            return fmt::format("'{}' is two samplers with weights: expected its parts, mixture and light-area", name);
+        return "";
+    }
+
+    static bool has_density(const ArmPlan& arm) {
+        const CombinationPlan& c = arm.combination;
+        return c.kind == CombinationKind::mixture ||
+            (c.kind == CombinationKind::mis && c.draw == MisDraw::one && c.weights.empty() && !c.weights_python &&
+                c.heuristic.value_or(MisHeuristic::balance) == MisHeuristic::balance);
+    }
+
+    bool contains(const ArmPlan& arm, const std::string& name) const {
+        std::set<std::string> seen;
+        std::vector<const ArmPlan*> left = {&arm};
+        while (!left.empty()) {
+            const ArmPlan* next = left.back();
+            left.pop_back();
+            if (!seen.insert(next->name).second) continue;
+            for (const std::string& part : next->combination.of) {
+                if (part == name) return true;
+                if (const ArmPlan* other = context_.e.find_arm(part); other && other->is_combination())
+                    left.push_back(other);
+            }
+        }
+        return false;
+    }
+
+    void names(const ArmPlan& arm, const std::string& path) {
+        const CombinationPlan& c = arm.combination;
+        if (!context_.is_valid(path + ".of")) return;
+        const std::size_t least = c.kind == CombinationKind::ris ? 1 : 2;
+        if (!c.of.empty() && (c.of.size() < least || c.of.size() > most_samplers))
+            report(
+                path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_samplers, c.of.size()));
+        for (std::size_t i = 0; i < c.of.size(); ++i)
+            if (const std::string why = why_no_part(arm, c.of[i]); !why.empty()) {
+                const std::string at = fmt::format("{}.of.{}", path, i);
+                context_.report(context_.e.places.contains(at) ? at : path + ".of", fmt::format("{}: {}", at, why));
+            }
+        if (!c.target || *c.target == target_product || *c.target == target_brdf) return;
+        if (std::string why = why_no_part(arm, *c.target); !why.empty()) {
+            if (why.starts_with("no arm")) {
+                std::vector<std::string> valid = valid_names(arm);
+                valid.insert(valid.begin(), {target_product, target_brdf});
+                why = fmt::format("no target '{}': expected one of {}{}", c.target->substr(0, 64), listed(valid, ", "),
+                    hint(*c.target, valid));
+            }
+            report(path + ".target", why);
+        }
+    }
+
+    /// Keys that exclude each other.
+    void form(const ArmPlan& arm, const std::string& path) {
+        const CombinationPlan& c = arm.combination;
+        if (c.heuristic && !c.weights.empty()) report(path + ".weights", "expected weights or a heuristic, found both");
+        if (c.weights_python && (c.heuristic || !c.weights.empty()))
+            report(path + ".weights_python", "expected it without weights and heuristic beside it");
+        if (c.kind == CombinationKind::mis && c.draw != MisDraw::one && !c.probabilities.empty())
+            report(path + ".probabilities", "expected draw = \"one\" beside it: otherwise every sampler is drawn from");
+        if (c.draw == MisDraw::one && !c.samples.empty())
+            report(path + ".samples", "expected draw = \"every\": with \"one\", a sample is one direction");
+        if (c.kind == CombinationKind::ris && c.candidates && !c.of.empty() && *c.candidates < c.of.size())
+            report(path + ".candidates",
+                fmt::format("expected at least {}, one of each in 'of', found {}", c.of.size(), *c.candidates));
+    }
+
+    /// Returns whether the weights can be evaluated.
+    bool lists(const ArmPlan& arm, const std::string& path) {
+        const CombinationPlan& c = arm.combination;
+        bool good = !c.of.empty() && context_.is_valid(path + ".of");
+        const auto list = [&](const std::string& key, const std::vector<std::string>& texts, bool of_direction) {
+            if (texts.empty() || !context_.is_valid(path + "." + key)) return;
+            try {
+                (void)WeightList(texts, c.of.size(), of_direction, {});
+            } catch (const InputError& error) {
+                report(path + "." + key, error.diagnostics().front().message);
+                good = false;
+            }
+        };
+        if (!good) return false;
+        list("weights", c.weights, c.kind == CombinationKind::mis);
+        list("probabilities", c.probabilities, false);
+        if (!c.samples.empty() && c.samples.size() != 1 && c.samples.size() != c.of.size())
+            report(path + ".samples",
+                fmt::format(
+                    "expected one integer, or {}, one for each of 'of', found {}", c.of.size(), c.samples.size()));
+        return good;
+    }
+
+    /// Evaluates the weights on the materials of the scene, at random directions and densities.
+    void sums(const ArmPlan& arm, const std::string& path) {
+        const CombinationPlan& c = arm.combination;
+        const auto test = [&](const std::string& key, const std::vector<std::string>& texts, bool of_direction) {
+            if (texts.empty()) return;
+            const WeightList weights(texts, c.of.size(), of_direction, {});
+            std::vector<double> out(c.of.size()), p(c.of.size());
+            const Experiment& e = context_.e;
+            for (std::size_t surface = 0; surface < e.surface_count(); ++surface)
+                for (std::uint32_t k = 0; k < probes; ++k) {
+                    const FormulaInputs in = probe(e.material(surface), k, p);
+                    try {
+                        weights.evaluate(in, out);
+                    } catch (const InputError& error) {
+                        return report(path + "." + key,
+                            fmt::format("{} (on the surface '{}')", error.diagnostics().front().message,
+                                e.surface_name(surface)));
+                    }
+                }
+        };
+        test("weights", c.weights, c.kind == CombinationKind::mis);
+        test("probabilities", c.probabilities, false);
+    }
+
+    static FormulaInputs probe(const Material& material, std::uint32_t k, std::vector<double>& p) {
+        const Surface m = surface_of(material, material.s.value_or(1));
+        const auto unit = [&](std::uint32_t i) { return static_cast<double>(simd::draw(1, k, 0, i).x); };
+        for (std::size_t i = 0; i < p.size(); ++i) p[i] = 10 * unit(static_cast<std::uint32_t>(i) + 2);
+        FormulaInputs in;
+        in.s = m.s, in.alpha = m.alpha, in.rho_d = luminance(m.rho_d), in.rho_s = m.rho_s;
+        in.cos_o = unit(0), in.cos_i = unit(1), in.p = p;
+        return in;
+    }
+    ParseContext& context_;
+};
+
+}  // namespace
+
+void check_combinations(ParseContext& context) { Checks(context).all(); }
 
 }  // namespace crescent::inline experiment

@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
-#include "experiment/scene_files.h"
+#include "experiment/input_files.h"
 #include "render/image_file.h"
 
 namespace crescent::inline experiment {

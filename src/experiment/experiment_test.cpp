@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/experiment.h"
-#include "experiment/queries.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {

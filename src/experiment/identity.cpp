@@ -6,8 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "experiment/sampler_files.h"
-#include "experiment/scene_files.h"
+#include "experiment/input_files.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <fmt/format.h>
 
-#include "experiment/override_text.h"
+#include "experiment/experiment.h"
 #include "experiment/parser.h"
 
 namespace crescent::inline experiment {

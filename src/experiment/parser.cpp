@@ -10,11 +10,8 @@
 #include <map>
 #include <tuple>
 
-#include "experiment/combination_checks.h"
 #include "experiment/experiment.h"
-#include "experiment/queries.h"
-#include "experiment/sampler_files.h"
-#include "experiment/scene_files.h"
+#include "experiment/input_files.h"
 #include "samplers/info.h"
 
 namespace crescent::inline experiment {

@@ -61,4 +61,9 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
 /// Parses every assertion and checks that all it names will be measured.
 void resolve_assertions(ParseContext& context);
 
+// ---- Checks of arms that combine samplers.
+
+/// Reports every mistake in an arm with a kind: after names and shapes were read.
+void check_combinations(ParseContext& context);
+
 }  // namespace crescent::inline experiment

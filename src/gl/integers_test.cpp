@@ -1,6 +1,6 @@
 // src/gl/shaders/integers.glsl against draws() of src/math/simd/random.h, bit by bit, on 20 blocks of 512 x 512 pixels;
 // and that a flipped bit and another seed are counted.
-#include "integers.h"
+#include "backend.h"
 
 #include <gtest/gtest.h>
 

@@ -24,6 +24,10 @@
 // rounded are kept in two doubles (two.h).
 #pragma once
 
+#include <cmath>
+
+#include "base/vec.h"
+
 namespace crescent::math {
 
 /// e^x and 2^x; infinity above the largest double, 0 below the smallest.
@@ -69,5 +73,18 @@ double atan2(double y, double x);
 /// The length of a vector, without intermediate overflow.
 double hypot(double x, double y);
 double hypot(double x, double y, double z);
+
+// ---- Unit vectors by their angles about z: theta from z, phi from x towards y, in radians.
+
+/// The vector of sin theta, cos theta and phi.
+inline Vec3d spherical(double sin, double cos, double phi) {
+    const SinCos around = sincos(phi);
+    return {sin * around.cos, sin * around.sin, cos};
+}
+/// The vector of cos theta, in [-1, 1] up to rounding, and phi.
+inline Vec3d spherical(double cos, double phi) {
+    const double squared = 1 - cos * cos;
+    return spherical(std::sqrt(squared > 0 ? squared : 0), cos, phi);
+}
 
 }  // namespace crescent::math

@@ -8,11 +8,11 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "experiment/queries.h"
+#include "experiment/experiment.h"
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 #include "metrics/furnace.h"
 #include "render/estimator.h"
 #include "samplers/all.h"

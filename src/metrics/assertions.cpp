@@ -1,6 +1,5 @@
 // Both sides of an assertion are looked up in the measurements. What was not measured is NaN, and no comparison with
 // NaN holds. An RMSE dominated by the reference's own error cannot prove an assertion.
-#include "metrics/assertions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +7,6 @@
 
 #include "base/errors.h"
 #include "math/statistics.h"
-#include "metrics/compute.h"
 #include "metrics/metrics.h"
 
 namespace crescent::inline metrics {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "metrics/assertions.h"
+#include "metrics/metrics.h"
 
 namespace crescent::inline metrics {
 namespace {

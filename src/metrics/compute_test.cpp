@@ -6,7 +6,7 @@
 
 #include "math/simd/random.h"
 #include "math/statistics.h"
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 #include "render/estimator.h"
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"

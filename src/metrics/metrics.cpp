@@ -2,8 +2,14 @@
 #include "metrics/metrics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <map>
 #include <unordered_set>
+
+#include "base/errors.h"
+#include "math/functions.h"
+#include "math/statistics.h"
 
 namespace crescent::inline metrics {
 
@@ -43,6 +49,327 @@ RunIndex::RunIndex(const std::vector<RunMetrics>& runs) {
 const RunMetrics* RunIndex::find(const RunKey& key) const {
     const auto at = runs_.find(key);
     return at == runs_.end() ? nullptr : at->second;
+}
+
+// ---- A metric reads pixels one by one and then returns a value; the two lists of metrics are expanded to readers
+// here. Sums in double. Bands are quantiles over seeds, 5, 50 and 95 %; slopes are least squares of log RMSE on log N.
+
+namespace {
+
+std::size_t index_of(int i, int j, int width) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+}
+
+/// Returns the mean of f(pixel) over a box, row by row.
+template <class Call> double box_mean(int width, const Box& box, Call&& f) {
+    double sum = 0;
+    for (int j = box.y0; j <= box.y1; ++j)
+        for (int i = box.x0; i <= box.x1; ++i) sum += f(index_of(i, j, width));
+    return sum / (static_cast<double>(box.width()) * box.height());
+}
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+namespace {
+
+#define CRESCENT_READER(name, Type) Type name;
+struct RegionReaders {
+    CRESCENT_REGION_METRICS(CRESCENT_READER)
+};
+struct FrameReaders {
+    CRESCENT_FRAME_METRICS(CRESCENT_READER)
+};
+#undef CRESCENT_READER
+
+FilmPixel pixel_at(
+    const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, bool paired, std::size_t at) {
+    return {static_cast<double>(film.y[at]), static_cast<double>(reference.y[at]), static_cast<double>(film.var[at]),
+        static_cast<double>(film.largest[at]), static_cast<double>(film.horizon[at]), shapes.shape[at] >= 0,
+        paired ? static_cast<double>(reference.error[at]) : 0};
+}
+
+/// The squared error of a region against a paired reference. With d = Y - R and e = (R1 - R2)/2, whose square estimates
+/// the variance of R, the variance of d^2 - e^2 over references is 4 d^2 e^2 in the mean, for errors of R1 and R2 that
+/// are independent and symmetric.
+struct PairedError {
+    double squares = 0, variance = 0, own = 0;
+    void add(const FilmPixel& p) {
+        const double e2 = p.pair_error * p.pair_error;
+        squares += p.squared_error(), variance += 4 * p.difference() * p.difference() * e2, own += e2;
+    }
+    void write(RegionMetrics& m) const {
+        const double pixels = static_cast<double>(m.pixels);
+        m.mse = squares / pixels, m.mse_error = std::sqrt(variance) / pixels,
+        m.reference_error = std::sqrt(own / pixels);
+    }
+};
+
+}  // namespace
+
+RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
+    const ShapeMap& shapes) {
+    RunMetrics run;
+    run.key = key;
+    const bool paired = experiment.reference.kind == ReferenceKind::paired;
+    FilmFacts facts{0, film.n, film.directions, film.evaluations, film.invalid, experiment.firefly_k};
+    for (const Region& region : experiment.regions) {
+        RegionMetrics m;
+        m.region = region.name;
+        m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
+        facts.pixels = static_cast<double>(m.pixels);
+        RegionReaders readers;
+        PairedError error;
+        for (int j = region.box.y0; j <= region.box.y1; ++j)
+            for (int i = region.box.x0; i <= region.box.x1; ++i) {
+                const FilmPixel p = pixel_at(film, reference, shapes, paired, index_of(i, j, film.width));
+                error.add(p);
+#define CRESCENT_ADD(name, Type) readers.name.add(p, facts);
+                CRESCENT_REGION_METRICS(CRESCENT_ADD)
+            }
+#define CRESCENT_VALUE(name, Type) m.name = readers.name.value(facts);
+        CRESCENT_REGION_METRICS(CRESCENT_VALUE)
+#undef CRESCENT_VALUE
+        if (paired) error.write(m);
+        run.regions.push_back(m);
+    }
+    facts.pixels = static_cast<double>(film.size());
+    FrameReaders readers;
+    for (std::size_t at = 0; at < film.size(); ++at) {
+        const FilmPixel p = pixel_at(film, reference, shapes, paired, at);
+        CRESCENT_FRAME_METRICS(CRESCENT_ADD)
+#undef CRESCENT_ADD
+    }
+#define CRESCENT_VALUE(name, Type) run.name = readers.name.value(facts);
+    CRESCENT_FRAME_METRICS(CRESCENT_VALUE)
+#undef CRESCENT_VALUE
+    return run;
+}
+
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box) {
+    return std::sqrt(box_mean(
+        width, box, [&](std::size_t at) { return square(static_cast<double>(a[at]) - static_cast<double>(b[at])); }));
+}
+
+double rms(const std::vector<float>& a, int width, const Box& box) {
+    return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at])); }));
+}
+
+ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, const Region& region,
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
+    ReferenceQuality m;
+    m.s = q.s, m.region = region.name;
+    m.quadrature_error = rms(q.error, q.width, region.box);
+    if (note) {
+        m.rms_difference = rms_difference(q.y, note->y, q.width, region.box);
+        m.rms_standard_error = rms(note->error, q.width, region.box);
+        m.max_relative_rmse_change = 0;
+    }
+    ensure(used != ReferenceKind::paired, "a paired reference is compared with no other");
+    const bool quadrature = used == ReferenceKind::quadrature;
+    ensure(quadrature || note, "the reference that the metrics use was computed");
+    for (const auto& [key, film] : films) {
+        if (key.s != q.s) continue;
+        const double a = rms_difference(film.y, q.y, q.width, region.box);
+        const double b = note ? rms_difference(film.y, note->y, q.width, region.box) : a;
+        if (note && a > 0) m.max_relative_rmse_change = std::max(*m.max_relative_rmse_change, std::fabs(b - a) / a);
+        const double error = quadrature ? *m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
+        if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
+    }
+    return m;
+}
+
+std::vector<ReferenceQuality> paired_quality(
+    const std::vector<ReferenceFilm>& references, const Experiment& experiment, const std::vector<RunMetrics>& runs) {
+    std::vector<ReferenceQuality> out;
+    for (const ReferenceFilm& film : references)
+        for (const Region& region : experiment.regions) {
+            ReferenceQuality& m = out.emplace_back();
+            m.s = film.s, m.region = region.name;
+            m.paired_error = rms(film.error, film.width, region.box);
+            for (const RunMetrics& run : runs)
+                if (const RegionMetrics* at = run.region(region.name); at && run.key.s == film.s)
+                    m.error_share = std::max(m.error_share, share_of_reference(*at));
+        }
+    return out;
+}
+
+double share_of_reference(const RegionMetrics& region) {
+    if (region.mse > 0) return std::sqrt(1.96 * region.mse_error / region.mse);
+    return region.reference_error > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+std::vector<MetricName> metric_names(const Experiment& experiment) {
+    std::vector<MetricName> names;
+#define CRESCENT_NAME(metric, Type) \
+    for (const Region& region : experiment.regions) names.push_back({#metric "." + region.name, &Type::info});
+    CRESCENT_REGION_METRICS(CRESCENT_NAME)
+#undef CRESCENT_NAME
+    const RunMetrics none;
+    for_each_metric(none, [&](std::string_view name, const MetricInfo& info, auto) {
+        if (!info.of_single_samples) names.push_back({std::string(name), &info});
+    });
+    return names;
+}
+
+double metric_value(const RunMetrics& run, const std::string& metric) {
+    const std::size_t dot = metric.find('.');
+    std::optional<double> found;
+    const auto look = [&](std::string_view name, const MetricInfo&, auto value) {
+        if (name == std::string_view(metric).substr(0, dot)) found = static_cast<double>(value);
+    };
+    if (dot == std::string::npos) for_each_metric(run, look);
+    else if (const RegionMetrics* region = run.region(metric.substr(dot + 1))) for_each_metric(*region, look);
+    if (const RegionMetrics* region = metric.starts_with("flip.") ? run.region(metric.substr(5)) : nullptr)
+        found = region->flip;
+    ensure(found.has_value(), "a metric of the list, of a region that was measured");
+    return *found;
+}
+
+namespace {
+
+std::vector<double> over_seeds(const std::vector<RunMetrics>& runs, const RunKey& key, const std::string& metric) {
+    std::vector<double> values;
+    for (const RunMetrics& run : runs)
+        if (run.key.arm == key.arm && run.key.n == key.n && run.key.s == key.s)
+            values.push_back(metric_value(run, metric));
+    return values;
+}
+
+/// RMSE and var depend on the second moment, which has no expectation if the tail of the samples is heavy.
+bool heavy(const RunMetrics& run, const std::string& metric) {
+    const std::size_t dot = metric.find('.');
+    if (dot == std::string::npos) return false;
+    const RegionMetrics* region = run.region(metric.substr(dot + 1));
+    return region && region->tail && region->tail->heavy();
+}
+
+/// Adds FLIP in each region that has it at two seeds at least.
+void add_flips(const std::vector<RunMetrics>& runs, const RunMetrics& run, std::vector<SeedSpread>& out) {
+    for (const RegionMetrics& region : run.regions) {
+        const std::string metric = "flip." + region.region;
+        std::vector<double> values = over_seeds(runs, run.key, metric);
+        std::erase_if(values, [](double v) { return std::isnan(v); });
+        if (values.size() < 2) continue;
+        const Band band{quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
+            static_cast<int>(values.size()), false};
+        out.push_back({run.key, metric, region.flip, band, {}, {}});
+    }
+}
+
+}  // namespace
+
+std::vector<SeedSpread> bands(
+    const Experiment& experiment, const std::vector<RunMetrics>& runs, const Published* published) {
+    std::vector<SeedSpread> out;
+    const bool paired = experiment.reference.kind == ReferenceKind::paired;
+    for (const RunMetrics& run : runs) {
+        if (run.key.seed != experiment.seed) continue;
+        for (const auto& [metric, info] : metric_names(experiment)) {
+            if (run.key.n < 2 && info->from_two_samples) continue;
+            std::vector<double> values = over_seeds(runs, run.key, metric);
+            // An RMSE below the error of a paired reference is the smallest of all; a quantile among such is not known.
+            const bool of_pair = paired && metric.starts_with("rmse");
+            for (double& v : values)
+                if (of_pair && std::isnan(v)) v = -1;
+            const auto quantile = [&](const std::vector<double>& of, double q) {
+                const double value = crescent::quantile(of, q);
+                return of_pair && value < 0 ? not_paired : value;
+            };
+            SeedSpread b;
+            b.key = run.key;
+            b.metric = metric;
+            b.measured = metric_value(run, metric);
+            b.band = {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
+                static_cast<int>(values.size()), heavy(run, metric)};
+            if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, metric);
+            if (b.published) {
+                const auto below =
+                    std::count_if(values.begin(), values.end(), [&](double v) { return v < *b.published; });
+                b.published_rank = static_cast<double>(below) / static_cast<double>(values.size());
+            }
+            out.push_back(std::move(b));
+        }
+        add_flips(runs, run, out);
+    }
+    return out;
+}
+
+namespace {
+
+struct Line {
+    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN if there are none
+};
+
+/// Fits log y against log x by least squares.
+Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y) {
+    const double count = static_cast<double>(n.size());
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t i = 0; i < n.size(); ++i) {
+        const double a = math::log(static_cast<double>(n[i])), b = math::log(y[i]);
+        sx += a, sy += b, sxx += a * a, sxy += a * b;
+    }
+    const double spread = sxx - sx * sx / count;
+    Line line{(sxy - sx * sy / count) / spread, std::nan("")};
+    if (n.size() < 3) return line;
+    double residual = 0;
+    for (std::size_t i = 0; i < n.size(); ++i)
+        residual +=
+            square(math::log(y[i]) - sy / count - line.slope * (math::log(static_cast<double>(n[i])) - sx / count));
+    line.half_width = 1.645 * std::sqrt(residual / (count - 2) / spread);  // normal 90 %
+    return line;
+}
+
+/// The same without the sample counts whose RMSE is below the error of a paired reference.
+Line fit_known(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse, bool paired) {
+    if (!paired) return fit_power(n, rmse);
+    std::vector<std::uint64_t> known_n;
+    std::vector<double> known;
+    for (std::size_t i = 0; i < n.size(); ++i)
+        if (!std::isnan(rmse[i])) known_n.push_back(n[i]), known.push_back(rmse[i]);
+    return known.size() < 2 ? Line{std::nan(""), std::nan("")} : fit_power(known_n, known);
+}
+
+Ladder ladder(
+    const std::vector<RunMetrics>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
+    Ladder out{arm.name, region, s, arm.n, {}, 0, 0, 0, false};
+    std::map<std::uint32_t, std::vector<double>> by_seed;
+    bool paired = false;
+    for (const RunMetrics& run : runs) {
+        if (run.key.arm != arm.name || run.key.s != s ||
+            std::find(arm.n.begin(), arm.n.end(), run.key.n) == arm.n.end())
+            continue;
+        by_seed[run.key.seed].push_back(run.region(region)->rmse);
+        paired = run.region(region)->is_paired();
+        if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
+    }
+    out.rmse = by_seed[seed];
+    const Line own = fit_known(out.n, out.rmse, paired);
+    std::vector<double> slopes;
+    for (const auto& [_, values] : by_seed) slopes.push_back(fit_known(out.n, values, paired).slope);
+    const bool many = slopes.size() > 1;
+    out.slope = own.slope;
+    out.low = many ? quantile(slopes, 0.05) : own.slope - own.half_width;
+    out.high = many ? quantile(slopes, 0.95) : own.slope + own.half_width;
+    return out;
+}
+
+}  // namespace
+
+std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMetrics>& runs) {
+    std::vector<Ladder> out;
+    for (const ArmPlan& arm : experiment.arms) {
+        if (arm.n.size() < 2) continue;
+        // Of a part of a run, some arms have no rows.
+        const auto rows = std::ranges::count_if(runs, [&](const RunMetrics& run) {
+            return run.key.arm == arm.name && run.key.s == experiment.s() && run.key.seed == experiment.seed;
+        });
+        if (rows == 0) continue;
+        for (const Region& region : experiment.regions)
+            out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
+    }
+    return out;
 }
 
 }  // namespace crescent::inline metrics

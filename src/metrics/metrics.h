@@ -7,8 +7,11 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "experiment/assertion.h"
+#include "experiment/experiment.h"
 #include "math/statistics.h"
 #include "render/film.h"
 #include "render/film_metrics/all.h"
@@ -168,5 +171,62 @@ private:
     std::unordered_map<RunKey, const RunMetrics*, Hash> runs_;
     std::vector<std::uint32_t> seeds_;
 };
+
+// ---- Computes metrics of films. Every sum runs in double over pixels in storage order, so equal films give equal
+// numbers.
+
+/// Returns all metrics of one film against the reference, without tails.
+RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
+    const ShapeMap& shapes);
+
+/// Returns the root mean square of the difference of two Y planes over a box, and of one plane.
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
+double rms(const std::vector<float>& a, int width, const Box& box);
+
+/// Compares two references of one exponent in a region, and the effect on the RMSE of any of the films; only the
+/// quadrature's part if the article's reference is missing. `used` is the one that the metrics use.
+ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
+
+/// Returns the quality of a paired reference in every region at every exponent, one film for each.
+std::vector<ReferenceQuality> paired_quality(
+    const std::vector<ReferenceFilm>& references, const Experiment& experiment, const std::vector<RunMetrics>& runs);
+/// Returns the part that the reference's error may have in the RMSE of a region, see ReferenceQuality::error_share.
+double share_of_reference(const RegionMetrics& region);
+
+/// The name of a metric of the list in a band: rmse.<region>, ..., fireflies, ...
+struct MetricName {
+    std::string name;
+    const MetricInfo* info;
+};
+/// Returns those that have a spread over seeds, those of the regions first.
+std::vector<MetricName> metric_names(const Experiment& experiment);
+/// Returns the value of any metric of the list by its name. Throws Bug if there is none.
+double metric_value(const RunMetrics& run, const std::string& metric);
+
+/// Returns the spread over seeds of every metric of every run at the published seed.
+std::vector<SeedSpread> bands(
+    const Experiment& experiment, const std::vector<RunMetrics>& runs, const Published* published);
+
+/// Returns ladders of RMSE for every arm with at least two sample counts, in every region.
+std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMetrics>& runs);
+
+// ---- Looks up the quantities of an assertion in the measurements of a run, and evaluates every assertion of an
+// experiment.
+
+/// Bytes of every plate that was drawn, by its name.
+using PlateBytes = std::map<std::string, std::size_t>;
+
+/// Returns the value of a quantity at `seed`, in the unit of its metric; NaN if it was not measured. A plate that is
+/// not in `plate_bytes` has 0 bytes.
+double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
+    const PlateBytes& plate_bytes);
+
+/// Returns one result for each assertion, in the experiment's order. over = "median" compares the median of each side
+/// over all seeds of the series (for an even count, the mean of the middle two). A NaN on either side, at any of these
+/// seeds, fails. An assertion is skipped if it needs what this run does not have: a seed (all of the series for a
+/// median, else the experiment's own; none if neither side is read from a film), or, with `drawn` = false, a plate.
+std::vector<AssertionResult> evaluate_assertions(
+    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
 }  // namespace crescent::inline metrics

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace crescent::inline output {
@@ -79,5 +81,25 @@ inline std::string csv_field(std::string_view field) {
     for (const char c : field) out += c == '"' ? std::string("\"\"") : std::string(1, c);
     return out + "\"";
 }
+
+// ---- junit.xml for build servers: one suite, of a run, a result or a comparison.
+
+struct JunitCase {
+    enum class State { passed, failed, error, skipped };
+
+    std::string group, name;
+    State state = State::passed;
+    std::string message, text;      // of all except passed cases; text: in full, "" if the message is all
+    std::optional<double> seconds;  // if it varies from run to run and is still requested
+};
+
+struct JunitSuite {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> properties;
+    std::vector<JunitCase> cases;
+};
+
+/// Returns the file. Any text is allowed in it: it is escaped here. Equal suites give equal bytes.
+std::string junit_text(const JunitSuite& suite);
 
 }  // namespace crescent::inline output

@@ -4,7 +4,7 @@
 // kernel_body.h.
 #pragma once
 
-#include "math/simd/lanes.h"
+#include "math/simd/scalar.h"
 #include "render/kernel_lights.h"
 
 namespace crescent::inline render {

@@ -6,10 +6,8 @@
 #include <fmt/format.h>
 #include <string_view>
 
-#include "experiment/override_text.h"
+#include "experiment/experiment.h"
 #include "output/format.h"
-#include "output/junit.h"
-#include "report/provenance_json.h"
 #include "report/report.h"
 
 namespace crescent::inline report {

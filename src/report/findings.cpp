@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 
 namespace crescent::inline report {
 

@@ -6,9 +6,12 @@
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
+#include "experiment/experiment.h"
+#include "math/functions.h"
 #include "output/templates.h"
-#include "report/wording.h"
+#include "samplers/info.h"
 
 namespace crescent::inline report {
 namespace {
@@ -160,6 +163,267 @@ std::string report_html(const ReportInputs& in) {
     model["assertions"] = assertions(page);
     model["provenance"] = provenance(page);
     return render_page(report_templates(), "report.html", model);
+}
+
+// ---- An arm's side follows from the axis that SamplerInfo gives its density; an arm that combines others has none. Of
+// the arms about the normal, the one with most sample counts in common with the mirror's is taken; among equals, the
+// one with the least sum of ln RMSE over the regions, at the headline N if both ran it, else at the largest they share.
+
+namespace {
+
+/// Returns the sum of log RMSE over the regions; infinite if a run or an error is missing.
+double error_of(const Page& page, const ArmPlan& arm, std::uint64_t n) {
+    double sum = 0;
+    for (const Region& region : page.in.experiment.regions) {
+        const auto rmse = page.find.rmse(arm.name, n, region.name);
+        if (!rmse || !(*rmse > 0)) return std::numeric_limits<double>::infinity();
+        sum += math::log(*rmse);
+    }
+    return sum;
+}
+
+bool is_about(const ArmPlan& arm, PdfAxis axis) {
+    const SamplerInfo* info = find_arm_info(arm.sampler);
+    return info && info->about == axis && !info->combines;
+}
+
+std::ptrdiff_t shared_sample_counts(const ArmPlan& a, const ArmPlan& b) {
+    return std::ranges::count_if(a.n, [&](std::uint64_t n) { return std::ranges::find(b.n, n) != b.n.end(); });
+}
+
+std::vector<std::string> names_where(const Experiment& e, const std::function<bool(const ArmPlan&)>& is) {
+    std::vector<std::string> names;
+    for (const ArmPlan& arm : e.arms)
+        if (is(arm)) names.push_back("<b>" + escape(arm.name) + "</b>");
+    return names;
+}
+
+}  // namespace
+
+std::vector<const ArmPlan*> arms_about_normal(const Experiment& experiment) {
+    std::vector<const ArmPlan*> out;
+    for (const ArmPlan& arm : experiment.arms)
+        if (is_about(arm, PdfAxis::normal)) out.push_back(&arm);
+    return out;
+}
+
+const ArmPlan* arm_about_mirror(const Experiment& experiment) {
+    for (const ArmPlan& arm : experiment.arms)
+        if (is_about(arm, PdfAxis::mirror)) return &arm;
+    return nullptr;
+}
+
+ArmPair arm_pair(const Page& page) {
+    ArmPair pair;
+    pair.narrow = arm_about_mirror(page.in.experiment);
+    if (!pair.narrow) return {};
+    double least = std::numeric_limits<double>::infinity();
+    std::ptrdiff_t most = 0;
+    for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
+        const auto ran = [&](std::uint64_t n) {
+            return n > 0 && page.find.run(arm->name, n) && page.find.run(pair.narrow->name, n);
+        };
+        const std::uint64_t shared = page.find.headline_n();
+        const std::uint64_t n = ran(shared) ? shared : page.find.common_n({arm, pair.narrow});
+        if (!ran(n)) continue;
+        const double error = error_of(page, *arm, n);
+        const std::ptrdiff_t sample_counts = shared_sample_counts(*arm, *pair.narrow);
+        if (!pair.broad || sample_counts > most || (sample_counts == most && error < least))
+            pair.broad = arm, pair.n = n, least = error, most = sample_counts;
+    }
+    return pair ? pair : ArmPair{};
+}
+
+std::string run_html(const RunKey& key, const Experiment& experiment) {
+    std::string out = fmt::format("{}, <i>N</i> = {}", escape(key.arm), key.n);
+    if (tells_s(key.arm, key.s, experiment)) out += fmt::format(", <i>s</i> = {}", shortest(key.s));
+    return out;
+}
+
+std::string ray_words(const Experiment& experiment) {
+    const auto names = names_where(experiment, [](const ArmPlan& arm) { return techniques_of(arm) > 1; });
+    if (names.empty()) return {};
+    return fmt::format(
+        " {} {} two techniques: {} <i>N</i> counts pairs, and at equal <i>N</i> {} two rays for each one "
+        "of the others.",
+        listed(names), names.size() == 1 ? "joins" : "join", names.size() == 1 ? "its" : "their",
+        names.size() == 1 ? "it sends" : "they send");
+}
+
+std::string bias_words(const Experiment& experiment) {
+    std::string out;
+    for (const ArmPlan& arm : experiment.arms)
+        if (const std::string missed = missed_light(arm, experiment); !missed.empty())
+            out += fmt::format(
+                " <b>{}</b> is biased in this scene: it cannot reach {}. More samples do not bring that light, so "
+                "that its RMSE stops falling.",
+                escape(arm.name), escape(missed));
+    return out;
+}
+
+// ---- Sentences that compare two arms are made from the values and follow their order; they rank nothing if intervals
+// overlap or a heavy tail leaves no interval.
+
+namespace {
+
+std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& metric, const std::string& seed) {
+    const std::string larger = escape(c.larger), smaller = escape(c.smaller);
+    if (c.equal)
+        return fmt::format("At <i>N</i> = {} and the {} seed, {} and {} read the same {}, {}.", n, seed, larger,
+            smaller, metric, html::value(figures(c.high)));
+    return fmt::format("At <i>N</i> = {} and the {} seed, {}’s {} is <b>{} times</b> {}’s ({} against {}).", n, seed,
+        larger, metric, times(c.ratio), smaller, html::value(figures(c.high)), html::value(figures(c.low)));
+}
+
+std::string heavy_words(const Page& page, const SeedSpread& a, const SeedSpread& b) {
+    std::string names;
+    for (const SeedSpread* band : {&a, &b}) {
+        if (!band->band.heavy) continue;
+        const auto tail = page.find.tail(*band);
+        names += (names.empty() ? "" : " and ") + escape(band->key.arm);
+        if (tail) names += fmt::format(" (tail index {})", html::value(tail_text(tail)));
+    }
+    return fmt::format(
+        " How large the ratio is stays <b>inconclusive: heavy tail</b>: the samples of {} spread so widely "
+        "there that no interval means anything.",
+        names);
+}
+
+std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) {
+    if (a.band.heavy || b.band.heavy) return heavy_words(page, a, b);
+    if (a.band.seeds < 2) return " One seed gives no interval, so the two are not ranked.";
+    const bool overlap = a.band.q05 <= b.band.q95 && b.band.q05 <= a.band.q95;
+    if (overlap) return " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked.";
+    const double chance = chance_of_parted_bands(std::min(a.band.seeds, b.band.seeds));
+    return chance > 0.05 ? fmt::format(
+                               " With {} seeds the bands of equal arms are disjoint in {} of all runs, so the two "
+                               "are not ranked.",
+                               std::min(a.band.seeds, b.band.seeds), percent(chance, 2))
+                         : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";
+}
+
+Json metric_cell(const Page& page, const SeedSpread* band) {
+    Json out = {{"value", "–"}, {"median", ""}, {"band", ""}, {"tail", ""}};
+    if (!band) return out;
+    const bool paired = page.in.experiment.reference.kind == ReferenceKind::paired;
+    out["value"] = with_minus(figures_of(band->metric, band->measured, paired));
+    if (band->band.seeds > 1) {
+        out["median"] = with_minus(figures_of(band->metric, band->band.median, paired));
+        out["band"] = interval_html(band->metric, band->band);
+    }
+    if (band->metric.starts_with("rmse.")) out["tail"] = tail_text(page.find.tail(*band));
+    return out;
+}
+
+/// A row for each region in which FLIP was measured.
+void add_flip_rows(const Page& page, const std::vector<Column>& columns, Json& rows) {
+    for (const Region& region : page.in.experiment.regions) {
+        const std::string metric = "flip." + region.name;
+        Json cells = Json::array();
+        bool any = false;
+        for (const Column& column : columns) {
+            const RunMetrics* run = page.find.run(column.arm, column.n, column.s);
+            const RegionMetrics* at = run ? run->region(region.name) : nullptr;
+            const bool measured = at && at->has_flip();
+            any = any || measured;
+            const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
+            cells.push_back(metric_cell(page, band));
+            if (!band && measured) cells.back()["value"] = with_minus(figures(at->flip));
+        }
+        if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
+    }
+}
+
+}  // namespace
+
+Json metrics_table(const Page& page, const std::vector<Column>& columns) {
+    Json heads = Json::array(), rows = Json::array();
+    for (const Column& column : columns) heads.push_back(column.head);
+    for (const std::string& metric : headline_metrics(page.in.experiment)) {
+        Json cells = Json::array();
+        bool any = false;
+        for (const Column& column : columns) {
+            const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
+            any = any || band;
+            cells.push_back(metric_cell(page, band));
+        }
+        if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
+    }
+    add_flip_rows(page, columns, rows);
+    if (rows.empty()) return false;
+    return {{"columns", heads}, {"rows", rows}};
+}
+
+std::string ordering_html(
+    const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
+    const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
+    if (!of_a || !of_b) return {};
+    const RatioOfErrors c = compare(a, *of_a, b, *of_b);
+    const std::string metric = "rmse." + region;
+    std::string out = first_words(c, n, metric_html(metric), page.seed_name());
+    const SeedCount seeds = page.find.seeds_above(c.larger, c.smaller, n, region);
+    if (seeds.of > 1 && !c.equal) out += fmt::format(" The order is the same in {} of {} seeds.", seeds.held, seeds.of);
+    const SeedSpread *band_a = page.find.band(a, n, metric), *band_b = page.find.band(b, n, metric);
+    if (band_a && band_b) out += ranking(page, *band_a, *band_b);
+    return out;
+}
+
+// ---- The model of the end of the report: the limits of this run, its assertions and its provenance.
+
+namespace {
+
+/// Returns whether an arm aims only at the lights or combines several densities.
+bool remedies(const Experiment& e) {
+    return std::any_of(e.arms.begin(), e.arms.end(), [](const ArmPlan& arm) {
+        const SamplerInfo* info = find_arm_info(arm.sampler);
+        return info && (info->combines || !info->misses.empty());
+    });
+}
+
+}  // namespace
+
+Json more_plates(Page& page) {
+    Json rest = page.figures.rest();
+    return rest.empty() ? Json(false) : Json{{"plates", std::move(rest)}};
+}
+
+Json limits(const Page& page) {
+    const Experiment& e = page.in.experiment;
+    const auto& bands = page.in.metrics.bands;
+    const auto heavy = std::ranges::count_if(bands, [](const SeedSpread& b) { return b.band.heavy; });
+    const double chance = chance_of_parted_bands(e.seeds);
+    const std::string bias = bias_words(e);
+    Json out = {{"bands", false}, {"rays", ray_words(e)}, {"bias", bias.empty() ? "" : bias.substr(1)},
+        {"remedies", remedies(e)}, {"one_seed", e.seeds < 2}, {"few_seeds", e.seeds >= 2 && e.seeds < 20},
+        {"heavy", heavy > 0 ? std::to_string(heavy) : ""}, {"metrics", bands.size()}};
+    if (e.seeds > 1) out["bands"] = {{"chance", chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"}};
+    return out;
+}
+
+Json assertions(const Page& page) {
+    const auto& all = page.in.metrics.assertions;
+    if (all.empty()) return false;
+    const auto failed = std::ranges::count_if(all, [](const AssertionResult& a) { return a.failed(); });
+    const auto empty = std::ranges::count_if(all, [](const AssertionResult& a) { return a.cannot_fail; });
+    Json rows = Json::array();
+    for (const AssertionResult& a : all) {
+        const bool ran = a.skipped.empty(), holds = ran && !a.failed();
+        rows.push_back({{"name", a.name}, {"claim", a.text}, {"measured", cell_text(compact(a.measured))}, {"op", a.op},
+            {"bound", cell_text(compact(a.bound))}, {"skipped", a.skipped}, {"fails", ran && a.failed()},
+            {"holds", holds}, {"cannot_fail", holds && a.cannot_fail}});
+    }
+    return {{"total", all.size()}, {"failed", failed > 0 ? std::to_string(failed) : ""},
+        {"empty", empty > 0 ? std::to_string(empty) : ""}, {"rows", rows}};
+}
+
+Json provenance(const Page& page) {
+    const Provenance& p = page.in.provenance;
+    Json details = Json::array(), films = Json::array(), part = false;
+    for (const auto& [what, message] : p.backend_details) details.push_back({{"what", what}, {"message", message}});
+    for (const auto& [name, hash] : page.in.metrics.film_hashes) films.push_back({{"name", name}, {"hash", hash}});
+    if (!p.missing().empty()) part = {{"places", ranges_text(p.places)}, {"series", p.series}};
+    return {{"commit", p.commit}, {"compiler", p.compiler}, {"backend", p.backend}, {"backend_details", details},
+        {"all_seeds", fmt::format("{}", fmt::join(p.seeds, ", "))}, {"part", part}, {"films", films}};
 }
 
 }  // namespace crescent::inline report

@@ -9,6 +9,7 @@
 #include "experiment/experiment.h"
 #include "metrics/article_checks.h"
 #include "metrics/metrics.h"
+#include "output/format.h"
 
 namespace crescent::inline report {
 
@@ -83,5 +84,10 @@ std::string timing_json(const Timing& timing, const Provenance& provenance);
 /// Returns at most 80 columns: first whether all assertions held, then the values, then the files.
 std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir,
     const OutputParts& parts = {}, bool colour = false);
+
+// ---- The provenance of an output, as the JSON files of a run state it.
+
+/// As in metrics.json.
+Json provenance_json(const Provenance& provenance);
 
 }  // namespace crescent::inline report

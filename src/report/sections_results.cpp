@@ -4,9 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "experiment/queries.h"
+#include "experiment/experiment.h"
 #include "report/page.h"
-#include "report/wording.h"
 
 namespace crescent::inline report {
 namespace {

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "experiment/queries.h"
+#include "experiment/experiment.h"
 #include "output/formula.h"
 #include "report/page.h"
-#include "report/wording.h"
 #include "samplers/info.h"
 #include "scene/lobes/lobe.h"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "experiment/queries.h"
+#include "experiment/experiment.h"
 #include "output/format.h"
 #include "report/findings.h"
 #include "report/report.h"

@@ -9,7 +9,7 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 #include "metrics/flip.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
@@ -17,7 +17,6 @@
 #include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "run/checkpoint.h"
-#include "run/external_samplers.h"
 #include "run/resources.h"
 
 namespace crescent::inline runs {

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "experiment/experiment.h"
 #include "metrics/metrics.h"
 #include "render/film.h"
 #include "render/tiles.h"
 #include "run/backend.h"
 #include "run/plan.h"
+#include "samplers/external_sampler.h"
 #include "scene/scene.h"
 
 namespace crescent::inline runs {
@@ -35,6 +37,7 @@ Engine settled(Engine engine);
 
 /// Shared by all jobs of a plan.
 struct Prepared {
+    /// Nothing is prepared yet except the scene.
     explicit Prepared(const Experiment& experiment) : scene(experiment) {}
 
     Scene scene;                    // at the experiment's own s
@@ -58,6 +61,7 @@ void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engin
 /// Does both steps.
 Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& monitor);
 
+/// The films and metrics of a job.
 struct JobResult {
     Job job;
     std::vector<RunMetrics> metrics;  // one per sample count; collect() adds tails
@@ -86,5 +90,15 @@ template <class Run> const ReferenceFilm* reference_of(const Experiment& experim
     const auto film = std::ranges::find(films, s, &ReferenceFilm::s);
     return film == films.end() ? nullptr : &*film;
 }
+
+// ---- The external samplers of an experiment's arms, opened before any work, so that missing ones are reported first.
+
+/// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name,
+/// where one does not start, is no sampler, or cannot be estimated with (no pdf, delta parts). `timeout_s`: what an
+/// answer may take; 0: the defaults of PipeLimits. Arms that `given` has are not opened; its samplers are returned too.
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s = 0, ExternalSamplers given = {});
+
+/// A program, or what a Python file imports, may change between two runs without a trace in the experiment's hash.
+bool may_change(const Experiment& experiment);
 
 }  // namespace crescent::inline runs

@@ -1,6 +1,6 @@
 // A program (check/sources/pipe.h) has no limit to the whole; a library is opened by check/sources/plugin.h. A wrapper
 // around either puts the arm's name into what it throws.
-#include "run/external_samplers.h"
+#include "run/execute.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include "check/sources/pipe.h"
 #include "check/sources/plugin.h"
 #include "check/sources/python_sampler.h"
-#include "experiment/combinations.h"
+#include "experiment/experiment.h"
 
 namespace crescent::inline runs {
 

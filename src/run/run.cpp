@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "run/checkpoint.h"
-#include "run/external_samplers.h"
+#include "run/execute.h"
 #include "run/resources.h"
 
 namespace crescent::inline runs {

@@ -3,7 +3,6 @@ crescent_low_optimization(${PROJECT_SOURCE_DIR}/src/run/checkpoint.cpp ${PROJECT
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/version.cpp PROPERTIES
   COMPILE_DEFINITIONS "${crescent_provenance}" INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/provenance)
 add_dependencies(crescent_run crescent_commit)
-if(NOT CRESCENT_PLATES)  # files that need Cairo, which films and metrics in memory do not
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/resources_font.cpp ${PROJECT_SOURCE_DIR}/src/run/preview.cpp
-    ${PROJECT_SOURCE_DIR}/src/run/write.cpp PROPERTIES HEADER_FILE_ONLY ON)
+if(NOT CRESCENT_PLATES)  # a file that needs Cairo, which films and metrics in memory do not
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/write.cpp PROPERTIES HEADER_FILE_ONLY ON)
 endif()

@@ -2,10 +2,9 @@
 // metrics.csv, junit.xml and report.html, and last timing.json, with the date. Times in seconds.
 #include "run/write.h"
 
+#include <algorithm>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-
-#include <algorithm>
 
 #include "base/errors.h"
 #include "base/files.h"
@@ -13,9 +12,12 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "experiment/queries.h"
-#include "metrics/assertions.h"
+#include "experiment/experiment.h"
+#include "metrics/metrics.h"
+#include "report/plates/canvas.h"
 #include "report/plates/plates.h"
+#include "report/plates/sheet.h"
+#include "run/collect.h"
 #include "run/resources.h"
 #include "run/version.h"
 
@@ -171,6 +173,46 @@ bool write(Measured& m, const std::string& folder, ProgressMonitor& monitor, con
         unless_stopped(threads > 0 ? threads : usable_threads(), monitor, [&] { write(m, staging, monitor, parts); });
     if (done) staging.commit(monitor);
     return done;
+}
+
+// ---- The steps of a run without its jobs: what the camera sees, the reference, one plate.
+
+namespace {
+
+/// Returns the scene and references of the experiment without its arms.
+Experiment without_arms(Experiment e) {
+    e.arms.clear();
+    e.exponent.reset();
+    e.furnaces.clear();
+    e.published.reset();
+    e.seeds = 1;
+    if (e.reference.kind == ReferenceKind::note) e.reference.kind = ReferenceKind::quadrature;
+    e.reference.monte_carlo = false;
+    if (e.reference.kind == ReferenceKind::paired) e.reference.n = std::min<std::uint64_t>(e.reference.n, 16);
+    return e;
+}
+
+}  // namespace
+
+std::vector<unsigned char> preview(const Experiment& experiment, const Engine& engine, ProgressMonitor& monitor) {
+    check_font(experiment);
+    RunPlan seen = plan(without_arms(experiment));
+    seen.exponents = {experiment.s()};
+    const Engine with = settled(engine);
+    const Prepared prepared = prepare(seen, with, monitor);
+    monitor.check();
+    const Metrics none;
+    const PlateInputs in{seen.experiment, none, prepared.shapes, [](const RunKey&) { return nullptr; },
+        [&](double s) { return reference_of(seen.experiment, prepared, s); }, with.backend->name(),
+        experiment.theme.value_or(Theme::dark)};
+    const Provenance p = provenance_of(seen, *with.backend, "");
+    return encode_png(draw_preview(in), {{"crescent", p.version + " " + p.commit}, {"plate", "preview"}});
+}
+
+// ---- In a file of its own, so that a program which draws no plates is not linked with the drawing code.
+
+void check_font(const Experiment& experiment) {
+    if (!experiment.plates.empty()) const plates::Canvas font(16, 16, plates::ground);
 }
 
 }  // namespace crescent::inline runs

@@ -7,7 +7,7 @@
 // Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations".
 #pragma once
 
-#include "math/simd/lanes.h"
+#include "math/simd/scalar.h"
 #include "samplers/sampler.h"
 
 namespace crescent::inline samplers {

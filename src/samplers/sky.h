@@ -8,7 +8,7 @@
 // sky has no such direction: nothing is drawn.
 #pragma once
 
-#include "math/simd/lanes.h"
+#include "math/simd/scalar.h"
 #include "samplers/sampler.h"
 
 namespace crescent::inline samplers {

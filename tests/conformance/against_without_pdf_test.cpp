@@ -5,7 +5,6 @@
 
 #include "check/against.h"
 #include "math/functions.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
 #include "tests/support/checked.h"
 

@@ -11,7 +11,7 @@
 #include "render/estimator.h"
 #include "render/reference/reference.h"
 #include "run/arm_cases.h"
-#include "run/external_samplers.h"
+#include "run/execute.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_scene.h"
 

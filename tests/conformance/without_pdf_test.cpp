@@ -8,7 +8,6 @@
 #include "check/report/summary.h"
 #include "check/sources/cases.h"
 #include "math/functions.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
 #include "tests/support/checked.h"
 #include "tests/support/wellformed.h"

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "check/report/summary.h"
 #include "check/verdict_names.h"
-#include "output/junit.h"
+#include "output/format.h"
 
 namespace crescent::inline results {
 

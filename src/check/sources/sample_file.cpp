@@ -14,7 +14,6 @@
 #include "check/sources/pipe_io.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
-#include "math/spherical.h"
 
 namespace crescent::inline sources {
 

@@ -6,7 +6,6 @@
 
 #include "math/functions.h"
 #include "math/simd/scalar.h"
-#include "math/spherical.h"
 
 namespace crescent::inline sources {
 

@@ -1,6 +1,6 @@
 // The new folder of the baseline is written next to the old one and exchanged with it (base/files.h). Files of views
 // that are not accepted are linked into it.
-#include "compare/suite/accept.h"
+#include "compare/suite/suite.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,9 +10,8 @@
 
 #include "base/files.h"
 #include "base/text.h"
-#include "compare/metrics.h"
-#include "compare/moments.h"
-#include "math/hypotheses.h"
+#include "compare/renders.h"
+#include "math/statistics.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {

@@ -13,8 +13,6 @@
 #include <set>
 
 #include "base/files.h"
-#include "compare/suite/accept.h"
-#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
 #include "compare/synthetic.h"
 #include "tests/support/scratch_folder.h"

@@ -7,10 +7,7 @@
 #include <xxhash.h>
 
 #include "base/parallel.h"
-#include "compare/metrics.h"
-#include "compare/moments.h"
-#include "compare/suite/suite_outputs.h"
-#include "compare/suite/render_plan.h"
+#include "compare/renders.h"
 #include "compare/suite/suite.h"
 #include "output/format.h"
 

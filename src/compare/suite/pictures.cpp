@@ -1,6 +1,6 @@
 // Means over renders as photographs; the difference of the means over their mean brightness, blue if the candidate is
 // darker and orange if it is brighter. All pictures of a report together take at most 36 MB.
-#include "compare/suite/suite_outputs.h"
+#include "compare/suite/suite.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,13 @@
 // Both sides are assumed to have the variance of the baseline, which falls as 1/N with N samples.
-#include "compare/suite/render_plan.h"
+#include "compare/suite/suite.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "compare/metrics.h"
-#include "compare/moments.h"
-#include "math/hypotheses.h"
+#include "compare/renders.h"
+#include "math/statistics.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {

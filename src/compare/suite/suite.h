@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "compare/compare.h"
 #include "compare/plan.h"
 #include "compare/results.h"
+#include "math/statistics.h"
+#include "report/report.h"
 
 namespace crescent::inline comparison {
 
@@ -142,5 +145,92 @@ void decide(const Suite& suite, SuiteResult& result);
 
 /// Measures and decides every view, one view in memory at a time. Throws one InputError with the mistakes of all views.
 SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source = {});
+
+// ---- --accept: the candidate of some views becomes the baseline, of all of them at once.
+
+/// Which views of a candidate become the baseline, and the statements of the manifest about it.
+struct Acceptance {
+    std::vector<std::string> views;      // names; empty: all that have a candidate
+    std::string because, date, program;  // for the manifest
+};
+
+/// Replaces the baseline's files of these views, stored as the suite states, and writes baseline.json next to them: the
+/// files with their hashes, mean and variance of each region, program, date and reason of each view. A kill leaves the
+/// old baseline or the new one. Returns a line for each accepted view. Throws InputError, OutputError, Interrupted.
+std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acceptance, ProgressMonitor& monitor);
+
+/// Returns the folder of the baseline: the part before the first wildcard of its first pattern.
+std::string baseline_folder(const Suite& suite);
+
+// ---- The result of a suite as text: for machines, build servers, the summary page of a pull request and the terminal.
+
+/// docs/suite.schema.json describes it; equal inputs give equal bytes.
+std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& provenance);
+/// One case for each view: changed, noisier and missing fail, too few renders is an error, new is skipped.
+std::string suite_junit(const Suite& suite, const SuiteResult& result, bool strict);
+/// A table of all views that are not the same, at most 60 kB.
+std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
+std::string suite_summary(const Suite& suite, const SuiteResult& result);
+/// One page that works offline.
+std::string suite_html(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
+
+/// Views in the order of their states, changed first, then by name.
+std::vector<const ViewResult*> by_state(const SuiteResult& result);
+
+// ---- The pictures of a view in the report: photographs of the means of both sides and a map of their relative
+// difference.
+
+/// For a view with renders of one side only.
+void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSource& source, ViewResult& out);
+/// For a view with both. The size follows from the number of views, larger if the view may have changed.
+void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasResult& means, ViewResult& out);
+
+// ---- --plan: how many renders of each side, with how many samples, a view needs, from the variance of the baseline
+// only.
+
+// ---- The difference of means that a test finds with a probability of 90 %, and the renders that it needs.
+
+/// Returns the difference that a repetition of the test finds with a probability of 90 % at this level, if the error of
+/// a mean is known only from an estimate with `estimate_df` degrees of freedom. The estimate may be too small by
+/// chance, and so may that of the repetition: the difference is larger than that of detectable() (by a fifth for 8
+/// renders of each side), and infinite for too few degrees of freedom.
+double found_difference(const Welch& test, double estimate_df, double level);
+
+/// The noise of the mean of a region, known before more renders exist.
+struct RegionPower {
+    double mean = 0;                        // of Y
+    double variance_a = 0, variance_b = 0;  // of the mean of one render of each side; in pairs a: of a difference
+    double estimate_df = 0;                 // degrees of freedom with which they are known
+    bool paired = false;
+    double missed = 0;  // difference that rare events could hide, times the renders of a side
+};
+
+/// Returns the difference that a test with `renders` renders of each side finds with a probability of 90 %.
+double detectable_with(const RegionPower& power, std::size_t renders, double level);
+
+/// The smallest number of renders of each side with which a relative difference `smallest` is found; nothing above
+/// 100 000.
+std::optional<std::size_t> renders_needed(const RegionPower& power, double smallest, double level);
+
+/// The samples of a render over those of a render of the baseline for which the plan states renders.
+inline constexpr std::array<double, 3> plan_samples = {0.25, 1, 4};
+
+/// The renders that a view needs to find its smallest difference, from the variance of its baseline.
+struct ViewPlan {
+    std::string name, region;  // the region that needs the most renders
+    std::size_t renders = 0;   // of the baseline
+    std::optional<double> spp;
+    double smallest = 0, mean = 0;
+    double deviation = 0;                                // of the mean of one render
+    std::array<std::optional<std::size_t>, 3> needed{};  // of each side, at plan_samples
+    std::string why;                                     // why nothing can be stated; "" if it can
+};
+
+/// Returns the plan of each view, by name. Reads every baseline; throws InputError if a file cannot be compared.
+std::vector<ViewPlan> plan_renders(const Suite& suite, ProgressMonitor& monitor);
+/// Returns the plans as a table for the terminal.
+std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& plans);
+/// Returns the plans as JSON.
+std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans);
 
 }  // namespace crescent::inline comparison

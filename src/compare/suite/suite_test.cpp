@@ -7,11 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
-#include "compare/suite/suite_outputs.h"
 #include "compare/synthetic.h"
-#include "math/hypotheses.h"
+#include "math/statistics.h"
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {

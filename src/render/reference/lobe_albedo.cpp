@@ -11,7 +11,6 @@
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "math/quadrature.h"
-#include "math/spherical.h"
 #include "scene/lobes/all.h"
 
 namespace crescent::inline reference {

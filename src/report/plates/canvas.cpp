@@ -2,21 +2,48 @@
 // ellipsized. The text, its place and its size are recorded. Pictures are copied from Cairo's 32-bit pixels.
 #include "report/plates/canvas.h"
 
+#include <pango/pangocairo.h>
+
 #include <algorithm>
 #include <cairo-svg.h>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
+#include <memory>
 #include <string>
 
 #include "base/errors.h"
 #include "base/machine.h"
 #include "math/functions.h"
-#include "report/plates/canvas_surface.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {
+
+// Cairo's surface and context, and Pango's layout.
+
+struct Unref {
+    void operator()(gpointer object) const { g_object_unref(object); }
+};
+
+struct Canvas::Surface {
+    cairo_surface_t* image = nullptr;
+    cairo_t* cr = nullptr;
+    double scale = 1;
+    Theme theme = Theme::dark;
+    std::unique_ptr<PangoLayout, Unref> layout;
+
+    std::string document;  // of Medium::svg, once finished
+
+    Surface(int width, int height, double scale, Theme theme, Medium medium);
+    ~Surface();
+    Surface(const Surface&) = delete;
+    Surface& operator=(const Surface&) = delete;
+
+    void ink(const Colour& c);
+    /// Lays out markup at `px`; width < 0: unbounded.
+    Rect lay(const std::string& markup, const Text& how, double px, double width);
+};
 
 // ---- Points Fontconfig at the fonts that are installed with the program, by its environment variable FONTCONFIG_FILE.
 

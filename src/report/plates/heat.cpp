@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "math/statistics.h"
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/compute.h"
-#include "report/plates/ladder_chart.h"
+#include "metrics/metrics.h"
+#include "report/plates/charts.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "math/statistics.h"
-#include "metrics/compute.h"
+#include "metrics/metrics.h"
 #include "report/plates/sheet.h"
 #include "tests/support/test_world.h"
 

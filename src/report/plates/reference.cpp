@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "experiment/queries.h"
+#include "experiment/experiment.h"
 #include "report/plates/sheet.h"
 
 namespace crescent::plates {

@@ -8,7 +8,7 @@
 
 #include "math/functions.h"
 #include "output/tone_map.h"
-#include "report/plates/polar.h"
+#include "report/plates/charts.h"
 #include "report/plates/sheet.h"
 #include "samplers/info.h"
 

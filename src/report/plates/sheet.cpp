@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "experiment/queries.h"
+#include "experiment/experiment.h"
 #include "math/functions.h"
 #include "output/charts.h"
 #include "output/tone_map.h"

@@ -6,7 +6,6 @@
 
 #include "math/functions.h"
 #include "math/simd/frame.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
 
 namespace crescent {

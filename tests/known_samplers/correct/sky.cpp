@@ -7,7 +7,6 @@
 
 #include "math/functions.h"
 #include "math/simd/scalar.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/renderers.h"
 
 namespace crescent {

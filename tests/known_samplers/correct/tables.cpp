@@ -5,7 +5,6 @@
 
 #include "math/functions.h"
 #include "math/simd/scalar.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/right.h"
 
 namespace crescent {

@@ -5,7 +5,6 @@
 
 #include "check/sources/cases.h"
 #include "math/functions.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/faulty/planted.h"
 

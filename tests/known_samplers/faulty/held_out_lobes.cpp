@@ -10,7 +10,6 @@
 #include "math/functions.h"
 #include "math/simd/frame.h"
 #include "math/simd/scalar.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/faulty/planted.h"
 

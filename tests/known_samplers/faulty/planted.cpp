@@ -7,7 +7,6 @@
 
 #include "check/sources/cases.h"
 #include "math/functions.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/faulty/wrap.h"
 
 namespace crescent {

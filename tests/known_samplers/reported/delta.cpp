@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "check/sources/sampler_adapter.h"
-#include "math/spherical.h"
+#include "math/functions.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/reported/known.h"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "math/functions.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/reported/known.h"
 

@@ -4,7 +4,6 @@
 
 #include "math/functions.h"
 #include "math/simd/frame.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/reported/known.h"
 

@@ -7,7 +7,6 @@
 
 #include "math/functions.h"
 #include "math/simd/random.h"
-#include "math/spherical.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/reported/known.h"
 

@@ -1,11 +1,12 @@
-// A half-circle polar plot: an angle from -90 to 90 deg from n, a radius from 0 to the round number above `peak`, in
-// 1/sr.
+// Charts on plates. Polar: a half-circle, an angle from -90 to 90 deg from n, a radius from 0 to the round number above
+// `peak`, in 1/sr.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/vec.h"
@@ -67,5 +68,24 @@ private:
     double tilt_, peak_ = 0;
     std::string where_;
 };
+
+// ---- A quantity of one region against N, both logarithmic, one curve per arm with its fitted slope.
+
+/// The curve of an arm.
+struct LadderCurve {
+    std::string name;
+    Colour ink;
+    std::vector<double> n, value;
+    std::vector<std::pair<double, double>> interval;  // for each value; empty: none is drawn; NaN: none for this one
+    double slope = 0, low = 0, high = 0;              // of log value over log N, and its interval; NaN: none
+    bool heavy = false;                               // the tail is too heavy for a meaningful slope
+};
+
+/// `title` is markup. Nothing is drawn without curves.
+void draw_ladder_chart(
+    Canvas& canvas, const Rect& slot, const std::string& title, const std::vector<LadderCurve>& curves);
+
+/// Returns the RMSE of a region of a run against N, one curve for each arm that the plate shows.
+std::vector<LadderCurve> ladder_curves(const Sheet& sheet, const std::string& region);
 
 }  // namespace crescent::plates

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "experiment/experiment.h"
-#include "experiment/queries.h"
 
 namespace crescent::inline experiment {
 namespace {

@@ -1,8 +1,9 @@
-// The files of the scene that an experiment names.
+// The files that an experiment names: of its scene, and of its samplers.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "experiment/experiment.h"
 #include "scene/mesh/mesh.h"
@@ -37,8 +38,24 @@ std::string content_of(const MeshObject& mesh);
 // ---- Where files are found by their paths: on the disk (disk_files.cpp), or, in a program without one, among those
 // that it was given (apps/web/files.cpp). Throw InputError with the path.
 
+/// Returns the content of the file.
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path);
 std::shared_ptr<const RgbImage> sky_in_file(const std::string& path);
 std::shared_ptr<const RgbImage> texture_in_file(const std::string& path);
+
+// ---- The files of the samplers that an experiment names: shared libraries and Python files.
+
+/// FILE.py of "FILE.py" and "FILE.py:NAME"; "" for "module:NAME".
+std::string_view python_file(std::string_view sampler);
+
+/// The file of an arm's sampler; "" if it has none: a built-in sampler, a program or an installed module.
+std::string sampler_file(const ArmPlan& arm);
+
+/// XXH3 of the content of each sampler's file, " ARM=HASH" in the experiment's order; 0 for a file that cannot
+/// be read. Another content is another experiment under any name of the file.
+std::string sampler_file_hashes(const Experiment& experiment);
+
+/// Throws InputError with the place of each plugin, program and Python sampler that the experiment names.
+void refuse_code(const Experiment& experiment);
 
 }  // namespace crescent::inline experiment

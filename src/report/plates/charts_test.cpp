@@ -2,7 +2,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "report/plates/polar.h"
+#include "report/plates/charts.h"
 #include "samplers/all.h"
 #include "tests/support/test_scene.h"
 

@@ -1,0 +1,164 @@
+// Images are checked for their use here, wherever they come from.
+#include "experiment/input_files.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/errors.h"
+#include "base/files.h"
+#include "experiment/parser.h"
+#include "scene/image_pack.h"
+
+namespace crescent::inline experiment {
+
+void load_sky(SkyLight& sky) {
+    std::shared_ptr<const RgbImage> image = sky_in_file(sky.file);
+    if (const std::string why = why_no_sky(*image, sky.scale); !why.empty()) throw InputError({sky.file, 0, 0}, why);
+    const std::string content = content_hash(*image);
+    if (sky.content && sky.content != content)
+        throw InputError(
+            {sky.file, 0, 0}, fmt::format("expected an image with the content {}, found {}", *sky.content, content));
+    sky.content = content, sky.image = std::move(image);
+}
+
+void load_texture(Texture& texture, TextureOf of, const std::string& beside) {
+    if (!texture.file || texture.image) return;
+    const std::string file = (std::filesystem::path(beside).parent_path() / *texture.file).string();
+    std::shared_ptr<const RgbImage> image = texture_in_file(file);
+    if (const std::string why = why_no_texture(*image, of); !why.empty()) throw InputError({file, 0, 0}, why);
+    texture.image = std::move(image);
+}
+
+std::string content_of(const MeshObject& mesh) {
+    ensure(mesh.pack != nullptr, "the content of a mesh is that of its file");
+    std::uint64_t hash = mesh.pack->hash;
+    for (const TextureKey& key : texture_keys) {
+        const Texture& texture = mesh.*key.texture;
+        if (!texture.image) continue;
+        const std::uint64_t parts[] = {hash, texture.image->hash, key.of == TextureOf::alpha ? 1u : 0u};
+        hash = XXH3_64bits(parts, sizeof parts);
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+// ---- A file is read each time it is hashed, because it may change between two runs of one process.
+
+std::string_view python_file(std::string_view sampler) {
+    if (sampler.ends_with(".py")) return sampler;
+    const std::string_view file = sampler.substr(0, sampler.rfind(':'));
+    return file.ends_with(".py") ? file : std::string_view{};
+}
+
+std::string sampler_file(const ArmPlan& arm) {
+    if (arm.plugin) return *arm.plugin;
+    const std::optional<std::string>& python = arm.python ? arm.python : arm.combination.weights_python;
+    return python ? std::string(python_file(*python)) : std::string{};
+}
+
+std::string sampler_file_hashes(const Experiment& experiment) {
+    std::string all;
+    for (const ArmPlan& arm : experiment.arms) {
+        const std::string file = sampler_file(arm);
+        if (file.empty()) continue;
+        const std::string bytes = contents_of(file);
+        all += fmt::format(" {}={:016x}", arm.name, bytes.empty() ? 0 : XXH3_64bits(bytes.data(), bytes.size()));
+    }
+    return all;
+}
+
+void refuse_code(const Experiment& experiment) {
+    std::vector<Diagnostic> found;
+    for (const ArmPlan& arm : experiment.arms) {
+        const std::optional<std::string>& weights = arm.combination.weights_python;
+        if (!arm.is_external() && !weights) continue;
+        const char* key = arm.exec ? "exec" : arm.plugin ? "plugin" : arm.python ? "python" : "weights_python";
+        const std::string path = fmt::format("arms.{}.{}", arm.name, key);
+        found.push_back({experiment.place_of(path),
+            fmt::format("{}: with --no-code, expected a built-in sampler (key 'sampler'); found code to run: '{}'",
+                path,
+                arm.exec         ? *arm.exec
+                    : arm.plugin ? *arm.plugin
+                    : arm.python ? *arm.python
+                                 : *weights)});
+    }
+    if (!found.empty()) throw InputError(std::move(found));
+}
+
+// ---- Reads the files of meshes and their textures. A mesh must be within 1000 km of the origin, the range of all
+// coordinates.
+
+namespace {
+
+void check_extent(const Experiment& e, const MeshObject& mesh) {
+    const Bounds box = mesh.pack->mesh.bounds();
+    const Affine own = mesh.placement.transform();
+    const auto check = [&](const Affine& to, const std::string& path) {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            const Vec3d p = to.point(widen(Vec3f{corner & 1 ? box.high.x : box.low.x,
+                corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z}));
+            if (place_range.holds(p.x) && place_range.holds(p.y) && place_range.holds(p.z)) continue;
+            throw InputError(e.place_of(path),
+                fmt::format(
+                    "{}: expected a mesh within {} m of the origin along each axis, found a corner of its box at "
+                    "({:.4g}, {:.4g}, {:.4g})",
+                    path, place_range.high, p.x, p.y, p.z));
+        }
+    };
+    const std::string path = "meshes." + mesh.name;
+    if (mesh.instances.empty()) check(own, path);
+    for (std::size_t i = 0; i < mesh.instances.size(); ++i)
+        check(mesh.instances[i].transform().after(own), fmt::format("{}.instances.{}", path, i));
+}
+
+void check_uv(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& found) {
+    if (!mesh.pack->mesh.uv.empty()) return;
+    for (const TextureKey& key : texture_keys) {
+        const std::string path = fmt::format("meshes.{}.{}", mesh.name, key.name);
+        if ((mesh.*key.texture).image)
+            found.push_back({e.place_of(path),
+                fmt::format("{}: expected a mesh with texture coordinates, found none in '{}'", path, mesh.file)});
+    }
+}
+
+}  // namespace
+
+void read_meshes(Experiment& experiment) {
+    std::vector<Diagnostic> found;
+    for (MeshObject& mesh : experiment.meshes) {
+        const std::string path = "meshes." + mesh.name;
+        /// A mistake in a file that a key names is reported at the key, with the place in the file.
+        const auto at_key = [&](const std::string& key, const auto& work) {
+            try {
+                work();
+            } catch (const InputError& error) {
+                const Diagnostic& first = error.diagnostics().front();
+                const bool located = first.at.file == experiment.file && first.at.line > 0;
+                found.push_back({located ? first.at : experiment.place_of(key),
+                    located ? first.message : fmt::format("{}: {}", key, error.what())});
+            }
+        };
+        if (!mesh.pack)
+            at_key(path + ".file", [&] {
+                const std::string file = (std::filesystem::path(experiment.file).parent_path() / mesh.file).string();
+                mesh.pack = mesh_in_file(file);
+                check_extent(experiment, mesh);
+            });
+        for (const TextureKey& key : texture_keys)
+            at_key(fmt::format("{}.{}", path, key.name),
+                [&] { load_texture(mesh.*key.texture, key.of, experiment.file); });
+        if (!mesh.pack || !found.empty()) continue;
+        check_uv(experiment, mesh, found);
+        const std::string content = content_of(mesh);
+        if (mesh.content && *mesh.content != content)
+            found.push_back({experiment.place_of(path + ".content"),
+                fmt::format("{0}.content: expected a mesh and textures with the content {1}, found {2}", path,
+                    *mesh.content, content)});
+        mesh.content = content;
+    }
+    throw_if_any(std::move(found));
+}
+
+}  // namespace crescent::inline experiment
