@@ -48,18 +48,32 @@ if(CRESCENT_FUZZ)
   set(crescent_fuzzed base scene experiment)  # counts what it covers; where no fuzzer listens, ASan's runtime ignores it
 endif()
 
-# Headers used by nearly every file, parsed once per target: they take two thirds of the compile time.
+# Headers used by nearly every file: parsing them takes two thirds of the compile time. Libraries with equal lists and
+# options share the precompiled file of the first of them; programs, whose code is position-independent in another way,
+# have their own.
 option(CRESCENT_PCH "precompile the standard library's headers" ON)
 function(crescent_use_pch target)
-  if(CRESCENT_PCH)
+  if(NOT CRESCENT_PCH)
+    return()
+  endif()
+  get_target_property(type ${target} TYPE)
+  get_target_property(options ${target} COMPILE_OPTIONS)
+  string(MD5 headers "${ARGN}")
+  string(MD5 like "${ARGN} ${options}")
+  get_property(first GLOBAL PROPERTY crescent_pch_${like})
+  if(first AND type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
       <functional> <map> <memory>
       <optional> <span> <sstream> <string> <string_view> <variant> <vector> <fmt/format.h> ${ARGN})
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
-    # CMake gives its list of headers the time of older files: their hash shows ninja that they changed.
-    string(MD5 headers "${ARGN}")
-    target_compile_definitions(${target} PRIVATE CRESCENT_HEADERS=0x${headers})
+    if(type MATCHES "^(STATIC|OBJECT)_LIBRARY$")
+      set_property(GLOBAL PROPERTY crescent_pch_${like} ${target})
+    endif()
   endif()
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
+  # CMake gives its list of headers the time of older files: their hash shows ninja that they changed.
+  target_compile_definitions(${target} PRIVATE CRESCENT_HEADERS=0x${headers})
 endfunction()
 
 # Files that run once and take long to optimise, mostly JSON. Without optimisation they cannot use the precompiled

@@ -7,6 +7,11 @@ tiny="$here/tiny.toml"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
+# What is compiled here is found in ccache the next time, though the folder is another one.
+if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$work CCACHE_NOHASHDIR=1
+    export CCACHE_SLOPPINESS=pch_defines,time_macros
+fi
 
 die() {
     printf '%s\n' "$*" >&2

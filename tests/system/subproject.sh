@@ -95,11 +95,9 @@ for compiler in g++ clang++-19; do
 done
 
 # crescent::check alone, with warnings as errors.
-launcher=$(command -v ccache || true)
-export CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=$work
 configure() { expect 0 cmake -S outer -B "outer/$1" -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" "${@:2}"; }
 configure build "${disabled[@]}" -DCMAKE_CXX_COMPILER=g++ -DCMAKE_CXX_FLAGS='-Wall -Wextra -Werror' \
-    -DCMAKE_CXX_FLAGS_RELEASE=-O1 ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"}
+    -DCMAKE_CXX_FLAGS_RELEASE=-O1
 grep -q '^CMAKE_BUILD_TYPE:STRING=$' outer/build/CMakeCache.txt ||
     die "crescent chose a build type: $(grep BUILD_TYPE outer/build/CMakeCache.txt)"
 installs=outer/build/crescent/cmake_install.cmake

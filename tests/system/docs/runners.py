@@ -4,6 +4,7 @@ and raises Mistake if it is wrong, or Absent if this machine lacks what it needs
 from __future__ import annotations
 
 import ast
+import functools
 import json
 import os
 import re
@@ -34,6 +35,7 @@ class Setting:
     compiler: str
     python: str  #: an interpreter that has the module and its requirements; empty: none
     prefix: Path  #: the prefix of the installed build
+    installed: dict[str, bool] = field(default_factory=dict)  #: whether an optional library can be imported
 
 
 @dataclass
@@ -51,6 +53,7 @@ class Page:
         paths = [str(s.build), *([str(Path(s.python).parent)] if s.python else []), os.environ["PATH"]]
         return {
             **{key: value for key, value in os.environ.items() if not key.startswith("CRESCENT")},
+            **compiler_cache(s.prefix.parent),
             "PATH": ":".join(paths),
             "HOME": str(self.folder / "home"),
             "PYTHONPATH": str(s.build / "python"),
@@ -81,6 +84,21 @@ class Page:
     def close(self) -> None:
         if self.worker:
             self.worker.communicate()
+
+
+@functools.cache
+def compiler_cache(work: Path) -> dict[str, str]:
+    """Returns the environment in which CMake compiles through ccache, which finds the user's cache from any HOME, and in it
+    what was compiled before below another `work`; empty without ccache."""
+    if not shutil.which("ccache"):
+        return {}
+    return {
+        "CMAKE_CXX_COMPILER_LAUNCHER": "ccache",
+        "CCACHE_DIR": subprocess.check_output(["ccache", "--get-config", "cache_dir"], text=True).strip(),
+        "CCACHE_BASEDIR": str(work),
+        "CCACHE_NOHASHDIR": "1",
+        "CCACHE_SLOPPINESS": "pch_defines,time_macros",
+    }
 
 
 def _tail(text: str, lines: int = 25) -> str:
@@ -132,8 +150,11 @@ def run_python(page: Page, block: Block) -> str:
         functions = [at.name for at in ast.parse(block.text).body if isinstance(at, ast.FunctionDef)]
     except SyntaxError as e:
         raise Mistake(f"line {block.line + (e.lineno or 1)}: {e.msg}") from None
+    installed = page.setting.installed
     for module in sorted(wanted):
-        if page.call(page.setting.python, "-c", f"import {module}").returncode:
+        if module not in installed:
+            installed[module] = page.call(page.setting.python, "-c", f"import {module}").returncode == 0
+        if not installed[module]:
             raise Absent(module)
     if any(name.startswith("test_") for name in functions):
         return _run_pytest(page, block)
@@ -144,7 +165,8 @@ def run_python(page: Page, block: Block) -> str:
     print(json.dumps(request), file=page.worker.stdin, flush=True)
     line = page.worker.stdout.readline()
     if not line:
-        raise Mistake(f"the interpreter ended with {page.worker.wait()}")
+        ended, page.worker = page.worker.wait(), None  # the next block gets another one
+        raise Mistake(f"the interpreter ended with {ended}")
     answer = json.loads(line)
     if answer["error"]:
         raise Mistake(answer["error"])
@@ -270,7 +292,9 @@ def run_cpp(page: Page, block: Block) -> str:
     compiler = os.environ.get("CC", "cc") if c else page.setting.compiler
     if not re.search(r"\bmain\(", block.text):
         return page.must(compiler, *flags, *includes, "-fsyntax-only", file)
-    page.must(compiler, *flags, *includes, file, "-o", file.with_suffix(""), "-lm")
+    launcher = ["ccache"] if compiler_cache(page.setting.prefix.parent) else []
+    page.must(*launcher, compiler, *flags, *includes, "-c", file, "-o", file.with_suffix(".o"))
+    page.must(compiler, file.with_suffix(".o"), "-o", file.with_suffix(""), "-lm")
     return page.must(file.with_suffix("")) if not block.file else ""
 
 
