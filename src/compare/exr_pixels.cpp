@@ -232,10 +232,10 @@ Render read_exr(const OpenFile& file, const std::string& wanted) {
 
 namespace {
 
-using Point = std::array<double, 2>;
+using Xy = std::array<double, 2>;
 
 /// Returns x, y and z of a chromaticity.
-Rgb xyz_of(const Point& c) { return {c[0], c[1], 1 - c[0] - c[1]}; }
+Rgb xyz_of(const Xy& c) { return {c[0], c[1], 1 - c[0] - c[1]}; }
 
 Matrix3 product(const Matrix3& a, const Matrix3& b) {
     Matrix3 out{};
@@ -276,7 +276,7 @@ Matrix3 adaptation(const Rgb& from, const Rgb& to) {
     return product(inverse(bradford), product(scale, bradford));
 }
 
-bool near(const Point& a, const Point& b) { return std::fabs(a[0] - b[0]) <= 1e-3 && std::fabs(a[1] - b[1]) <= 1e-3; }
+bool near(const Xy& a, const Xy& b) { return std::fabs(a[0] - b[0]) <= 1e-3 && std::fabs(a[1] - b[1]) <= 1e-3; }
 
 /// The primaries of OpenEXR files with XYZ in channels R, G and B; their "white" is not the white of a scene.
 constexpr Chromaticities xyz_primaries{{1, 0}, {0, 1}, {0, 0}, {1. / 3, 1. / 3}};
@@ -284,7 +284,7 @@ constexpr Chromaticities xyz_primaries{{1, 0}, {0, 1}, {0, 0}, {1. / 3, 1. / 3}}
 }  // namespace
 
 bool is_valid(const Chromaticities& c) {
-    for (const Point& p : {c.red, c.green, c.blue, c.white})
+    for (const Xy& p : {c.red, c.green, c.blue, c.white})
         if (!(std::fabs(p[0]) <= 10 && std::fabs(p[1]) <= 10)) return false;
     const double area =
         (c.green[0] - c.red[0]) * (c.blue[1] - c.red[1]) - (c.blue[0] - c.red[0]) * (c.green[1] - c.red[1]);

@@ -10,12 +10,12 @@ check() { "$CRESCENT" check --quiet "$@"; }
 expect 0 "${CC:-cc}" -O2 -o slow "$here/slow.c" -lm
 some="any(v['name'] != 'valid' and v['state'] == 'inconclusive' for v in j['verdicts'])"
 everywhere="sum(v['name'] == 'valid' and v['state'] == 'right' for v in j['verdicts']) == 8"
-expect 4 check --exec './slow 900000' --patience 20 --json few.json --junit few.xml --html few.html
+expect 4 check --exec './slow 300000' --patience 20 --json few.json --junit few.xml --html few.html
 fields few.json "assert $everywhere and $some and 0 < len(j['left_out']) <= 8 and j['state'] == 'inconclusive'"
 for file in printed few.xml few.html; do
     grep -q "Not examined" $file || die "$file does not say what was not looked at"
 done
-expect 0 check --exec './slow 900000' --patience 20 --accept-few --json few.json
+expect 0 check --exec './slow 300000' --patience 20 --accept-few --json few.json
 fields few.json "assert $everywhere and len(j['left_out']) > 0 and j['state'] == 'right'"
 expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among the w_o that are skipped for lack of time
 
@@ -36,7 +36,7 @@ broken "got 'oops'" 'read hello; echo hello 1 x; read f; echo -; read sample
 
 # A number too large for a double is infinite in every notation.
 for huge in 1e999 0x1p+5000 inf 123456789e400; do
-    expect 1 check --exec "./slow 10000000 $huge"
+    expect 1 check --exec "./slow 10000000 $huge" --wo 45
     grep -q "pdf is infinite" printed || die "$huge is not infinite: $(cat printed)"
 done
 
@@ -85,11 +85,11 @@ gone orphan
 
 # Files appear whole; no other file is changed, and no link is followed.
 echo mine >r.json.part && echo mine >victim && ln -s victim r.json
-expect 1 check --exec "./slow 10000000 -1" --json r.json
+expect 1 check --exec "./slow 10000000 -1" --wo 45 --json r.json
 [ "$(cat r.json.part victim)" = "mine
 mine" ] || die "a file that is not ours was touched"
 fields r.json "assert j['state'] == 'wrong'"
-check --exec "./slow 10000000 -1" --json /dev/stdout 2>said | grep -q '"state": "wrong"' ||
+check --exec "./slow 10000000 -1" --wo 45 --json /dev/stdout 2>said | grep -q '"state": "wrong"' ||
     die "nothing on /dev/stdout: $(cat said)"
 
 # A header of 60,000 blanks, for which a recursive matcher would run out of stack.

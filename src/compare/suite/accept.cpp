@@ -117,10 +117,10 @@ Json statistics_of(const RenderStats& all) {
             means.push_back(render[r].y), spreads.push_back(k > 1 ? render[r].spread * k / (k - 1) : std::nan(""));
         const MeanInterval m = mean_interval(means, confidence);
         Json& at = out["regions"][all.regions[r].name];
-        at = {{"mean_y", number(m.mean)}};
+        at = {{"mean_y", output::number(m.mean)}};
         if (k < 2) continue;
-        at["standard_deviation_of_render_mean"] = number(m.se * std::sqrt(k));
-        at["variance_of_pixel"] = number(mean_interval(spreads, confidence).mean);
+        at["standard_deviation_of_render_mean"] = output::number(m.se * std::sqrt(k));
+        at["variance_of_pixel"] = output::number(mean_interval(spreads, confidence).mean);
     }
     return out;
 }

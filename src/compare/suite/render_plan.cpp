@@ -152,14 +152,15 @@ std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& pl
 }
 
 std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans) {
-    Json out = {{"format", "crescent render plan 1"}, {"alpha", number(suite.options.alpha)}, {"views", Json::array()}};
+    Json out = {
+        {"format", "crescent render plan 1"}, {"alpha", output::number(suite.options.alpha)}, {"views", Json::array()}};
     for (const ViewPlan& plan : plans) {
-        Json view = {{"view", plan.name}, {"renders", plan.renders}, {"smallest", number(plan.smallest)}};
-        if (plan.spp) view["spp"] = number(*plan.spp);
+        Json view = {{"view", plan.name}, {"renders", plan.renders}, {"smallest", output::number(plan.smallest)}};
+        if (plan.spp) view["spp"] = output::number(*plan.spp);
         if (!plan.why.empty()) view["why"] = plan.why;
         else {
-            view["region"] = plan.region, view["mean_y"] = number(plan.mean);
-            view["standard_deviation_of_render_mean"] = number(plan.deviation);
+            view["region"] = plan.region, view["mean_y"] = output::number(plan.mean);
+            view["standard_deviation_of_render_mean"] = output::number(plan.deviation);
             for (std::size_t s = 0; s < plan_samples.size(); ++s)
                 view["needed"].push_back({{"samples", plan_samples[s]},
                     {"renders", plan.needed[s] ? Json(*plan.needed[s]) : Json(nullptr)}});

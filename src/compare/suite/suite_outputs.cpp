@@ -12,22 +12,23 @@ namespace crescent::inline comparison {
 
 namespace {
 
-Json p_json(double p) { return std::isnan(p) ? Json(nullptr) : number(p); }
+Json p_json(double p) { return std::isnan(p) ? Json(nullptr) : output::number(p); }
 
 Json mean_json(const MeanTest& t) {
-    Json out = {{"baseline", number(t.b)}, {"candidate", number(t.a)}, {"differs_in", t.differs_in()}};
+    Json out = {{"baseline", output::number(t.b)}, {"candidate", output::number(t.a)}, {"differs_in", t.differs_in()}};
     if (!t.why.empty()) out["why"] = t.why;
     else
-        out["p"] = p_json(t.joint_p), out["standard_error"] = number(t.welch.se), out["smallest"] = number(t.smallest),
-        out["paired"] = t.paired;
+        out["p"] = p_json(t.joint_p), out["standard_error"] = output::number(t.welch.se),
+        out["smallest"] = output::number(t.smallest), out["paired"] = t.paired;
     if (!t.caveat.empty()) out["doubt"] = t.caveat;
     return out;
 }
 
 Json variance_json(const VarianceTest& t) {
-    Json out = {{"baseline", number(t.baseline)}, {"candidate", number(t.candidate)}, {"differs", t.different}};
+    Json out = {
+        {"baseline", output::number(t.baseline)}, {"candidate", output::number(t.candidate)}, {"differs", t.different}};
     if (!t.why.empty()) out["why"] = t.why;
-    else out["p"] = number(t.welch.p);
+    else out["p"] = output::number(t.welch.p);
     return out;
 }
 
@@ -35,7 +36,7 @@ Json places_json(const std::vector<Found>& found) {
     Json out = Json::array();
     for (const Found& f : found)
         out.push_back({{"box", {f.box.x0, f.box.y0, f.box.x1, f.box.y1}}, {"channel", quantity_names[f.quantity]},
-            {"baseline", number(f.b)}, {"candidate", number(f.a)}, {"p", number(f.p)}});
+            {"baseline", output::number(f.b)}, {"candidate", output::number(f.a)}, {"p", output::number(f.p)}});
     return out;
 }
 
@@ -43,8 +44,9 @@ Json view_json(const ViewResult& view) {
     Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"sentence", view.sentence}, {"width", view.width},
         {"height", view.height},
         {"renders", {{"baseline", view.baseline_renders}, {"candidate", view.candidate_renders}}},
-        {"smallest", number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
-        {"p", {{"means", p_json(view.mean_p)}, {"variances", p_json(view.variance_p)}}}, {"level", number(view.level)},
+        {"smallest", output::number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
+        {"p", {{"means", p_json(view.mean_p)}, {"variances", p_json(view.variance_p)}}},
+        {"level", output::number(view.level)},
         {"renders_needed", view.renders_needed ? Json(*view.renders_needed) : Json(nullptr)}, {"notes", view.notes},
         {"means", Json::object()}, {"variances", Json::object()}};
     for (const VarianceTest& t : view.variances) out["variances"][t.region] = variance_json(t);
@@ -105,8 +107,8 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result) {
 
 std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& p) {
     Json out = {{"format", "crescent suite 1"}, {"title", suite.options.title}, {"sentence", result.sentence},
-        {"exit_code", exit_code(result, strict)}, {"alpha", number(suite.options.alpha)},
-        {"share_of_means", number(share_of_means)}, {"views_tested", result.tested}, {"counts", Json::object()},
+        {"exit_code", exit_code(result, strict)}, {"alpha", output::number(suite.options.alpha)},
+        {"share_of_means", output::number(share_of_means)}, {"views_tested", result.tested}, {"counts", Json::object()},
         {"views", Json::array()}};
     for (std::size_t k = 0; k < view_state_names.size(); ++k)
         out["counts"][view_state_names[k]] = result.count(static_cast<ViewState>(k));

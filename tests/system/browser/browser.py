@@ -53,7 +53,7 @@ def wait(driver, script, seconds=120):
         value = driver.execute_script("return " + script)
         if value:
             return value
-        time.sleep(0.02)
+        time.sleep(0.05)
     raise AssertionError(f"after {seconds} s still not: {script}; the page says: "
                          + driver.execute_script("return document.body.innerText.slice(0, 1500)"))
 

@@ -3,8 +3,9 @@
     run_blocks.py --source REPOSITORY --build BUILD [--work FOLDER] [PAGE...]
 
 The blocks of a page run in order in one folder, a copy of the repository in which `build` is the release build and the
-experiments have one seed. tests/system/docs/pages/PAGE.sh first creates the files that a reader of that page has.
-CONTRIBUTING.md and the head of blocks.py describe the marks of blocks. Exit 1: a block fails.
+experiments have one seed and no arm of more than 64 samples. tests/system/docs/pages/PAGE.sh first creates the files
+that a reader of that page has. CONTRIBUTING.md and the head of blocks.py describe the marks of blocks. Exit 1: a block
+fails.
 """
 
 from __future__ import annotations
@@ -44,6 +45,12 @@ def pages_of(source: Path) -> list[Path]:
     return found + sorted((source / "examples").rglob("*.md"))
 
 
+def few_samples(counts: re.Match[str]) -> str:
+    """Returns an arm's list of sample counts without those above 64, which take most of a run's time."""
+    few = [n for n in counts[1].split(",") if int(n) <= 64]
+    return f"n = [{','.join(few)}]" if few else counts[0]
+
+
 def make_folder(source: Path, build: Path, folder: Path) -> None:
     """Makes a copy of the repository without build outputs; the scripts at its top are links, because they build where
     they are."""
@@ -56,8 +63,8 @@ def make_folder(source: Path, build: Path, folder: Path) -> None:
             (folder / script).unlink()
             (folder / script).symlink_to(source / script)
     for experiment in (folder / "experiments").glob("*.toml"):
-        text = experiment.read_text(encoding="utf-8")
-        experiment.write_text(re.sub(r"(?m)^seeds = \d+", "seeds = 1", text), encoding="utf-8")
+        text = re.sub(r"(?m)^seeds = \d+", "seeds = 1", experiment.read_text(encoding="utf-8"))
+        experiment.write_text(re.sub(r"(?m)^n = \[([\d, ]*)\]", few_samples, text), encoding="utf-8")
     (folder / "home").mkdir()
 
 
