@@ -10,12 +10,12 @@ check() { "$CRESCENT" check --quiet "$@"; }
 expect 0 "${CC:-cc}" -O2 -o slow "$here/slow.c" -lm
 some="any(v['name'] != 'valid' and v['state'] == 'inconclusive' for v in j['verdicts'])"
 everywhere="sum(v['name'] == 'valid' and v['state'] == 'right' for v in j['verdicts']) == 8"
-expect 4 check --exec './slow 300000' --patience 20 --json few.json --junit few.xml --html few.html
+expect 4 check --exec './slow 900000' --patience 20 --json few.json --junit few.xml --html few.html
 fields few.json "assert $everywhere and $some and 0 < len(j['left_out']) <= 8 and j['state'] == 'inconclusive'"
 for file in printed few.xml few.html; do
     grep -q "Not examined" $file || die "$file does not say what was not looked at"
 done
-expect 0 check --exec './slow 300000' --patience 20 --accept-few --json few.json
+expect 0 check --exec './slow 900000' --patience 20 --accept-few --json few.json
 fields few.json "assert $everywhere and len(j['left_out']) > 0 and j['state'] == 'right'"
 expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among the w_o that are skipped for lack of time
 
