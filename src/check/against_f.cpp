@@ -336,8 +336,7 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
 
 void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
     const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
-    if (!of_f.same.value_or(true))
-        return skip(v, "Their f differ: variances of two integrals are not ranked.");
+    if (!of_f.same.value_or(true)) return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
         return skip(v,
             a.can_draw() ? "There is no f, so f L cos / p has no variance."

@@ -22,8 +22,8 @@ struct NextStep {
     double times = 0;  // required factor on the number of draws; 0: unknown
 };
 
-/// The density that the draws of a sampler without pdf(w) imply, with standard errors, 1/sr: means over rings about n, and
-/// the highest of the cells.
+/// The density that the draws of a sampler without pdf(w) imply, with standard errors, 1/sr: means over rings about n,
+/// and the highest of the cells.
 struct ImpliedDensity {
     struct Ring {
         double from = 0, to = 0;  // degrees from n
