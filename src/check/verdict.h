@@ -33,7 +33,7 @@ struct ImpliedDensity {
     double peak = 0, peak_error = 0;
 };
 
-/// `evidence` is written for the JSON and never read: whatever another part of the program needs has a member.
+/// `evidence` is written for the JSON and never read: what other parts of the program need has a member of its own.
 struct Verdict {
     std::string arm;
     std::string check_case;  // w_o and parameters
