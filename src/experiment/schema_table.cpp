@@ -123,7 +123,8 @@ Section mesh_tables() {
     for (Key& key : placement_keys<MeshObject, &MeshObject::placement>()) keys.push_back(std::move(key));
     for (Key& key : material_keys<MeshObject>()) keys.push_back(std::move(key));
     keys.push_back({texture_keys[0].name, Type::text, none, "", optional, "none",
-        "An OpenEXR image next to this file or in a folder there, whose texels multiply rho_d.",
+        "An OpenEXR image, or a packed one (.image), next to this file or in a folder there, whose texels multiply "
+        "rho_d.",
         to<texture_keys[0].texture, &Texture::file>});
     keys.push_back({texture_keys[1].name, Type::text, none, "", optional, "none", "The same for alpha: a grey image.",
         to<texture_keys[1].texture, &Texture::file>});
@@ -176,7 +177,8 @@ Section sky() {
         "An image sky: light from infinitely far away where nothing hides it, see docs/conventions.md.",
         in<&Experiment::sky, Experiment>,
         {{"file", Type::text, none, "", required, "",
-             "A latitude-longitude image, OpenEXR, relative to this file; twice as wide as high, at most 8192 x 4096.",
+             "A latitude-longitude image, OpenEXR or packed (.image), relative to this file; twice as wide as high, at "
+             "most 8192 x 4096.",
              to<&SkyLight::file>},
             {"rotation", Type::number, {-360, 360}, "degrees", defaulted, "0",
                 "About the y axis, counterclockwise seen from above.", to<&SkyLight::rotation>},

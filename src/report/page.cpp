@@ -412,7 +412,7 @@ Json assertions(const Page& page) {
             {"bound", cell_text(compact(a.bound))}, {"skipped", a.skipped}, {"fails", ran && a.failed()},
             {"holds", holds}, {"cannot_fail", holds && a.cannot_fail}});
     }
-    return {{"total", all.size()}, {"failed", failed > 0 ? std::to_string(failed) : ""},
+    return {{"total", all.size()}, {"one", all.size() == 1}, {"failed", failed > 0 ? std::to_string(failed) : ""},
         {"empty", empty > 0 ? std::to_string(empty) : ""}, {"rows", rows}};
 }
 

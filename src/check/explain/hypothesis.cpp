@@ -120,7 +120,7 @@ std::vector<Place> places_of(
         for (const CheckAt& c : outcome.at[k])
             if (density_is_wrong(c) && c.plan && c.plan->drawn > 0) {
                 const CheckCase& t = check_cases[outcome.check_cases[k]];
-                wrong.push_back({&t, &c, outcome.check_cases[k], t.adapter->traits(), {}, {}, {}, 0});
+                wrong.push_back({&t, &c, outcome.check_cases[k], t.adapter->traits(), {}, {}, {}, 0, {}});
             }
     // Selects entries over the whole list, which goes from n to grazing and below.
     std::vector<Place> out;
