@@ -11,7 +11,7 @@ namespace crescent::check {
 
 namespace {
 
-constexpr int halvings = 24;
+constexpr int share_halvings = 24;
 constexpr double least_share = 1e-4;
 constexpr double least_errors = 8;        // least ratio of a share to its standard error
 constexpr double expected_at_least = 10;  // expected draws of an empty leaf that counts as unreached: e^-10
@@ -81,7 +81,7 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
         return d;
     };
     double low = 0, high = 1;
-    for (int step = 0; step < halvings; ++step) {
+    for (int step = 0; step < share_halvings; ++step) {
         const double middle = (low + high) / 2;
         (at(middle).first > 0 ? low : high) = middle;
     }
