@@ -146,7 +146,7 @@ std::string report_html(const ReportInputs& in) {
     model["hero_plates"] = page.figures.plates(PlateKind::hero);
     model["question"] = question(page);
     model["estimator"] = estimator_equation(page);
-    model["scene"] = scene(page);
+    model["scene"] = scene_section(page);
     model["densities"] = densities(page);
     model["results"] = results(page);
     model["failure_a"] = failure_a(page);

@@ -49,7 +49,7 @@ struct Page {
 // theory.html
 Json question(const Page& page);
 Json estimator_equation(const Page& page);
-Json scene(Page& page);
+Json scene_section(Page& page);  // `scene` is a namespace: clang 19 would mangle what follows apart
 Json densities(Page& page);
 // measurements.html
 Json results(Page& page);

@@ -83,7 +83,7 @@ Json shapes_of(const Page& page) {
 
 }  // namespace
 
-Json scene(Page& page) {
+Json scene_section(Page& page) {
     const Experiment& e = page.in.experiment;
     Json lights = Json::array(), sky = false;
     for (const auto& [path, light] : all_lights(e))
