@@ -50,11 +50,6 @@ void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
     }
 }
 
-void note_first_failure(const std::string& what, Verdict& v) {
-    v.first_failure = true;
-    v.evidence["first_fault"] = what;
-}
-
 /// Messages of the verdicts of a case that ended early: of the first verdict, and of the others.
 struct AbortText {
     State state = State::error;

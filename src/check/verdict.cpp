@@ -14,6 +14,11 @@ std::string_view word(State state) {
     return "";
 }
 
+void note_first_failure(const std::string& what, Verdict& v) {
+    v.first_failure = true;
+    v.evidence["first_fault"] = what;
+}
+
 void next_step(CheckResult& j) {
     bool wrong = !j.unmet.empty(), error = false, doubt = false;
     j.as_expected = j.unmet.empty();

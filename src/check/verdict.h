@@ -104,6 +104,9 @@ struct CheckResult {
     bool as_expected = true;                               // whether every verdict is the expected one
 };
 
+/// Marks the verdict at which the sampler failed, with the error; the verdicts after it follow from it.
+void note_first_failure(const std::string& what, Verdict& v);
+
 /// Sets the state of the result: verdicts that the caller does not expect, and expectations that no verdict meets.
 void next_step(CheckResult& result);
 

@@ -11,6 +11,7 @@
 #include "experiment/parser.h"
 #include "math/simd/random.h"
 #include "render/combination.h"
+#include "render/combination_call.h"
 #include "samplers/info.h"
 #include "samplers/weight_formula.h"
 
@@ -87,7 +88,6 @@ void add_combinations(const Experiment& experiment, ExternalSamplers& samplers) 
 
 namespace {
 
-constexpr std::size_t most_samplers = 16;
 constexpr std::uint32_t probes = 64;  // points at which the sum of formulas is tested, for each shape
 
 class Checks {
@@ -189,9 +189,8 @@ private:
         const CombinationPlan& c = arm.combination;
         if (!context_.is_valid(path + ".of")) return;
         const std::size_t least = c.kind == CombinationKind::ris ? 1 : 2;
-        if (!c.of.empty() && (c.of.size() < least || c.of.size() > most_samplers))
-            report(
-                path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_samplers, c.of.size()));
+        if (!c.of.empty() && (c.of.size() < least || c.of.size() > most_parts))
+            report(path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_parts, c.of.size()));
         for (std::size_t i = 0; i < c.of.size(); ++i)
             if (const std::string why = why_no_part(arm, c.of[i]); !why.empty()) {
                 const std::string at = fmt::format("{}.of.{}", path, i);

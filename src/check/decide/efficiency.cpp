@@ -179,8 +179,7 @@ void test_one_efficiency(
     const Efficiency& e, std::span<const CheckCase> check_cases, std::span<const Efficiency* const> group, Verdict& v) {
     if (!e.fault.empty()) {
         v.state = State::error;
-        v.first_failure = true;
-        v.evidence["first_fault"] = e.fault;
+        note_first_failure(e.fault, v);
         v.message = "The sampler failed: " + e.fault + ".";
         return;
     }

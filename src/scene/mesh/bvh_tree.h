@@ -97,12 +97,7 @@ public:
     /// Returns which boxes of a node are met at t <= t_max (a bit for each), and stores where they are entered.
     [[gnu::always_inline]] unsigned meets(const BvhNode& node, float t_max, std::array<float, children>& at) const {
         F8 near = {}, far = near + t_max;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const F8 a = (node.side[forward_[k] ? 0 : 1][k] - near_[k]) * inverse_[k],
-                     b = (node.side[forward_[k] ? 1 : 0][k] - far_[k]) * inverse_[k];
-            near = a > near ? a : near;
-            far = b < far ? b : far;
-        }
+        cut(node.side, near, far);
         at = std::bit_cast<std::array<float, children>>(near);
         return bits_of(near <= far * far_factor);
     }
@@ -110,28 +105,29 @@ public:
     /// The same for the boxes of a leaf's items, which are met at t < t_max.
     [[gnu::always_inline]] unsigned meets(const LeafBoxes& boxes, float t_max) const {
         F4 near = {}, far = near + t_max;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const F4 a = (boxes[forward_[k] ? 0 : 1][k] - near_[k]) * inverse_[k],
-                     b = (boxes[forward_[k] ? 1 : 0][k] - far_[k]) * inverse_[k];
-            near = a > near ? a : near;
-            far = b < far ? b : far;
-        }
+        cut(boxes, near, far);
         return bits_of((near <= far * far_factor) & (near < all4(t_max)));
     }
 
     /// Returns where one box is entered, at least 0; infinity if it is not met at t <= t_max.
     float enters(const Bounds& box, float t_max) const {
         float near = 0, far = t_max;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const float low = axis_of(box.low, k), high = axis_of(box.high, k);
-            const float a = ((forward_[k] ? low : high) - near_[k]) * inverse_[k];
-            const float b = ((forward_[k] ? high : low) - far_[k]) * inverse_[k];
-            near = a > near ? a : near, far = b < far ? b : far;
-        }
+        cut<float>({{{box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}}}, near, far);
         return near <= far * far_factor ? near : infinity;
     }
 
 private:
+    /// Cuts [near, far] to the slabs of boxes, whose low and high sides are given by axis.
+    template <class F>
+    [[gnu::always_inline]] void cut(const std::array<std::array<F, 3>, 2>& side, F& near, F& far) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const F a = (side[forward_[k] ? 0 : 1][k] - near_[k]) * inverse_[k],
+                    b = (side[forward_[k] ? 1 : 0][k] - far_[k]) * inverse_[k];
+            near = a > near ? a : near;
+            far = b < far ? b : far;
+        }
+    }
+
     static constexpr float far_factor = 1 + 8 * static_cast<float>(unit_roundoff);
     std::array<float, 3> inverse_, near_, far_;
     std::array<bool, 3> forward_;
