@@ -20,6 +20,12 @@ public:
                 synthetic_pixel({SyntheticNoise::Kind::normal, 0.1}, seed, static_cast<std::uint32_t>(i), side));
         return renders[name] = r;
     }
+    /// A grey render with these values, rows of `width` pixels from the bottom.
+    Render& put_grey(const std::string& name, int width, const std::vector<float>& values) {
+        Render r(name, width, static_cast<int>(values.size()) / width);
+        r.r = r.g = r.b = values;
+        return renders[name] = r;
+    }
     RenderStats read(std::vector<CompareFlag> flags = {}) const {
         ProgressMonitor monitor;
         return read_all(plan(std::move(flags)), monitor, source());
@@ -29,15 +35,15 @@ public:
         const ComparePlan planned = plan(flags);
         return test_differences(planned, read_all(planned, monitor, source()), monitor);
     }
-    std::map<std::string, Render> renders;
-
-private:
-    ComparePlan plan(std::vector<CompareFlag> flags) const {
+    ComparePlan plan(std::vector<CompareFlag> flags = {}) const {
         for (const char* arm : {"a", "b"})
             if (renders.lower_bound(arm) != renders.end() && renders.lower_bound(arm)->first.starts_with(arm))
                 flags.push_back({{"arms", arm, "files"}, arm, false, arm});
         return plan_of(flags);
     }
+    std::map<std::string, Render> renders;
+
+private:
     RenderSource source() const {
         RenderSource out;
         out.expand = [this](const std::vector<std::string>& names, const SourceLocation&) {

@@ -91,20 +91,6 @@ TEST(Suites, EachViewHasTheStateOfItsRenders) {
     EXPECT_GT(*view_of(result, "few").renders_needed, 3u);
 }
 
-TEST(Suites, TheFirstExitCodeThatAppliesIsTaken) {
-    const auto code = [](std::initializer_list<ViewState> states, bool strict = false) {
-        SuiteResult result;
-        for (const ViewState state : states) result.views.emplace_back().state = state;
-        return exit_code(result, strict);
-    };
-    EXPECT_EQ(code({ViewState::same, ViewState::improved, ViewState::added}), 0);
-    EXPECT_EQ(code({ViewState::same, ViewState::added}, true), 1);
-    EXPECT_EQ(code({ViewState::too_few, ViewState::same}), 4);
-    EXPECT_EQ(code({ViewState::too_few, ViewState::missing}), 1);
-    EXPECT_EQ(code({ViewState::too_few, ViewState::noisier}), 1);
-    EXPECT_EQ(code({ViewState::too_few, ViewState::added}, true), 1);
-}
-
 TEST(Suites, TheStatedNumberOfRendersIsEnough) {
     MemorySuite few;
     few.suite.options.smallest = 0.004;
@@ -116,18 +102,6 @@ TEST(Suites, TheStatedNumberOfRendersIsEnough) {
     enough.suite.options.smallest = 0.004;
     enough.put_both("view", noise, noise, 1000, static_cast<int>(*first.renders_needed * 3 / 2));
     EXPECT_EQ(enough.compare().views[0].state, ViewState::same);
-}
-
-TEST(Suites, PowerFollowsTheNumberOfRenders) {
-    RegionPower power{1, 0.01, 0.01, 1e9, false, 0};
-    const auto n = renders_needed(power, 0.05, 0.01);
-    ASSERT_TRUE(n);
-    EXPECT_LE(detectable_with(power, *n, 0.01), 0.05);
-    EXPECT_GT(detectable_with(power, *n - 1, 0.01), 0.05);
-    EXPECT_FALSE(renders_needed(power, 1e-9, 0.01));
-    // n equal groups: t quantiles of many degrees of freedom are those of the normal distribution.
-    const double z = 2.5758 + 1.2816;
-    EXPECT_NEAR(detectable_with(power, 10000, 0.01), z * std::sqrt(2 * 0.01 / 10000), 1e-6);
 }
 
 TEST(Suites, CopiesWithinASideAreLeftOut) {
@@ -184,19 +158,6 @@ TEST(Suites, MistakesOfAllViewsAreReportedTogether) {
         EXPECT_EQ(e.diagnostics()[0].at.file, "one/candidate/0");
         EXPECT_EQ(e.diagnostics()[1].at.file, "two/candidate/1");
     }
-}
-
-TEST(Suites, MarkdownStaysBelowSixtyKilobytesAndEscapesNames) {
-    SuiteResult result;
-    for (int k = 0; k < 3000; ++k) {
-        ViewResult& view = result.views.emplace_back();
-        view.name = "a|b<i>" + std::to_string(k), view.state = ViewState::changed;
-        view.sentence = std::string(300, 'x');
-    }
-    const std::string text = suite_markdown({}, result, {});
-    EXPECT_LT(text.size(), 60'000u);
-    EXPECT_THAT(text, HasSubstr("a\\|b&lt;i>"));
-    EXPECT_THAT(text, HasSubstr("more; the report has them"));
 }
 
 class SuitePatterns : public ScratchFolder {};

@@ -1,0 +1,70 @@
+// The pictures of a view: which there are, their size, and the scale of their differences.
+#include <gtest/gtest.h>
+
+#include "compare/suite/suite.h"
+#include "tests/support/memory_renders.h"
+
+namespace crescent::inline comparison {
+namespace {
+
+/// A grey ramp of 64 x 4 pixels from 0 on, times a factor.
+std::vector<float> ramp(float factor) {
+    std::vector<float> out(64 * 4);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = factor * static_cast<float>(i % 64);
+    return out;
+}
+
+TEST(SuitePictures, OfOneSideShowItsFirstRender) {
+    const Suite suite;
+    RenderSource source;
+    source.read = [](const std::string& path, const std::string&) { return Render(path, 1600, 8); };
+    ViewResult added, missing;
+    picture_one_side(suite, {.name = "v", .candidate = {"c"}}, source, added);
+    picture_one_side(suite, {.name = "v", .baseline = {"b"}}, source, missing);
+    EXPECT_EQ(added.width, 1600);
+    EXPECT_LE(added.pictures.width, 800);
+    EXPECT_TRUE(added.pictures.baseline.empty());
+    EXPECT_FALSE(added.pictures.candidate.empty());
+    EXPECT_FALSE(missing.pictures.baseline.empty());
+    EXPECT_TRUE(missing.pictures.candidate.empty());
+}
+
+TEST(SuitePictures, DifferencesAreRelativeToTheBrightness) {
+    MemoryRenders m;
+    m.put_grey("a", 64, ramp(1)), m.put_grey("b", 64, ramp(1.5f));
+    const RenderStats all = m.read();
+    BiasResult means;
+    means.arm_a = 1, means.arm_b = 0;
+    ViewResult out;
+    out.smallest = 0.01;
+    picture_both_sides({}, all, means, out);
+    EXPECT_EQ(out.pictures.width, 64);
+    EXPECT_EQ(out.pictures.height, 4);
+    // In the brightest column 0.5 / 1.25, less by a hundredth of the mean brightness 1.25 x 31.5 over 1.25 x 63.
+    EXPECT_NEAR(out.pictures.scale, 0.4 / 1.005, 2e-4);
+    out.smallest = 0.1;
+    picture_both_sides({}, all, means, out);
+    EXPECT_DOUBLE_EQ(out.pictures.scale, 0.5);  // five times the difference that must be found
+}
+
+TEST(SuitePictures, OfManyViewsAreSmaller) {
+    MemoryRenders m;
+    m.put("a", 1, 400), m.put("b", 2, 400);
+    const RenderStats all = m.read();
+    BiasResult means;
+    means.arm_a = 1, means.arm_b = 0;
+    const auto width = [&](std::size_t views) {
+        Suite suite;
+        suite.views.resize(views);
+        ViewResult out;
+        picture_both_sides(suite, all, means, out);
+        const ViewPictures& p = out.pictures;
+        EXPECT_LE(p.baseline.size() + p.candidate.size() + p.difference.size(), 36'000'000 / views);
+        return p.width;
+    };
+    EXPECT_EQ(width(1), 400);
+    EXPECT_LT(width(300), 400);
+}
+
+}  // namespace
+}  // namespace crescent::inline comparison

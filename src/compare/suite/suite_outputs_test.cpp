@@ -1,0 +1,80 @@
+// A suite's result as JSON, JUnit and Markdown: states, numbers and limits.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "compare/suite/suite.h"
+
+namespace crescent::inline comparison {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// One view in each state, named after it.
+SuiteResult every_state() {
+    SuiteResult out;
+    for (std::size_t k = view_state_names.size(); k-- > 0;)
+        out.views.emplace_back().name = view_state_names[k], out.views.back().state = static_cast<ViewState>(k);
+    return out;
+}
+
+TEST(SuiteOutputs, ListTheMostSevereViewsFirst) {
+    SuiteResult result = every_state();
+    result.views.emplace_back().name = "a", result.views.back().state = ViewState::changed;
+    std::vector<std::string> names;
+    for (const ViewResult* view : by_state(result)) names.push_back(view->name);
+    EXPECT_EQ(names,
+        (std::vector<std::string>{"a", "changed", "noisier", "too few renders", "missing", "new", "improved", "same"}));
+}
+
+TEST(SuiteOutputs, JunitFailsErrsAndSkips) {
+    EXPECT_THAT(
+        suite_junit({}, every_state(), false), HasSubstr("tests=\"7\" failures=\"3\" errors=\"1\" skipped=\"1\""));
+    EXPECT_THAT(
+        suite_junit({}, every_state(), true), HasSubstr("tests=\"7\" failures=\"4\" errors=\"1\" skipped=\"0\""));
+}
+
+TEST(SuiteOutputs, JsonHasTheNumbersOfEachView) {
+    SuiteResult result = every_state();
+    ViewResult& view = result.views[0];
+    view.mean_p = 0.25, view.renders_needed = 12, view.candidate_renders = 4;
+    MeanTest& test = view.means.emplace().regions.emplace_back();
+    test.region = "frame", test.a = 3, test.b = 2, test.joint_p = 0.5, test.smallest = 0.125;
+    view.variances.emplace_back().region = "frame", view.variances[0].why = "heavy tail";
+    const nlohmann::json json = nlohmann::json::parse(suite_json({}, result, true, {}));
+    EXPECT_EQ(json["exit_code"], 1);
+    EXPECT_EQ(json["counts"]["changed"], 1);
+    const nlohmann::json& first = json["views"][0];
+    EXPECT_EQ(first["state"], "same");
+    EXPECT_EQ(first["p"]["means"], 0.25);
+    EXPECT_EQ(first["p"]["variances"], nullptr);
+    EXPECT_EQ(first["renders_needed"], 12);
+    EXPECT_EQ(first["renders"]["candidate"], 4);
+    EXPECT_EQ(first["means"]["frame"]["candidate"], 3);
+    EXPECT_EQ(first["means"]["frame"]["smallest"], 0.125);
+    EXPECT_FALSE(first["variances"]["frame"].contains("p"));
+}
+
+TEST(SuiteOutputs, MarkdownStaysBelowSixtyKilobytesAndEscapesNames) {
+    SuiteResult result;
+    for (int k = 0; k < 3000; ++k) {
+        ViewResult& view = result.views.emplace_back();
+        view.name = "a|b<i>" + std::to_string(k), view.state = ViewState::changed;
+        view.sentence = std::string(300, 'x');
+    }
+    const std::string text = suite_markdown({}, result, {});
+    EXPECT_LT(text.size(), 60'000u);
+    EXPECT_THAT(text, HasSubstr("a\\|b&lt;i>"));
+    EXPECT_THAT(text, HasSubstr("more; the report has them"));
+}
+
+TEST(SuiteOutputs, MarkdownLeavesEqualViewsOut) {
+    const std::string text = suite_markdown({}, every_state(), {});
+    for (const char* name : {"changed", "noisier", "missing", "improved"}) EXPECT_THAT(text, HasSubstr(name));
+    SuiteResult same;
+    same.views.emplace_back().name = "crown";
+    EXPECT_EQ(suite_markdown({}, same, {}).find("crown"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace crescent::inline comparison
