@@ -19,8 +19,10 @@ TEST(SuitePictures, OfOneSideShowItsFirstRender) {
     RenderSource source;
     source.read = [](const std::string& path, const std::string&) { return Render(path, 1600, 8); };
     ViewResult added, missing;
-    picture_one_side(suite, {.name = "v", .candidate = {"c"}}, source, added);
-    picture_one_side(suite, {.name = "v", .baseline = {"b"}}, source, missing);
+    SuiteView only_candidate, only_baseline;
+    only_candidate.candidate = {"c"}, only_baseline.baseline = {"b"};
+    picture_one_side(suite, only_candidate, source, added);
+    picture_one_side(suite, only_baseline, source, missing);
     EXPECT_EQ(added.width, 1600);
     EXPECT_LE(added.pictures.width, 800);
     EXPECT_TRUE(added.pictures.baseline.empty());
