@@ -1,0 +1,146 @@
+// Tests at one w_o other than the identity: usable draws, corners of u, repeated calls, used bits, and the map of u.
+#include "check/decide/small_tests.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "check/constants.h"
+#include "tests/support/function_sampler.h"
+
+namespace crescent::check {
+namespace {
+
+const CaseLighting uniform_light;
+constexpr StreamKey key{3, 0, 0, 1, Purpose::corners};
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns the result of a test of a sampler at w_o = n.
+template <class Test> auto tested(const FunctionSampler& s, const Test& test) {
+    Source source(s, 0, {0, 0, 1}, uniform_light);
+    return test(source);
+}
+std::optional<SmallFault> corners(Source& s) { return corners_of_u(s); }
+std::optional<SmallFault> again(Source& s) { return same_u_again(s, key); }
+std::optional<SmallFault> answers(Source& s) { return same_answers_again(s, key); }
+std::optional<SmallFault> bits(Source& s) { return few_bits(s, key); }
+std::optional<SmallFault> map(Source& s) { return jacobian(s, key); }
+
+TEST(UsableDraws, HaveNumbersThatMeanSomething) {
+    const auto is_usable = [](double pdf, Vec3d wi, double delta = 0, std::optional<double> weight = {}) {
+        Draw d{wi, pdf};
+        d.delta = delta, d.weight = weight;
+        return !fault_of(d);
+    };
+    constexpr Vec3d n{0, 0, 1};
+    EXPECT_TRUE(is_usable(1, n));
+    EXPECT_TRUE(is_usable(0, {0, 0, 7}));  // no sample
+    EXPECT_TRUE(is_usable(0, n, 0.5, 2));
+    EXPECT_TRUE(is_usable(1, {0, 0, 1 + 5e-6}));
+    EXPECT_TRUE(is_usable(1, n, 0, -1e-7));
+    EXPECT_FALSE(is_usable(nan, n));
+    EXPECT_FALSE(is_usable(-1, n));
+    EXPECT_FALSE(is_usable(std::numeric_limits<double>::infinity(), n));
+    EXPECT_FALSE(is_usable(1, {0, nan, 1}));
+    EXPECT_FALSE(is_usable(1, {0, 0, 1.001}));
+    EXPECT_FALSE(is_usable(0, n, 1.5, 1));
+    EXPECT_FALSE(is_usable(0, n, 0.5));  // a delta part without its weight
+    EXPECT_FALSE(is_usable(1, n, 0, -1));
+    EXPECT_FALSE(is_usable(1, n, 0, nan));
+}
+
+TEST(CornersOfU, AreTestedForEveryPairOfNumbers) {
+    FunctionSampler s;
+    EXPECT_FALSE(tested(s, corners));
+    s.of.numbers = 3;
+    s.change = [](const PrimarySample& u, Draw& d) {
+        if (u[1] == 0 && u[2] == 0) d.wi.x = nan;
+    };
+    const auto fault = tested(s, corners);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->times, 3);  // with the first number elsewhere, at 0 and next to 1
+    EXPECT_EQ(fault->of, 3 * 36 + 8);
+    EXPECT_EQ(fault->family, Family::corners);
+}
+
+/// Exchanges the first and the last answer of a block of seven.
+struct MixedRows : FunctionSampler {
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        FunctionSampler::pdf(t, at, out);
+        if (at.size() == 7) std::swap(out.front(), out.back());
+    }
+};
+
+TEST(RepeatedCalls, GiveTheSameDrawsAndAnswers) {
+    FunctionSampler right;
+    right.f_value = lambert(0.5);
+    EXPECT_FALSE(tested(right, again));
+    EXPECT_FALSE(tested(right, answers));
+    FunctionSampler state = right;
+    int calls = 0;
+    state.change = [&calls](const PrimarySample&, Draw& d) {
+        if (++calls % 50 == 0) d.wi.x = -d.wi.x;
+    };
+    const auto fault = tested(state, again);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->family, Family::state);
+    state.of.own_random = true;
+    EXPECT_FALSE(tested(state, again));
+    EXPECT_TRUE(tested(MixedRows(), answers));
+}
+
+TEST(BitsOfNumbers, OfWhichFewAreUsedAreFound) {
+    EXPECT_FALSE(tested(FunctionSampler(), bits));
+    FunctionSampler coarse;
+    coarse.draw = [](Vec3d o, const PrimarySample& u) {
+        return cosine_draw(o, PrimarySample(u.x, (std::floor(4096 * u.y) + 0.5) / 4096));
+    };
+    const auto fault = tested(coarse, bits);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->size, 1);  // the second number
+}
+
+TEST(NumbersWithoutEffect, AreListed) {
+    const auto unused = [](const FunctionSampler& s) {
+        return tested(s, [](Source& source) { return numbers_without_effect(source, key); });
+    };
+    FunctionSampler s;
+    EXPECT_TRUE(unused(s).empty());
+    s.of.numbers = 3;
+    EXPECT_EQ(unused(s), std::vector<int>{2});
+    s.draw = [](Vec3d o, const PrimarySample& u) { return cosine_draw(o, PrimarySample(0.5, u[2])); };
+    EXPECT_EQ(unused(s), (std::vector<int>{0, 1}));
+}
+
+TEST(MapOfU, HasTheDensityOfTheDraws) {
+    const auto densities = [](const FunctionSampler& s) {
+        return tested(s, [](Source& source) { return map_densities(source, key); });
+    };
+    for (const FunctionSampler& s : {FunctionSampler(), power_sampler(30)}) {
+        EXPECT_GT(densities(s).size(), 20u);
+        for (const MapDensity& m : densities(s)) EXPECT_NEAR(m.drawn / m.p, 1, 4 * m.error + 1e-4);
+        EXPECT_FALSE(tested(s, map));
+    }
+    FunctionSampler two;  // the third number chooses between two lobes
+    two.of.numbers = 3;
+    const Vec3d a = tilt(20), b = tilt(60, 120);
+    two.draw = [a, b](Vec3d, const PrimarySample& u) { return power_draw(u[2] < 0.3 ? a : b, 40, u); };
+    two.p = [a, b](Vec3d, Vec3d w) { return 0.3 * power_pdf(a, 40, w) + 0.7 * power_pdf(b, 40, w); };
+    EXPECT_FALSE(densities(two).empty());
+    for (const MapDensity& m : densities(two)) EXPECT_LE(m.drawn, m.p * (1 + 1e-3));
+    EXPECT_FALSE(tested(two, map));
+}
+
+TEST(MapOfU, ADensityBelowThatOfTheMapIsFound) {
+    FunctionSampler low, high;
+    low.p = [](Vec3d o, Vec3d w) { return 0.9 * cosine_pdf(o, w); };
+    high.p = [](Vec3d o, Vec3d w) { return 1.1 * cosine_pdf(o, w); };
+    const auto fault = tested(low, map);
+    ASSERT_TRUE(fault);
+    EXPECT_NEAR(fault->size, -0.1, 2e-3);
+    EXPECT_EQ(fault->times, fault->of);
+    EXPECT_FALSE(tested(high, map));  // other u may map to the same direction
+}
+
+}  // namespace
+}  // namespace crescent::check

@@ -1,0 +1,71 @@
+// Steps of arithmetic and the constants of the test functions.
+#include "check/estimate/plan.h"
+
+#include <gtest/gtest.h>
+
+#include "check/constants.h"
+#include "tests/support/function_sampler.h"
+
+namespace crescent::check {
+namespace {
+
+TEST(CheckPlan, FindsTheStepOfALattice) {
+    Stream stream({1, 0, 0, 1, Purpose::pairs});
+    std::vector<double> exact, few, many;
+    for (int i = 0; i < 1 << 14; ++i) {
+        const double x = stream.number();
+        exact.push_back(x), few.push_back(std::floor(x * 0x1p24) * 0x1p-24), many.push_back(std::floor(x * 256) / 256);
+    }
+    EXPECT_EQ(step_of(exact), 0);
+    EXPECT_NEAR(step_of(few) * 0x1p24, 1, 0.5);
+    EXPECT_NEAR(step_of(many) * 256, 1, 1e-9);
+}
+
+TEST(CheckPlan, StepOfDirectionsIsAnAngle) {
+    std::vector<Vec3d> single, exact;
+    for (std::uint32_t i = 0; i < 1u << 14; ++i) {
+        const Vec3d w = cosine_draw({}, numbers_at({1}, i, 2, false));
+        const auto rounded = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+        exact.push_back(w), single.push_back({rounded(w.x), rounded(w.y), rounded(w.z)});
+    }
+    EXPECT_EQ(step_of_directions(exact), 0);
+    EXPECT_GT(step_of_directions(single), angle_per_step * ulp / 4);
+    EXPECT_LT(step_of_directions(single), angle_per_step * ulp * 4);
+}
+
+TEST(CheckPlan, DescribesThePilotDraws) {
+    FunctionSampler s;
+    s.draw = [](Vec3d o, const PrimarySample& u) { return u.y < 0.5 ? Vec3d{} : cosine_draw(o, u); };
+    s.weights = [](Vec3d, Vec3d) { return Vec3d{0.8, 0, 0}; };
+    const CaseLighting light;
+    Source source(s, 0, {0, 0, 1}, light);
+    const CheckBudget budget = CheckBudget::limited(2e5);
+    const Plan plan = make_plan(source, budget, {});
+    EXPECT_EQ(plan.of, budget.pilot());
+    EXPECT_NEAR(plan.drawn, plan.of / 2.0, 4 * std::sqrt(plan.of / 4.0));
+    EXPECT_NEAR(plan.usual[0], 0.4, 0.05);
+    EXPECT_NEAR(plan.middle.z, 2.0 / 3, 0.03);        // E[cos theta]
+    EXPECT_NEAR(plan.middle.y, -4.0 / 3 / pi, 0.03);  // azimuths from pi to 2 pi: -(2 / pi) E[sin theta]
+    EXPECT_NEAR(plan.median_log_p, std::log(std::sqrt(0.5) / pi), 0.05);
+}
+
+TEST(CheckPlan, TestFunctionsAreBridgedWithTheLeaf) {
+    const FunctionSampler cosine;
+    const CaseLighting light;
+    Source source(cosine, 0, {0, 0, 1}, light);
+    Plan plan = make_plan(source, CheckBudget::limited(1e4), {});
+    plan.median_log_p = -1, plan.middle = {0.1, 0.2, 0.3};
+    Leaf leaf;
+    leaf.q = 0.3;
+    const Values at = plan.values(leaf, {0.5, 0.5, 0.7}, 0.1);
+    EXPECT_DOUBLE_EQ(at[bridge], 0.75);
+    EXPECT_NEAR(at[slope], 0.75 * (std::log(0.1) + 1), 1e-12);
+    EXPECT_NEAR(at[centre_x], 0.75 * 0.4, 1e-12);
+    EXPECT_NEAR(at[centre_z], 0.75 * 0.4, 1e-12);
+    EXPECT_EQ(plan.values(leaf, {0, 0, 1}, 0)[slope], 0);
+    plan.estimates = true;  // h does not depend on a random p
+    EXPECT_DOUBLE_EQ(plan.values(leaf, {0, 0, 1}, 0.9)[bridge], 0.5);
+}
+
+}  // namespace
+}  // namespace crescent::check
