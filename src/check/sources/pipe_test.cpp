@@ -2,8 +2,13 @@
 #include <csignal>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "check/sources/context_columns.h"
 #include "check/sources/pipe.h"
+#include "check/sources/pipe_io.h"
+#include "check/sources/python_sampler.h"
 #include "check/sources/sampler_adapter.h"
 
 namespace crescent {
@@ -119,6 +124,55 @@ TEST(Greetings, BlocksThatSayAnErrorAreTold) {
     EXPECT_NE(fault_of(start + "head -c 408 >/dev/null; printf '\\003\\000\\000\\000'; sleep 3", 2, 10)
                   .find("got a block of 3 rows for one of 10"),
         std::string::npos);
+}
+
+TEST(PipeNumbers, AreReadAndWrittenExactly) {
+    const auto read = [](std::string_view text) {
+        double out = -7;
+        return take_float(text, out) ? out : -7;
+    };
+    EXPECT_EQ(read(" \t1.5 2"), 1.5);
+    EXPECT_EQ(read("-0x1.8p1"), -3);
+    EXPECT_EQ(read("+2"), 2);
+    EXPECT_TRUE(std::isnan(read("nan")));
+    EXPECT_EQ(read("-inf"), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read("1e999"), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read("-1e-999"), 0);
+    EXPECT_EQ(read("0.000001e310"), 1e304);
+    EXPECT_EQ(read("0x1p-9999"), 0);
+    for (const char* bad : {"", "x", "1x", "--1", "+-1", "0x", "1,5"}) EXPECT_EQ(read(bad), -7) << bad;
+    for (const double v : {0.1, 1 / 3.0, 5e-324, -1.7976931348623157e308}) {
+        std::string text;
+        append(text, v);
+        EXPECT_EQ(read(text), v);
+    }
+    EXPECT_TRUE(blank(" \t"));
+    EXPECT_FALSE(blank(" x"));
+    EXPECT_EQ(shown(std::string("a\x01", 2)), "'a\\x01'");
+    EXPECT_EQ(shown(std::string(90, 'a')).size(), 80u + 5);
+}
+
+TEST(PipeLines, AreAnsweredInOrder) {
+    PipeConnection echo("cat", {}, "cat");
+    std::vector<std::string> got;
+    const auto write = [](std::size_t i, std::string& line) { line = "row " + std::to_string(i); };
+    const auto read = [&](std::size_t i, std::string_view line) {
+        got.emplace_back(line);
+        return line == "row " + std::to_string(i);
+    };
+    echo.lines(20000, "the same line", write, read);  // more than a pipe holds
+    EXPECT_EQ(got.size(), 20000u);
+    EXPECT_EQ(got.back(), "row 19999");
+    EXPECT_EQ(echo.spending().answers, 20000u);
+    const auto never = [](std::size_t, std::string_view) { return false; };
+    EXPECT_THROW(echo.lines(1, "another line", write, never), SamplerError);
+    EXPECT_FALSE(echo.broken().empty());
+    EXPECT_THROW(echo.lines(1, "the same line", write, read), SamplerError);  // nothing is sent any more
+}
+
+TEST(PythonSamplers, AreNamedByAFileOrAModule) {
+    for (const char* name : {"a.py", "dir/a.py:Glass", "package.module:Glass"}) EXPECT_TRUE(names_python_sampler(name));
+    for (const char* name : {"cosine", "a.toml", "./a.so"}) EXPECT_FALSE(names_python_sampler(name)) << name;
 }
 
 }  // namespace

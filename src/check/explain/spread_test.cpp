@@ -1,0 +1,48 @@
+// The place of the draws: a uniform share, a curve, a part of where p is positive.
+#include <gtest/gtest.h>
+
+#include "check/explain/factors.h"
+#include "tests/support/explained.h"
+
+namespace crescent::check {
+namespace {
+
+TEST(PlacesOfDraws, ALeakIsMeasured) {
+    const auto draw = [](Vec3d, const PrimarySample& u) {
+        return u[2] < 0.02 ? from_chart({u[0], two_pi * u[1]}) : power_draw({0, 0, 1}, 50, u);
+    };
+    const Explained r = explained(made(draw, [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 50, w); }, 3));
+    expect_cause(r, "leak");
+    EXPECT_NEAR(r.cause ? r.cause->exponent : 0, 0.02, 0.004) << r.text();
+}
+
+TEST(PlacesOfDraws, ANumberWithoutEffectLeavesACurve) {
+    const auto draw = [](Vec3d o, const PrimarySample& u) { return cosine_draw(o, PrimarySample{u[0], 0.3}); };
+    const Explained r = explained(made(draw, cosine_pdf));
+    expect_cause(r, "curve");
+    EXPECT_NE(r.text().find("u2 has no effect"), std::string::npos);
+}
+
+TEST(PlacesOfDraws, MayNotCoverWherePIsPositive) {
+    const double density = 1 / (two_pi * 0.05);
+    const auto draw = [](Vec3d, const PrimarySample& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };
+    const Explained r = explained(made(draw, [density](Vec3d, Vec3d) { return density; }, 2, Traits::WoDomain::none));
+    expect_cause(r, "unreached");
+}
+
+TEST(PlacesOfDraws, ALeakOfTheHemisphereIsDistinguished) {
+    const auto draw = [](Vec3d, const PrimarySample& u) {
+        return u[2] < 0.1 ? from_chart({u[0], two_pi * u[1]}) : power_draw({0, 0, 1}, 50, u);
+    };
+    const Explained r = checked(made(draw, [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 50, w); }, 3));
+    std::vector<Leak> leaks = leak_hypotheses(r.places(1024));
+    ASSERT_FALSE(leaks.empty());
+    const auto best = std::ranges::max_element(leaks, {}, [](const Leak& l) { return l.hypothesis.gain; });
+    EXPECT_FALSE(best->whole);
+    EXPECT_TRUE(best->is_clear());
+    EXPECT_NEAR(best->share, 0.1, 5 * best->error);
+    EXPECT_LT(best->error, 0.01);
+}
+
+}  // namespace
+}  // namespace crescent::check

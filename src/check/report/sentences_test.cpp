@@ -1,0 +1,80 @@
+// What a verdict states without a fault: its limits, and the density that draws without pdf(w) imply.
+#include "check/report/sentences.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/explained.h"
+
+namespace crescent::check {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(ImpliedDensities, AreThoseOfTheDraws) {
+    FunctionSampler s;
+    s.of.has_pdf = false;
+    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 1; };
+    const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    Verdict v;
+    note_implied_density(c, v);
+    ASSERT_TRUE(v.implied);
+    EXPECT_EQ(v.implied->rings.size(), 18u);  // of 5 degrees, up to the horizon
+    for (const ImpliedDensity::Ring& ring : v.implied->rings) {
+        // cos / pi averages (sin^2 to - sin^2 from) / (2 pi (cos from - cos to)) over a ring.
+        const double a = ring.from * pi / 180, b = ring.to * pi / 180;
+        const double mean = (sqr(std::sin(b)) - sqr(std::sin(a))) / (2 * pi * (std::cos(a) - std::cos(b)));
+        EXPECT_NEAR(ring.pdf, mean, 5 * ring.error + 1e-12);
+        EXPECT_LT(ring.error, 0.2 * mean);
+    }
+    EXPECT_NEAR(v.implied->peak, 1 / pi, 4 * v.implied->peak_error);
+    EXPECT_LT(v.implied->peak_error, 0.05);
+    double mass = 0;
+    for (const auto& row : v.evidence["implied_bins"]["rows"])
+        mass += (row[1].get<double>() - row[0].get<double>()) * (row[3].get<double>() - row[2].get<double>()) *
+            row[4].get<double>();
+    EXPECT_NEAR(mass, 1, 1e-9);
+}
+
+const Verdict& verdict(const std::vector<Verdict>& all, std::string_view name) {
+    return *std::ranges::find(all, name, &Verdict::name);
+}
+
+TEST(LimitsOfVerdicts, WithoutAPdfOrWeightsAreStated) {
+    FunctionSampler s;
+    s.of.has_pdf = false;
+    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 1; };
+    const auto alone = checked(s).verdicts();
+    EXPECT_EQ(verdict(alone, "density").state, State::inconclusive);
+    EXPECT_EQ(verdict(alone, "normalised").state, State::skipped);
+    EXPECT_TRUE(verdict(alone, "density").implied);
+    s.f_value = lambert(0.5);
+    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 1, d.weight = 0.5, d.weights = {0.5, 0, 0}; };
+    const auto with_weights = checked(s).verdicts();
+    EXPECT_EQ(verdict(with_weights, "density").state, State::skipped);
+    EXPECT_EQ(verdict(with_weights, "mean").state, State::right);
+}
+
+TEST(SentencesOfRightVerdicts, HaveTheMeasuredNumbers) {
+    FunctionSampler s;
+    s.f_value = lambert(0.5);
+    s.weights = [](Vec3d, Vec3d) { return Vec3d{0.5, 0, 0}; };
+    const Explained r = checked(s);
+    const CheckAt& at = r.outcomes.at(0).at.at(0).at(0);
+    EXPECT_THAT(sentence_of_right(at, "normalised"), HasSubstr("p integrates to 1.0000"));
+    EXPECT_THAT(sentence_of_right(at, "physics"), HasSubstr("0.500"));
+    EXPECT_THAT(sentence_of_right(at, "mean"), HasSubstr("Weights average to 1.000"));
+    EXPECT_EQ(sentence_of_right(at, "tail"), "");
+}
+
+TEST(SentencesOfFindings, HaveTheSizeOfTheFault) {
+    const Explained r = checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return 1.25 * cosine_pdf(o, w); }));
+    const CheckAt& at = r.outcomes.at(0).at.at(0).at(0);
+    const auto mass_finding =
+        std::ranges::find_if(at.findings, [](const Finding& f) { return f.first.family == Family::mass; });
+    ASSERT_NE(mass_finding, at.findings.end());
+    EXPECT_THAT(sentence_of(at, *mass_finding), HasSubstr("1.25"));
+}
+
+}  // namespace
+}  // namespace crescent::check
