@@ -109,7 +109,7 @@ void finish(Canvas& c, const std::string& caption, const std::string& note);
 /// The same; returns the picture.
 Picture finished(Canvas& c, const std::string& caption, const std::string& note);
 
-/// Blue for t < 0, orange for t > 0, the ground's colour in the middle; t in [-1, 1], NaN: the ground.
+/// Blue for t < 0, orange for t > 0, grey in the middle; t in [-1, 1]. NaN: the ground, which is another grey.
 Srgb8 diverging(double t, Theme theme);
 
 /// Draws value(x, y) of the box through diverging(); if it is reduced, the mean over the pixels of each cell.

@@ -75,23 +75,5 @@ TEST(CompareJunit, HasACaseForEachClaim) {
     EXPECT_THAT(junit({bright, check("dark", "y_mean.frame(b) < 1"), same}), HasSubstr("tests=\"3\" failures=\"2\""));
 }
 
-TEST(CompareAssertions, OfWhatWasNotMeasuredDoNotPass) {
-    const Compared c({check("it", "rmse.frame(a) < 1e9")});
-    EXPECT_FALSE(c.result.assertions.at(0).pass);
-    EXPECT_TRUE(std::isnan(c.result.assertions[0].measured));
-    EXPECT_EQ(c.result.warnings.size(), 1u);
-    EXPECT_EQ(c.result.state, CompareResult::State::fails);
-}
-
-TEST(CompareAssertions, TheLevelIsSharedByAllPairs) {
-    const Compared two;
-    MemoryRenders three = two.renders;
-    EXPECT_EQ(two.result.bias.size(), 1u);
-    three.put("reference", 99);
-    const CompareResult with = three.compare({{{"reference"}, "reference", false, ""}, {{"flip"}, "false", true, ""}});
-    ASSERT_EQ(with.bias.size(), 3u);
-    EXPECT_NEAR(with.bias[0].place_alpha, two.result.bias[0].place_alpha / 3, 1e-15);
-}
-
 }  // namespace
 }  // namespace crescent::inline comparison
