@@ -57,10 +57,16 @@ TEST_F(Joined, AnotherExperimentIsRefusedWithItsDifference) {
 TEST_F(Joined, PartsThatContradictEachOtherAreRefused) {
     const std::string first = part("first", experiment, {1, 1}), again = part("again", experiment, {1, 2});
     EXPECT_EQ(mistake({first, again}), "");
-    nlohmann::json json = nlohmann::json::parse(bytes_of(path("again/metrics.json")));
-    json["runs"][1]["regions"]["all"]["rmse"] = 0.125;
-    write("again/metrics.json", json.dump());
-    EXPECT_THAT(mistake({first, again}), HasSubstr("again/metrics.json: "));
+    const nlohmann::ordered_json right = nlohmann::ordered_json::parse(bytes_of(path("again/metrics.json")));
+    const auto mistake_with = [&](const char* pointer, const nlohmann::ordered_json& value) {
+        nlohmann::ordered_json changed = right;
+        changed[nlohmann::ordered_json::json_pointer(pointer)] = value;
+        write("again/metrics.json", changed.dump());
+        return mistake({first, again});
+    };
+    EXPECT_THAT(mistake_with("/runs/1/regions/all/rmse", 0.125), HasSubstr("at seed 11 differs"));
+    EXPECT_THAT(mistake_with("/geometry_pixels", 7), HasSubstr("'geometry_pixels' differs"));
+    EXPECT_THAT(mistake_with("/films/quadrature s=24", "0123"), HasSubstr("the hash of a reference differs"));
 }
 
 }  // namespace

@@ -39,6 +39,9 @@ TEST(FactorsOfASampler, DependOnItsTraitsAndLight) {
     EXPECT_EQ(value_of(of_boundary, "eta^2 across the surface", wo, up), 1);
     const double f = value_of(of_boundary, "Fresnel of what is reflected", {0, 0, 1}, {0, 0, 1});
     EXPECT_NEAR(f, 0.04, 1e-12);  // ((1.5 - 1) / (1.5 + 1))^2
+    const Vec3d n{0, 0, 1};
+    EXPECT_NEAR(value_of(of_boundary, "the Jacobian of refraction", n, -n), 9, 1e-9);  // (1.5 / (1.5 - 1))^2
+    EXPECT_NEAR(value_of(of_boundary, "1 - Fresnel of what is refracted", n, -n), 0.96, 1e-12);
     CaseLighting light;
     light.disks.push_back({1, {0, 0, 2}, {0, 0, -1}, 1});
     EXPECT_NEAR(value_of(factors_for(none, light), "distance^2 / cosine at the light", wo, {0, 0, 1}), 4, 1e-12);

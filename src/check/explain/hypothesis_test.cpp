@@ -27,9 +27,9 @@ TEST(MassRatios, AreOfPOverTheDraws) {
 
 class WrongDensity : public ::testing::Test {
 protected:
-    /// Draws follow a cosine, p is uniform.
+    /// Draws follow a cosine, p is half of a uniform density.
     const Explained r =
-        checked(made(cosine_draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / two_pi : 0; }), {{40, 30}, {70, 200}});
+        checked(made(cosine_draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 0.5 / two_pi : 0; }), {{40, 30}, {70, 200}});
     const std::vector<Place> places = r.places(1024);
     const Factor cosine{"cos theta_i", [](Vec3d, Vec3d w) { return std::fabs(w.z); }},
         sine{"sin theta_i", [](Vec3d, Vec3d w) { return std::sqrt(1 - w.z * w.z); }};
@@ -39,7 +39,7 @@ TEST_F(WrongDensity, HasAPlaceForEachWo) {
     ASSERT_EQ(places.size(), 2u);
     EXPECT_NE(places[0].check_case->theta_deg, places[1].check_case->theta_deg);
     EXPECT_EQ(places[0].w.size(), 1024u);
-    for (const Place& place : places) EXPECT_NEAR(mass_ratio(*place.at).ratio, 1, 0.01);
+    for (const Place& place : places) EXPECT_NEAR(mass_ratio(*place.at).ratio, 0.5, 0.01);
     double off = 0;  // the density that the leaves imply
     for (std::size_t i = 0; i < places[0].w.size(); ++i)
         off += std::fabs(places[0].implied[i] / cosine_pdf({}, places[0].w[i]) - 1) / 1024;
@@ -48,26 +48,26 @@ TEST_F(WrongDensity, HasAPlaceForEachWo) {
 
 TEST_F(WrongDensity, TheTrueDensityHasTheLargestLikelihood) {
     Hypothesis right = times(cosine, 1), wrong = times(sine, 1);
-    right.constants = {2, 2}, wrong.constants = {4 / pi, 4 / pi};  // of mass 1
+    right.constants = {4, 4}, wrong.constants = {8 / pi, 8 / pi};  // of mass 1
     score(right, places), score(wrong, places);
-    // Under a cosine ln(2 cos theta) averages ln 2 - 1/2, and ln(4/pi sin theta) less than 0.
-    EXPECT_NEAR(right.gain, std::log(2) - 0.5, 0.05);
+    // Under a cosine ln cos theta and ln sin theta both average -1/2.
+    EXPECT_NEAR(right.gain, std::log(4) - 0.5, 0.05);
+    EXPECT_NEAR(wrong.gain, std::log(8 / pi) - 0.5, 0.05);
     EXPECT_TRUE(right.helps());
-    EXPECT_FALSE(wrong.helps());
     EXPECT_GT(right.explained, 0.9);
-    EXPECT_LT(wrong.explained, 0);
-    right.masses = {0.5, 0.5};  // half of the draws as those of a Poisson process
+    EXPECT_LT(wrong.explained, 0.6);
+    right.masses = {0.5, 0.5};  // half of the mass of p, which is half of that of the draws
     score(right, places);
-    EXPECT_NEAR(right.gain, std::log(2) - 0.5 + 0.5, 0.05);
+    EXPECT_NEAR(right.gain, std::log(4) - 0.5 + 0.5 * 0.5, 0.05);
 }
 
 TEST_F(WrongDensity, OnlyTheTrueDensityPasses) {
     Hypothesis right = times(cosine, 1), wrong = times(sine, 1);
     EXPECT_TRUE(passes(right, places, 1));
     EXPECT_FALSE(passes(wrong, places, 1));
-    EXPECT_NEAR(right.constant(0), 2, 0.02);
+    EXPECT_NEAR(right.constant(0), 4, 0.04);
     EXPECT_FALSE(is_below_map(right, places));
-    right.constants = {1, 1};
+    right.constants = {2, 2};
     EXPECT_TRUE(is_below_map(right, places));
 }
 

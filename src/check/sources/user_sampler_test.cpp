@@ -1,0 +1,149 @@
+// A user's struct as a sampler, in each form of its parameters and results.
+#include "check/sources/user_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <span>
+#include <stdexcept>
+
+#include "check/user.h"
+
+namespace crescent {
+namespace {
+
+using Float3 = std::array<float, 3>;
+
+template <class S> Draw drawn(const UserSampler<S>& s, PrimarySample u, Vec3d wo = {0, 0, 1}) {
+    Draw out;
+    s.sample(0, wo, {&u, 1}, {&out, 1});
+    return out;
+}
+template <class S> std::pair<double, double> pdf_and_f(const UserSampler<S>& s, Pair at) {
+    double p = 0, f = 0;
+    s.pdf(0, {&at, 1}, {&p, 1}), s.f({&at, 1}, {&f, 1});
+    return {p, f};
+}
+
+/// Numbers in two parameters; the first parameter with two of them has the first two.
+struct Plain {
+    struct Out {
+        Float3 wi;
+        float pdf, weight;
+    };
+    Out sample(Float3 wo, float uc, std::array<float, 2> u) const { return {{wo[0], u[0], u[1]}, 0.5f, uc}; }
+    float pdf(Float3 wo, Float3 wi) const { return wo[2] + wi[0]; }
+    std::array<double, 3> f(const float* wo, std::span<const float> wi) const { return {wo[2], 2, wi[2]}; }
+};
+
+TEST(UserSamplers, HaveTheirNumbersInOrder) {
+    const UserSampler<Plain> s("plain", {});
+    EXPECT_EQ(s.traits().numbers, 3);
+    EXPECT_EQ(s.traits().channels, 3);
+    EXPECT_FALSE(s.serial());  // its members are const
+    PrimarySample u(0.25, 0.5);
+    u[2] = 0.75;
+    const Draw d = drawn(s, u, {0.125, 0, 1});
+    EXPECT_EQ(d.wi.x, 0.125);
+    EXPECT_EQ(d.wi.y, 0.25);
+    EXPECT_EQ(d.wi.z, 0.5);
+    EXPECT_EQ(d.pdf, 0.5);
+    EXPECT_EQ(d.weight, 0.75);
+    const auto [p, f] = pdf_and_f(s, {{0, 0, 1}, {0.25, 0, 0.5}});
+    EXPECT_EQ(p, 1.25);
+    EXPECT_NEAR(f, luminance(Vec3d{1, 2, 0.5}), 1e-12);
+    EXPECT_EQ(s.spending().answers, 3u);
+}
+
+/// Outputs by reference; false: no sample.
+struct Written {
+    bool sample(const Float3& wo, std::array<double, 2> u, Float3& wi, float* pdf) {
+        wi = wo, *pdf = 2;
+        return u[0] < 0.5;
+    }
+};
+
+TEST(UserSamplers, MayWriteTheirOutputs) {
+    const UserSampler<Written> s("written", {});
+    EXPECT_TRUE(s.serial());  // sample is not const
+    EXPECT_FALSE(s.traits().has_pdf);
+    EXPECT_FALSE(s.has_f());
+    EXPECT_EQ(drawn(s, {0.25, 0}).pdf, 1);  // without pdf(w) the density is ignored
+    EXPECT_EQ(drawn(s, {0.75, 0}).pdf, 0);
+}
+
+/// Without w_o, an optional result, a delta part.
+struct Sky {
+    struct Out {
+        Vec3d wi;
+        double pdf;
+        bool delta;
+        Vec3d weight;
+    };
+    std::optional<Out> sample(Vec2d u) const {
+        if (u.x > 0.9) return {};
+        return Out{{0, 0, 1}, 0.25, u.x < 0.5, {1, 2, 3}};
+    }
+    double pdf(Vec3d) const { return 0.25; }
+};
+
+TEST(UserSamplers, MayHaveNoWoAndDeltaParts) {
+    const UserSampler<Sky> s("sky", {});
+    EXPECT_EQ(s.traits().wo, Traits::WoDomain::none);
+    EXPECT_TRUE(s.traits().delta);
+    const Draw delta = drawn(s, {0.25, 0}), direction = drawn(s, {0.6, 0});
+    EXPECT_EQ(delta.delta, 0.25);
+    EXPECT_EQ(delta.pdf, 0);
+    EXPECT_EQ(delta.weights.z, 3);
+    EXPECT_EQ(direction.delta, 0);
+    EXPECT_EQ(direction.pdf, 0.25);
+    EXPECT_EQ(drawn(s, {0.95, 0}).pdf, 0);
+}
+
+/// f with the draw in place of a weight: f cos / p.
+struct WithF {
+    struct Out {
+        Vec3d wi;
+        double pdf, f;
+    };
+    Out sample(Vec3d, Vec2d) const { return {{0.6, 0, 0.8}, 0.5, 0.25}; }
+    double pdf(Vec3d, Vec3d) const { throw std::runtime_error("no luck"); }
+};
+
+TEST(UserSamplers, WeightsFollowFromF) {
+    const auto pointed = WithF();
+    const UserSampler<const WithF*> s("pointed", &pointed);
+    EXPECT_NEAR(*drawn(s, {0.5, 0.5}).weight, 0.25 * 0.8 / 0.5, 1e-12);
+    EXPECT_TRUE(s.has_drawn_f());
+    EXPECT_FALSE(s.has_f());
+}
+
+TEST(UserSamplers, ErrorsHaveTheirPlace) {
+    const UserSampler<WithF> s("throws", {});
+    const Pair at{{0, 0, 1}, {0, 0.6, 0.8}};
+    double p = 0;
+    try {
+        s.pdf(0, {&at, 1}, {&p, 1});
+        FAIL();
+    } catch (const SamplerError& e) {
+        EXPECT_NE(std::string(e.what()).find("no luck"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find("w_i = (0, 0.6, 0.8)"), std::string::npos) << e.what();
+    }
+}
+
+TEST(UserSamplers, MayBeLambdas) {
+    Traits both;
+    both.wo = Traits::WoDomain::both;
+    auto made = sampler_of([](Vec3d wo, Vec2d) { return WithF::Out{wo, 3, 1}; }, [](Vec3d, Vec3d) { return 3.0; },
+        [](Vec3d, Vec3d) { return 1.0; }, both);
+    const UserSampler<decltype(made)> s("lambdas", made);
+    EXPECT_EQ(s.traits().wo, Traits::WoDomain::both);
+    EXPECT_EQ(pdf_and_f(s, {{0, 0, 1}, {0, 0, 1}}), std::pair(3.0, 1.0));
+    static_assert(user::Checkable<Plain> && user::Checkable<Sky> && user::Checkable<Written*>);
+    struct NoSample {};
+    static_assert(!user::Checkable<NoSample>);
+}
+
+}  // namespace
+}  // namespace crescent
