@@ -129,10 +129,6 @@ void add_film(CLI::App& app, Work& work) {
     auto* from = c->add_option("--from", o.from, "from this time on")->type_name("MM:SS")->check(moment);
     auto* to = c->add_option("--to", o.to, "up to this time")->type_name("MM:SS")->check(moment);
     for (auto* part : {from, to}) part->excludes(still)->excludes(stills);
-    c->add_option("--voice", o.voice, "speaks the captions: text in, WAV out")
-        ->type_name("'COMMAND'")
-        ->check(not_empty);
-    c->add_flag("--webm", o.webm, "crescent.webm too (VP9)");
     c->add_option("--set", f->overrides, "another value for a key; may be given again")
         ->type_name("PATH=VALUE")
         ->take_all()

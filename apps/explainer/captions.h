@@ -1,4 +1,4 @@
-// The spoken text for other programs: WebVTT, SubRip, a transcript, chapters.
+// The captions for other programs: WebVTT, SubRip, a transcript, chapters.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// One call of ffmpeg turns one pipe of yuv420p frames into an MP4 (H.264, poster, mov_text, AAC) and, if requested, a
-// WebM (VP9, WebVTT, Opus), with its bitexact flags. Its encoders are read from `ffmpeg -encoders`.
+// One call of ffmpeg turns one pipe of RGB frames into an MP4 (H.264 in Y'CbCr 4:2:0 of ITU-R BT.709, limited range,
+// poster, mov_text), with its bitexact flags. Its encoders are read from `ffmpeg -encoders`.
 #include "encoder.h"
 
 #include <fmt/format.h>
@@ -15,47 +15,33 @@ using Arguments = std::vector<std::string>;
 
 void append(Arguments& to, const Arguments& more) { to.insert(to.end(), more.begin(), more.end()); }
 
-// Colour as rasters.cpp computes it.
 const Arguments colour = {
     "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"};
 
-/// Inputs in this order: frames, captions, chapters, poster, voice.
+/// Inputs in this order: frames, captions, chapters, poster.
 Arguments arguments(const EncoderInputs& in) {
     Arguments a = {"ffmpeg", "-hide_banner", "-nostdin", "-loglevel", "error", "-y"};
     append(a,
-        {"-f", "rawvideo", "-pix_fmt", "yuv420p", "-video_size", fmt::format("{}x{}", in.width, in.height),
-            "-framerate", std::to_string(frames_a_second)});
-    append(a, colour);
+        {"-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", in.width, in.height), "-framerate",
+            std::to_string(frames_a_second)});
     append(a,
         {"-thread_queue_size", "8", "-i", "pipe:0", "-f", "srt", "-i", in.captions, "-f", "ffmetadata", "-i",
             in.chapters, "-i", in.poster});
-    if (!in.voice.empty()) append(a, {"-i", in.voice});
-
     append(a, {"-map", "0:v", "-map", "3:v", "-map", "1:s"});
-    if (!in.voice.empty()) append(a, {"-map", "4:a", "-c:a", "aac", "-b:a", "128k"});
     // The words are in the picture too: the track is off by default.
     append(a,
         {"-map_metadata", "2", "-map_chapters", "2", "-c:s", "mov_text", "-metadata:s:s:0", "language=eng",
             "-disposition:s:0", "0"});
+    append(a,
+        {"-filter:v:0",
+            "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+full_chroma_inp+bitexact"});
     append(a,
         {"-c:v:0", "libx264", "-preset", "medium", "-crf", "18", "-profile:v:0", "high", "-pix_fmt:v:0", "yuv420p",
             "-g", "300", "-threads:v:0", "2"});
     append(a, {"-x264-params", "chromaloc=0:rc-lookahead=20"});
     append(a, colour);
     append(a, {"-c:v:1", "mjpeg", "-q:v:1", "3", "-pix_fmt:v:1", "yuvj420p", "-disposition:v:1", "attached_pic"});
-    append(a,
-        {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-flags:a", "+bitexact", "-movflags", "+faststart", "-f",
-            "mp4", in.mp4});
-    if (in.webm.empty()) return a;
-
-    append(a, {"-map", "0:v", "-map", "1:s"});
-    if (!in.voice.empty()) append(a, {"-map", "4:a", "-c:a", "libopus", "-b:a", "96k"});
-    append(a,
-        {"-map_metadata", "2", "-map_chapters", "2", "-c:s", "webvtt", "-disposition:s:0", "0", "-c:v", "libvpx-vp9",
-            "-crf", "30", "-b:v", "0"});
-    append(a, {"-deadline", "good", "-cpu-used", "5", "-row-mt", "1", "-threads", "2", "-pix_fmt", "yuv420p"});
-    append(a, colour);
-    append(a, {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-flags:a", "+bitexact", "-f", "webm", in.webm});
+    append(a, {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4", in.mp4});
     return a;
 }
 
@@ -65,7 +51,7 @@ bool has_word(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor) {
+void require_ffmpeg(const std::string& folder, const ProgressMonitor& monitor) {
     const std::string list = folder + "/encoders.txt";
     ProcessEnd end;
     try {
@@ -79,14 +65,10 @@ void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Prog
             "the film is encoded by ffmpeg, which this machine does not have: install the package ffmpeg");
     }
     if (!end.well()) throw OutputError("ffmpeg -encoders ended with " + end.text() + ": expected a working ffmpeg");
-    std::vector<std::string> needed = {"libx264", "mov_text", "mjpeg"};
-    if (voice) needed.push_back("aac");
-    if (webm) append(needed, {"libvpx-vp9", "webvtt"});
-    if (webm && voice) needed.push_back("libopus");
     const std::string encoders = contents_of(list);
-    for (const std::string& encoder : needed)
+    for (const char* encoder : {"libx264", "mov_text", "mjpeg"})
         if (!has_word(encoders, encoder))
-            throw OutputError("this ffmpeg has no encoder '" + encoder + "', which the film needs");
+            throw OutputError(fmt::format("this ffmpeg has no encoder '{}', which the film needs", encoder));
 }
 
 Encoder::Encoder(const EncoderInputs& in)
@@ -116,13 +98,10 @@ void Encoder::take(const Raster& raster, const ProgressMonitor& monitor) {
 
 void Encoder::finish(const ProgressMonitor& monitor) {
     if (const ProcessEnd end = process_.wait(monitor); !end.well()) fail("it ended with " + end.text());
-    for (const std::string& file : {in_.mp4, in_.webm}) {
-        std::error_code missing;
-        const std::string name = std::filesystem::path(file).filename().string();
-        if (file.empty()) continue;
-        if (const auto size = std::filesystem::file_size(file, missing); missing || size == 0)
-            fail(fmt::format("it ended with exit code 0, and {} is {}", name, missing ? "not there" : "empty"));
-    }
+    std::error_code missing;
+    if (const auto size = std::filesystem::file_size(in_.mp4, missing); missing || size == 0)
+        fail(fmt::format("it ended with exit code 0, and {} is {}", std::filesystem::path(in_.mp4).filename().string(),
+            missing ? "not there" : "empty"));
 }
 
 }  // namespace crescent::explainer

@@ -10,16 +10,16 @@
 
 namespace crescent::explainer {
 
-/// The input and output files; "" if there is none.
+/// The input and output files.
 struct EncoderInputs {
     int width = 0, height = 0;
-    std::string captions, chapters, poster, voice;  // .srt, ffmetadata, .png, .wav
-    std::string mp4, webm;                          // to be written
-    std::string log;                                // ffmpeg's messages
+    std::string captions, chapters, poster;  // .srt, ffmetadata, .png
+    std::string mp4;                         // to be written
+    std::string log;                         // ffmpeg's messages
 };
 
 /// OutputError if ffmpeg or one of its parts is missing; called before the work.
-void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor);
+void require_ffmpeg(const std::string& folder, const ProgressMonitor& monitor);
 
 class Encoder {
 public:

@@ -9,7 +9,6 @@
 #include "data.h"
 #include "encoder.h"
 #include "shots.h"
-#include "voice.h"
 
 namespace crescent::explainer {
 
@@ -77,13 +76,13 @@ public:
         return texts;
     }
 
-    std::string film(const Part& part, Voice* voice) {
+    std::string film(const Part& part) {
         const Stopwatch start;
         stills(part);
         staging_.write("crescent.vtt", webvtt(timeline_, part));
         staging_.write("crescent.srt", subrip(timeline_, part));
         staging_.write("crescent.txt", transcript(timeline_, part));
-        const std::vector<std::uint64_t> hashes = encode(part, voice);
+        const std::vector<std::uint64_t> hashes = encode(part);
         staging_.write("frames.json", frames_json(part, hashes));
         std::vector<std::uint64_t> unlike = hashes;
         std::ranges::sort(unlike);
@@ -102,7 +101,7 @@ private:
         return options_.out + "/" + name + "\n";
     }
 
-    std::vector<std::uint64_t> encode(const Part& part, Voice* voice) {
+    std::vector<std::uint64_t> encode(const Part& part) {
         EncoderInputs in;
         in.width = options_.height * 16 / 9, in.height = options_.height;
         in.captions = staging_.path("crescent.srt"), in.mp4 = staging_.path("crescent.mp4");
@@ -110,8 +109,6 @@ private:
         painter_.draw(std::clamp(timeline_.still(0), part.first, part.last - 1));
         const std::vector<unsigned char> png = encode_png(painter_.canvas().picture(), attributes_of(data_));
         in.poster = scratch("poster.png", std::string(png.begin(), png.end()));
-        if (voice) in.voice = scratch("voice-track.wav", voice->track(timeline_, part.first, part.last));
-        if (options_.webm) in.webm = staging_.path("crescent.webm");
         in.log = scratch("ffmpeg.log", "");
 
         std::vector<std::uint64_t> hashes;
@@ -131,7 +128,7 @@ private:
             "{{\n  \"experiment\": \"{}\",\n  \"width\": {},\n  \"height\": {},\n  \"frames_a_second\": {},\n  "
             "\"first\": {},\n",
             data_.experiment_hash, options_.height * 16 / 9, options_.height, frames_a_second, part.first);
-        text += "  \"hash\": \"XXH3-64 of the frame as yuv420p, bt709, limited range\",\n  \"shots\": [";
+        text += "  \"hash\": \"XXH3-64 of the frame, rows of R, G, B of 8 bits\",\n  \"shots\": [";
         for (std::size_t k = 0; k < timeline_.shots().size(); ++k)
             text += fmt::format("{}\n    {{\"name\": \"{}\", \"first\": {}}}", k > 0 ? "," : "",
                 timeline_.shots()[k].name, timeline_.begin(k));
@@ -162,23 +159,19 @@ std::string make(const Experiment& experiment, const ExplainerOptions& options, 
     cast_of(cast);  // missing roles are reported before the work
     Staging staging(options.out, pictures ? "stills" : "film");
     const Canvas font(16, 16, plates::ground);
-    if (!pictures) require_ffmpeg(options.webm, !options.voice.empty(), staging.scratch(), monitor);
+    if (!pictures) require_ffmpeg(staging.scratch(), monitor);
 
     RunOptions run;
     run.out = options.out, run.threads = options.threads, run.isa = options.isa, run.command = options.command;
     run.timeout_s = options.timeout_s;
     Data data = collect(experiment, run, monitor);
-    Voice voice(options.voice, staging.scratch(), monitor);
-    if (!options.voice.empty()) monitor.begin("the voice", 1);
-    const Timeline timeline(shots_of(data),
-        options.voice.empty() ? nullptr
-                              : std::function<double(const Words&)>([&](const Words& w) { return voice.seconds(w); }));
+    const Timeline timeline(shots_of(data));
     data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
     VideoWriter writer(data, timeline, options, staging, monitor);
     const std::string texts = !options.still.empty() ? writer.one_still()
         : options.stills                             ? writer.stills(part)
-                                                     : writer.film(part, options.voice.empty() ? nullptr : &voice);
+                                                     : writer.film(part);
     staging.commit(monitor);
     return texts;
 }

@@ -9,8 +9,8 @@ namespace crescent::explainer {
 
 struct LadderShotText {
     std::string arm, before;   // `before`: the arm whose line is already shown, dimmed; "": none
-    Words opening;             // spoken first
-    std::vector<Words> after;  // spoken when the line is complete
+    Words opening;             // said first
+    std::vector<Words> after;  // said when the line is complete
 };
 
 /// Returns pictures, chart and times; the caller sets name, title and description.

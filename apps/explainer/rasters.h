@@ -1,5 +1,4 @@
-// Frames in the encoder's format: planar Y'CbCr 4:2:0 of ITU-R BT.709, limited range, chroma sited left, in integers,
-// so that the same drawing gives the same bytes on every machine.
+// Frames as the encoder takes them: rows of R, G, B, 8 bits each.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +11,7 @@
 namespace crescent::explainer {
 
 struct Raster {
-    std::vector<unsigned char> bytes;  // Y, Cb, Cr
+    std::vector<unsigned char> bytes;  // R, G, B
     std::uint64_t hash = 0;            // XXH3-64 of the bytes
 };
 

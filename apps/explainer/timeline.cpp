@@ -1,6 +1,6 @@
-// A caption needs its characters over the reading speed, or 0.3 s more than its speech, and a question also its
-// silence. If its slot is too short, the shot is held, in whole frames, half a frame before the slot's end. A line is
-// broken at the space that leaves the longer part shortest.
+// A caption needs its characters over the reading speed, and a question also its silence. If its slot is too short, the
+// shot is held, in whole frames, half a frame before the slot's end. A line is broken at the space that leaves the
+// longer part shortest.
 #include "timeline.h"
 
 #include <algorithm>
@@ -13,10 +13,8 @@ namespace {
 double whole_frames(double seconds) { return std::ceil(seconds * frames_a_second - 1e-6) / frames_a_second; }
 
 /// Returns the minimum duration of a caption.
-double needed(const Cue& cue, const std::function<double(const Words&)>& spoken) {
-    const double read = double(length(cue.words.plain())) / reading_speed;
-    const double texts = spoken ? spoken(cue.words) + 0.3 : 0;
-    return std::max(read, texts) + (cue.question ? question_silence : 0);
+double needed(const Cue& cue) {
+    return double(length(cue.words.plain())) / reading_speed + (cue.question ? question_silence : 0);
 }
 
 std::vector<std::size_t> spaces_of(const std::string& plain) {
@@ -63,20 +61,19 @@ Words broken(const Words& words) {
     return out;
 }
 
-Timeline::Timeline(std::vector<Shot> shots, const std::function<double(const Words&)>& spoken)
-    : shots_(std::move(shots)), holds_(shots_.size()) {
+Timeline::Timeline(std::vector<Shot> shots) : shots_(std::move(shots)), holds_(shots_.size()) {
     begins_.push_back(0);
-    for (std::size_t k = 0; k < shots_.size(); ++k) place(k, spoken);
+    for (std::size_t k = 0; k < shots_.size(); ++k) place(k);
 }
 
-void Timeline::place(std::size_t shot, const std::function<double(const Words&)>& spoken) {
+void Timeline::place(std::size_t shot) {
     const Shot& s = shots_[shot];
     const double start = double(begins_.back()) / frames_a_second;
     double held = 0;
     for (std::size_t k = 0; k < s.cues.size(); ++k) {
         const double end = k + 1 < s.cues.size() ? s.cues[k + 1].at : s.seconds;
         ensure(end > s.cues[k].at, "captions follow each other within their shot");
-        const double more = whole_frames(std::max(0.0, needed(s.cues[k], spoken) - (end - s.cues[k].at)));
+        const double more = whole_frames(std::max(0.0, needed(s.cues[k]) - (end - s.cues[k].at)));
         const double from = start + s.cues[k].at + held;
         if (more > 0) holds_[shot].push_back({end - 0.5 / frames_a_second, more});
         held += more;

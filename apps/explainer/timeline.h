@@ -1,8 +1,7 @@
 // The sequence of shots: the shot at a time of the video, and the times of each caption. If a caption needs more time
-// than its slot has, to be read, spoken or thought about, the shot is held at the slot's end.
+// than its slot has, to be read or thought about, the shot is held at the slot's end.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "shots.h"
@@ -24,8 +23,7 @@ struct Caption {
 
 class Timeline {
 public:
-    /// `spoken`: seconds of a caption's speech; nullptr: silent.
-    explicit Timeline(std::vector<Shot> shots, const std::function<double(const Words&)>& spoken = nullptr);
+    explicit Timeline(std::vector<Shot> shots);
 
     const std::vector<Shot>& shots() const { return shots_; }
     const std::vector<Caption>& captions() const { return captions_; }
@@ -45,7 +43,7 @@ private:
     struct Hold {
         double at = 0, seconds = 0;  // shot time
     };
-    void place(std::size_t shot, const std::function<double(const Words&)>& spoken);
+    void place(std::size_t shot);
 
     std::vector<Shot> shots_;
     std::vector<std::vector<Hold>> holds_;

@@ -82,10 +82,8 @@ struct ExplainerOptions {
     std::string still;     // "MM:SS" or "SS": only this frame, as a PNG
     bool stills = false;   // only one PNG per shot
     std::string from, to;  // "MM:SS": only this part; "": beginning, end
-    std::string voice;     // a command: text on stdin, WAV on stdout; "": silent
     std::string isa;       // "": the best this machine has
     std::string command;   // as typed, for the last shot
-    bool webm = false;
     double timeout_s = 0;  // for one response of a program or plugin; 0: 10 and 60 s
 };
 
