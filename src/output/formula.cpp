@@ -2,6 +2,7 @@
 // brackets where a fraction on one line needs them. Values replace letters in the tree.
 #include "output/formula.h"
 
+#include <array>
 #include <cctype>
 #include <fmt/format.h>
 #include <utility>
@@ -12,6 +13,64 @@
 namespace crescent::formula {
 
 namespace {
+
+/// The kind of a piece of a formula.
+enum class Kind { letter, number, sign, word, space, row, paren, bars, fraction, root, script };
+
+/// \name, and the UTF-8 that represents it.
+struct Word {
+    std::string_view name, text;
+    Kind kind;
+};
+constexpr auto words = std::to_array<Word>({
+    {"alpha", "α", Kind::letter},
+    {"beta", "β", Kind::letter},
+    {"gamma", "γ", Kind::letter},
+    {"delta", "δ", Kind::letter},
+    {"epsilon", "ε", Kind::letter},
+    {"zeta", "ζ", Kind::letter},
+    {"eta", "η", Kind::letter},
+    {"theta", "θ", Kind::letter},
+    {"iota", "ι", Kind::letter},
+    {"kappa", "κ", Kind::letter},
+    {"lambda", "λ", Kind::letter},
+    {"mu", "μ", Kind::letter},
+    {"nu", "ν", Kind::letter},
+    {"xi", "ξ", Kind::letter},
+    {"pi", "π", Kind::letter},
+    {"rho", "ρ", Kind::letter},
+    {"sigma", "σ", Kind::letter},
+    {"tau", "τ", Kind::letter},
+    {"upsilon", "υ", Kind::letter},
+    {"phi", "φ", Kind::letter},
+    {"chi", "χ", Kind::letter},
+    {"psi", "ψ", Kind::letter},
+    {"omega", "ω", Kind::letter},
+    {"Gamma", "Γ", Kind::letter},
+    {"Delta", "Δ", Kind::letter},
+    {"Theta", "Θ", Kind::letter},
+    {"Lambda", "Λ", Kind::letter},
+    {"Xi", "Ξ", Kind::letter},
+    {"Pi", "Π", Kind::letter},
+    {"Sigma", "Σ", Kind::letter},
+    {"Phi", "Φ", Kind::letter},
+    {"Psi", "Ψ", Kind::letter},
+    {"Omega", "Ω", Kind::letter},
+    {"infty", "∞", Kind::number},
+    {"cos", "cos", Kind::word},
+    {"sin", "sin", Kind::word},
+    {"tan", "tan", Kind::word},
+    {"exp", "exp", Kind::word},
+    {"ln", "ln", Kind::word},
+    {"log", "log", Kind::word},
+    {"min", "min", Kind::word},
+    {"max", "max", Kind::word},
+    {"cdot", "·", Kind::sign},
+    {"le", "≤", Kind::sign},
+    {"ge", "≥", Kind::sign},
+    {"propto", "∝", Kind::sign},
+});
+constexpr std::string_view signs = "+-=<>,;/";
 
 /// A piece of a formula. Its parts: for a row all, for a fraction two, for a root one, for a script base, sub and sup.
 struct Node {
@@ -74,7 +133,7 @@ private:
     }
 
     Node command() {
-        if (tex_[at_] == ',') return ++at_, Node{Kind::space, "", {}};
+        if (starts(",")) return ++at_, Node{Kind::space, "", {}};
         std::string_view name = tex_.substr(at_);
         std::size_t length = 0;
         while (length < name.size() && std::isalpha(static_cast<unsigned char>(name[length]))) ++length;
@@ -88,6 +147,7 @@ private:
         if (name == "lvert") return {Kind::bars, "", {row('|')}};
         if (name == "mathrm") {
             const std::size_t end = tex_.find('}', at_);
+            ensure(starts("{") && end != tex_.npos, "\\mathrm has a word in braces");
             Node word{Kind::word, std::string(tex_.substr(at_ + 1, end - at_ - 1)), {}};
             return at_ = end + 1, word;
         }
@@ -198,21 +258,10 @@ void put_in(Node& n, const Value& value) {
 
 }  // namespace
 
-namespace {
-
-Node read(std::string_view tex) {
-    if (!is_formula(tex))
-        throw Bug(std::source_location::current(),
-            "a formula that is not in the words of base/formula_words.h: " + std::string(tex));
-    return Reader(tex).row();
-}
-
-}  // namespace
-
-std::string mathml(std::string_view tex) { return as_mathml(read(tex)); }
+std::string mathml(std::string_view tex) { return as_mathml(Reader(tex).row()); }
 
 std::string pango(std::string_view tex, const Value& value) {
-    Node all = read(tex);
+    Node all = Reader(tex).row();
     if (value.letter != 0) put_in(all, value);
     return as_pango(all);
 }
@@ -222,6 +271,7 @@ std::string html(std::string_view words_and_tex) {
     for (bool tex = false;; tex = !tex) {
         const std::size_t end = words_and_tex.find('$');
         const std::string_view part = words_and_tex.substr(0, end);
+        ensure(!tex || end != std::string_view::npos, "dollar signs come in pairs");
         out += tex ? "<math>" + mathml(part) + "</math>" : std::string(part);
         if (end == std::string_view::npos) return out;
         words_and_tex.remove_prefix(end + 1);

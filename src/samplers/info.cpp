@@ -1,9 +1,7 @@
-// The table is made from the types of samplers/all.h at first use: name, documentation, techniques and theory. The
-// formulas are checked at compile time.
+// The table is made from the types of samplers/all.h at first use: name, documentation, techniques and theory.
 #include "samplers/info.h"
 
 #include "math/functions.h"
-#include "output/formula.h"
 #include "samplers/all.h"
 
 namespace crescent::inline samplers {
@@ -13,11 +11,6 @@ namespace {
 template <template <class> class A> constexpr SamplerInfo info_of() {
     static_assert(A<float>::manual.label.find(A<float>::name) != std::string_view::npos,
         "an arm goes by one name everywhere: its label holds it");
-    constexpr SamplerDoc manual = A<float>::manual;
-    static_assert(formula::is_formula(manual.formula) && formula::is_formula(manual.density),
-        "formula and density of an arm are TeX in the words of base/formula_words.h");
-    static_assert(formula::has_formulas(manual.draw) && formula::has_formulas(manual.axis),
-        "draw and axis of an arm are words, with TeX of base/formula_words.h between dollar signs");
     SamplerInfo out{A<float>::manual, A<float>::name};
     if constexpr (requires { A<float>::techniques; }) out.techniques = A<float>::techniques;
     if constexpr (requires { A<float>::theory; }) out.theory = A<float>::theory;

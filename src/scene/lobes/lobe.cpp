@@ -2,7 +2,6 @@
 #include "scene/lobes/lobe.h"
 
 #include "base/errors.h"
-#include "output/formula.h"
 #include "scene/lobes/all.h"
 
 namespace crescent::inline lobes {
@@ -10,8 +9,6 @@ namespace crescent::inline lobes {
 namespace {
 
 template <template <class> class L> LobeInfo info_of(LobeKind kind) {
-    static_assert(formula::is_formula(L<double>::manual.formula),
-        "the formula of a lobe is TeX in the words of base/formula_words.h");
     LobeInfo out{L<double>::manual, L<double>::name, kind};
     out.exponent = L<double>::exponent;
     out.width = L<double>::width;
