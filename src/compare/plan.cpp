@@ -148,7 +148,7 @@ ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& fi
     context.e.file = file.empty() ? "crescent compare" : file;
     Node root;
     if (!file.empty()) {
-        root = read_toml(read_text(file, "a compare file"), file, &context.diagnostics);
+        root = read_toml(read_text(file, "a compare file"), file);
         from_folder(root, file);
     }
     return read_plan(std::move(root), context, flags);
@@ -156,8 +156,7 @@ ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& fi
 
 std::vector<std::string> compare_arms(const std::string& file) {
     std::vector<std::string> out;
-    std::vector<Diagnostic> ignored;
-    Node root = read_toml(read_text(file, "a compare file"), file, &ignored);
+    Node root = read_toml(read_text(file, "a compare file"), file);
     if (const Member* arms = root.find("arms"))
         for (const Member& arm : arms->value.members) out.push_back(arm.key);
     return out;

@@ -397,7 +397,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     ParseContext context;
     context.e.file = name;
     context.e.overrides = overrides;
-    Node root = read_toml(text, name, &context.diagnostics);
+    Node root = read_toml(text, name);
     apply_overrides(context, root, overrides);
     read_tree(context, root);
     check_geometry(context);

@@ -16,8 +16,6 @@ namespace {
 constexpr int deepest = 8;
 // The parser builds one table per dot of a key and destroys them recursively: this bounds the stack it needs.
 constexpr int most_dots = 32;
-constexpr int most_duplicates = 64;
-constexpr std::string_view dropped = "\\u0001duplicate", dropped_key = "\1duplicate";  // as written, as read
 constexpr std::size_t most_bytes = std::size_t{4} << 20;
 
 SourceLocation place_of(const toml::source_region& region, const std::string& file) {
@@ -28,9 +26,7 @@ Node convert(const toml::node& from, const std::string& file, int depth);
 
 void convert_members(const toml::table& table, Node& to, const std::string& file, int depth) {
     for (const auto& [key, value] : table)
-        if (!key.str().starts_with(dropped_key))
-            to.members.push_back(
-                {std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
+        to.members.push_back({std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
     std::sort(to.members.begin(), to.members.end(), [](const Member& a, const Member& b) {
         return std::tie(a.at.line, a.at.column, a.key) < std::tie(b.at.line, b.at.column, b.key);
     });
@@ -78,28 +74,6 @@ void refuse_junk(std::string_view text, const std::string& file) {
     }
 }
 
-/// Removes a second use of a name from the text: a header gets a name that is dropped, a key is commented out. Returns
-/// false if that would affect more than the one line.
-bool pass_over(std::string& text, unsigned line, int count) {
-    std::size_t begin = 0;
-    for (unsigned i = 1; i < line && begin != std::string::npos; ++i) {
-        begin = text.find('\n', begin);
-        if (begin != std::string::npos) ++begin;
-    }
-    if (begin == std::string::npos) return false;
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string old = text.substr(begin, end - begin);
-    const std::size_t first = old.find_first_not_of(" \t");
-    if (first == std::string::npos) return false;
-    const bool header = old[first] == '[';
-    const auto balanced = std::count(old.begin(), old.end(), '[') == std::count(old.begin(), old.end(), ']');
-    const bool plain = balanced && old.find('=') != std::string::npos && old.find('{') == std::string::npos &&
-        old.find("\"\"\"") == std::string::npos && old.find("'''") == std::string::npos;
-    if (!header && !plain) return false;
-    text.replace(begin, end - begin, header ? fmt::format("[\"{}{}\"]", dropped, count) : "#");
-    return true;
-}
-
 }  // namespace
 
 const Member* Node::find(std::string_view key) const {
@@ -126,24 +100,15 @@ std::string describe(const Node& node) {
     return "";
 }
 
-Node read_toml(std::string_view text, const std::string& file, std::vector<Diagnostic>* duplicates) {
+Node read_toml(std::string_view text, const std::string& file) {
     refuse_junk(text, file);
-    std::string left(text);
-    for (int tries = 0;; ++tries) {
-        try {
-            const toml::table table = toml::parse(left, std::string_view(file));
-            return convert(table, file, 0);
-        } catch (const toml::parse_error& error) {
-            const SourceLocation at = place_of(error.source(), file);
-            const bool twice = error.description().find("cannot redefine") != std::string_view::npos;
-            std::vector<Diagnostic> all = duplicates ? *duplicates : std::vector<Diagnostic>{};
-            all.push_back({at,
-                fmt::format("{}{}",
-                    twice ? "duplicate name; expected each to be given once: " : "not TOML: ", error.description())});
-            if (!twice || !duplicates || tries == most_duplicates || !pass_over(left, at.line, tries))
-                throw InputError(all);
-            *duplicates = std::move(all);
-        }
+    try {
+        return convert(toml::parse(text, std::string_view(file)), file, 0);
+    } catch (const toml::parse_error& error) {
+        const bool twice = error.description().find("cannot redefine") != std::string_view::npos;
+        throw InputError(place_of(error.source(), file),
+            fmt::format("{}{}",
+                twice ? "duplicate name; expected each to be given once: " : "not TOML: ", error.description()));
     }
 }
 

@@ -39,8 +39,7 @@ struct Member {
 /// Returns "the text 'red'", "3.5", "a table": what was found, for messages.
 std::string describe(const Node& node);
 
-/// Reads TOML; throws InputError if the syntax is wrong. `file` is in every place. If `duplicates` is given, duplicate
-/// names are added to it and their second use is skipped, so that reading continues.
-Node read_toml(std::string_view text, const std::string& file, std::vector<Diagnostic>* duplicates = nullptr);
+/// Reads TOML; throws InputError if the syntax is wrong or a name is given twice. `file` is in every place.
+Node read_toml(std::string_view text, const std::string& file);
 
 }  // namespace crescent::inline experiment

@@ -166,15 +166,14 @@ std::size_t Suite::compared() const {
 }
 
 bool is_suite(const std::string& file) {
-    std::vector<Diagnostic> ignored;
-    return read_toml(read_text(file, "a compare file"), file, &ignored).find("suite") != nullptr;
+    return read_toml(read_text(file, "a compare file"), file).find("suite") != nullptr;
 }
 
 Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     ParseContext context;
     context.e.file = file.empty() ? "crescent compare" : file;
     Node root;
-    if (!file.empty()) root = read_toml(read_text(file, "a suite file"), file, &context.diagnostics);
+    if (!file.empty()) root = read_toml(read_text(file, "a suite file"), file);
     normalize(root);
     const SourceLocation baseline_at = place_of(root, "baseline", context.e.file),
                          candidate_at = place_of(root, "candidate", context.e.file);
