@@ -106,11 +106,6 @@ const ExrChannel* ExrPart::channel(const std::string& wanted) const {
     return at == channels.end() ? nullptr : &*at;
 }
 
-bool ExrPart::subsampled() const {
-    return std::any_of(
-        channels.begin(), channels.end(), [](const ExrChannel& c) { return c.x_sampling != 1 || c.y_sampling != 1; });
-}
-
 ExrFile::ExrFile(const OpenFile& file) : file_(file) {
     exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
     start.error_handler_fn = keep_message;

@@ -70,7 +70,6 @@ struct ExrPart {
     std::optional<Chromaticities> primaries;
 
     const ExrChannel* channel(const std::string& wanted) const;
-    bool subsampled() const;
 };
 
 class ExrFile {

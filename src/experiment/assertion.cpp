@@ -224,10 +224,6 @@ std::string form_of(const QuantityWord& word) {
         "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.adapter)]);
 }
 
-std::optional<ParsedQuantity> parse_quantity(
-    std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
-    return Parser(text, why, words).quantity();
-}
 std::optional<Comparison> parse_comparison(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
     return Parser(text, why, words).comparison();

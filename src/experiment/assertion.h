@@ -23,7 +23,7 @@ struct Comparison {
     std::string op;  // "<", "<=", ">", ">=", "=="; "": not parsed yet
 };
 
-/// Returns the quantity in full, as parse_quantity reads it.
+/// Returns the quantity in full, as in an assertion.
 std::string to_string(const ParsedQuantity& quantity);
 /// Returns "left op right", as parse_comparison reads it.
 std::string to_string(const Comparison& comparison);
@@ -54,10 +54,8 @@ const std::vector<QuantityWord>& quantity_words();
 /// Returns "rmse.REGION(ARM, n=N, s=S)".
 std::string form_of(const QuantityWord& word);
 
-/// Parses one side, or a whole assertion, over a list of words; for invalid text, returns nothing and sets `why` to
+/// Parses an assertion over a list of words; for invalid text, returns nothing and sets `why` to
 /// what was expected.
-std::optional<ParsedQuantity> parse_quantity(
-    std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
 std::optional<Comparison> parse_comparison(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
 /// Fills in a missing n: the experiment's, or for bad and largest the arm's highest sample count, which includes all

@@ -20,23 +20,10 @@ Spread spread(std::span<const double> x) {
         s.mean += v / s.n;
         s.largest = std::max(s.largest, v);
     }
-    double m2 = 0, m3 = 0;
-    for (double v : x) {
-        const double d = v - s.mean;
-        m2 += d * d;
-        m3 += d * d * d;
-    }
+    double m2 = 0;
+    for (double v : x) m2 += (v - s.mean) * (v - s.mean);
     s.sd = std::sqrt(m2 / std::max(s.n - 1, 1.0));
-    s.skew = s.sd > 0 ? m3 / s.n / (s.sd * s.sd * s.sd) : 0;
     return s;
-}
-
-double johnson_t(const Spread& s, double expected) {
-    const double d = s.mean - expected;
-    if (!(s.sd > 1e-7 * std::fabs(expected)))
-        return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // all samples are equal
-    const double corrected = d + s.skew * s.sd / (6 * s.n) + s.skew / (3 * s.sd) * d * d;
-    return corrected * std::sqrt(s.n) / s.sd;
 }
 
 // ---- Quantiles of a few numbers: sorted, with linear interpolation between two neighbours.
@@ -50,30 +37,6 @@ double quantile(std::vector<double> values, double q) {
     const std::size_t above = std::min(below + 1, values.size() - 1);
     const double t = at - static_cast<double>(below);
     return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
-}
-
-// ---- Counts of bins compared with their expectations: by Poisson's standard deviations, and by the chi-square over
-// all of them.
-
-std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected) {
-    const auto off = [&](std::size_t i) {
-        return std::fabs(observed[i] - expected[i]) / std::sqrt(std::max(expected[i], 1.0));
-    };
-    std::size_t worst = 0;
-    for (std::size_t i = 1; i < observed.size(); ++i)
-        if (off(i) > off(worst)) worst = i;
-    return worst;
-}
-
-double unseen_share(const std::vector<double>& expected, double degrees, double draws, double level) {
-    if (!(degrees > 0)) return 1;
-    double low = degrees, high = 2 * degrees + 200;
-    for (int i = 0; i < 40; ++i) {
-        const double mid = 0.5 * (low + high);
-        (chi_squared_p(mid, degrees) > level ? low : high) = mid;
-    }
-    const double fullest = std::max(*std::max_element(expected.begin(), expected.end()), 5.0);
-    return std::min(std::sqrt((low - degrees) * fullest) / draws, 1.0);
 }
 
 // ---- Rates with exact binomial intervals.
@@ -219,8 +182,6 @@ double student_two_sided_quantile(double degrees, double p) {
     while (student_two_sided(degrees, high) > p) high *= 2;
     return passes([&](double t) { return -student_two_sided(degrees, t); }, -p, 0, high);
 }
-
-double poisson_tail(double mean, double k) { return k > 0 ? gamma_p(k, mean) : 1; }
 
 ShareInterval binomial_interval(double n, double k, double alpha) {
     const double low = k > 0 ? passes([&](double p) { return beta_i(k, n - k + 1, p, 1 - p); }, alpha, 0, 1) : 0;

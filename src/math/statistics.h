@@ -13,16 +13,14 @@
 
 namespace crescent::inline statistics {
 
-// ---- Mean, standard deviation and skewness of numbers, and Student's t of their mean, corrected for skewness.
+// ---- Mean, standard deviation and maximum of numbers.
 
-/// Of n numbers; sd with n - 1, the skewness with n.
+/// Of n numbers; sd with n - 1.
 struct Spread {
-    double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
+    double n = 0, mean = 0, sd = 0, largest = 0;
 };
-/// Mean and variance of x.
+/// Returns them; all 0 for no numbers.
 Spread spread(std::span<const double> x);
-/// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t corrected for skewness.
-double johnson_t(const Spread& s, double expected);
 
 // ---- The k-th smallest of numbers, their median, and quantiles between order statistics.
 
@@ -41,14 +39,6 @@ inline double median_of(std::vector<double> v) {
 
 /// Returns quantile q of values by linear interpolation between order statistics (R type 7); NaN if one of them is.
 double quantile(std::vector<double> values, double q);
-
-// ---- Counts of bins compared with their expectations.
-
-/// Returns the bin with the largest deviation in standard deviations.
-std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected);
-/// Returns the share of the draws that may be added or missing in one bin without detection: the share for which the
-/// chi-square over all bins reaches its level with probability one half, in the fullest bin.
-double unseen_share(const std::vector<double>& expected, double degrees, double draws, double level);
 
 // ---- A rate with its interval.
 
@@ -75,9 +65,6 @@ double normal_two_sided(double z);
 /// P(|T| > |t|), Student's T with this many degrees of freedom, and the t > 0 that is exceeded with probability p.
 double student_two_sided(double degrees, double t);
 double student_two_sided_quantile(double degrees, double p);
-/// P(N >= k), N Poisson of this mean.
-double poisson_tail(double mean, double k);
-
 /// An interval of a probability.
 struct ShareInterval {
     double low, high;
@@ -91,8 +78,6 @@ ShareInterval binomial_interval(double n, double k, double alpha);
 inline double chi_squared_p(double statistic, double degrees) {
     return degrees > 0 ? chi_squared_tail(degrees, statistic) : 1;
 }
-/// Two-sided, for a normal z; 0 if it is not finite.
-inline double normal_p(double z) { return std::isfinite(z) ? normal_two_sided(z) : 0; }
 /// Two-sided, for Student's t with this many degrees of freedom; 0 if it is not finite.
 inline double student_p(double t, double degrees) { return std::isfinite(t) ? student_two_sided(degrees, t) : 0; }
 

@@ -77,8 +77,6 @@ public:
     /// Returns the rays against all instances of the meshes; positions are relative to origin().
     const Rays& rays() const { return made_->rays; }
     bool has_meshes() const { return !made_->rays.empty(); }
-    /// Returns whether a mesh is met at x + t d with 0 < t < t_max; x is relative to origin().
-    bool mesh_hides(Vec3f x, Vec3f d, float t_max) const { return made_->rays.occluded(x, d, t_max); }
     /// Returns the triangles that emit, in the order of instances and triangles, the back of two-sided ones as
     /// triangles of their own.
     const std::vector<TriangleLight>& triangle_lights() const { return made_->triangle_lights; }

@@ -57,13 +57,6 @@ void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float
 bool has_sky(const Surroundings& around) { return around.sky.has_value(); }
 bool has_meshes(const Surroundings& around) { return !around.rays.empty(); }
 
-double open_radiance(const Surroundings& around, Vec3d x, Vec3d d) {
-    if (around.triangles)
-        if (const std::uint32_t k = around.triangles->nearest(x, d); k != no_triangle)
-            return luminance(around.triangles->triangles()[k].radiance);
-    return around.sky ? luminance(around.sky->radiance(around.sky->texel_at(d))) : 0;
-}
-
 SkyDraw sample_sky(const Surroundings& around, double u, double v) {
     return around.sky ? around.sky->sample(u, v) : SkyDraw{{0, 1, 0}, no_texel, 0};
 }

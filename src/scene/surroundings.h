@@ -45,10 +45,6 @@ void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float
 bool has_sky(const Surroundings& around);
 bool has_meshes(const Surroundings& around);
 
-/// Y of the light that varies from direction d: that of the nearest emitting triangle, else that of the sky. Bodies and
-/// triangles that do not emit hide nothing.
-double open_radiance(const Surroundings& around, Vec3d x, Vec3d d);
-
 // ---- The samplers: a direction, and its density in 1/sr; 0 where there is nothing to aim at.
 
 SkyDraw sample_sky(const Surroundings& around, double u, double v);

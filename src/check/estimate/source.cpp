@@ -13,9 +13,9 @@ std::span<const Pair> Source::pairs_of(Vec3d from, std::span<const Vec3d> wi) {
     return pairs_;
 }
 
-double Source::checked(double value, Vec3d at) {
+double Source::checked(double value) {
     if (std::isfinite(value) && value >= 0) return value;
-    if (invalid_++ == 0) first_invalid_ = at, first_invalid_value_ = value;
+    ++invalid_;
     return 0;
 }
 
@@ -61,7 +61,7 @@ void Source::density(std::span<const Vec3d> wi, std::span<double> out) {
         return;
     }
     adapter.exact_pdf(technique, pairs_of(wi), out);
-    for (std::size_t i = 0; i < wi.size(); ++i) out[i] = checked(out[i], wi[i]);
+    for (std::size_t i = 0; i < wi.size(); ++i) out[i] = checked(out[i]);
 }
 
 double Source::density(Vec3d wi) {
@@ -100,7 +100,7 @@ void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) 
     }
     for (std::size_t i = 0; i < wi.size(); ++i) {
         const double c = std::fabs(wi[i].z);
-        out[i] = {checked(out[i].x, wi[i]) * c, checked(out[i].y, wi[i]) * c, checked(out[i].z, wi[i]) * c};
+        out[i] = {checked(out[i].x) * c, checked(out[i].y) * c, checked(out[i].z) * c};
     }
 }
 

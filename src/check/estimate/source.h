@@ -62,20 +62,16 @@ public:
     std::uint64_t evaluations() const { return evaluations_; }
     /// Counts calls that go directly to the sampler.
     void count(std::size_t evaluations) { evaluations_ += evaluations; }
-    /// Answers of density() and f_cos() that were not finite or negative, and the first of them.
+    /// Answers of density() and f_cos() that were not finite or negative.
     std::uint64_t invalid() const { return invalid_; }
-    Vec3d first_invalid() const { return first_invalid_; }
-    double first_invalid_value() const { return first_invalid_value_; }
 
 private:
     std::uint64_t evaluations_ = 0, invalid_ = 0;
-    Vec3d first_invalid_{};
-    double first_invalid_value_ = 0;
     std::vector<Pair> pairs_;
     const RecordedSampler* recorded_ = dynamic_cast<const RecordedSampler*>(&adapter);
     std::span<const Pair> pairs_of(std::span<const Vec3d> wi) { return pairs_of(wo, wi); }
     std::span<const Pair> pairs_of(Vec3d from, std::span<const Vec3d> wi);
-    double checked(double value, Vec3d at);
+    double checked(double value);
 };
 
 /// Whether the draw is a direction of the tested density: not a delta part, and not an empty draw. p: the density

@@ -1,4 +1,4 @@
-// The random numbers for samplers under test: drawn, or spread evenly. Multiples of 2^-24 if a sampler may compute in
+// The random numbers for samplers under test: drawn, or given. Multiples of 2^-24 if a sampler may compute in
 // single precision.
 #pragma once
 
@@ -10,8 +10,6 @@ namespace crescent::inline sources {
 /// dimensions.
 PrimarySample drawn_numbers(
     std::uint32_t seed, std::uint32_t pixel, std::uint64_t i, std::uint32_t technique, int count);
-/// An even cover of the cube, the same for every seed: Roberts' sequence, shifted by `shift`.
-PrimarySample even_cover(std::uint64_t i, const PrimarySample& shift, int count);
 /// "u = (0, 0.5)".
 std::string describe(const PrimarySample& u, int count, int digits = 9);
 
