@@ -1,7 +1,7 @@
 // At each w_o: unusable draws are left out, one tree is grown for both samplers, the first stage looks at the draws
 // twice, and each difference that it finds is tested again with fresh draws of both. A and B draw from different
 // streams.
-#include "check/against.h"
+#include "check/check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,11 @@
 
 #include "base/parallel.h"
 #include "check/against_draws.h"
-#include "check/check.h"
 #include "check/constants.h"
-#include "check/explain/text.h"
 #include "check/report/print.h"
 #include "check/sources/sampler_adapter.h"
-#include "check/sources/wrappers.h"
-#include "check/verdicts/two_stages.h"
+#include "check/verdicts/statistics.h"
+#include "output/format.h"
 
 namespace crescent::check {
 

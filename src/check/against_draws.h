@@ -10,7 +10,6 @@
 
 #include "check/constants.h"
 #include "check/decide/check_at.h"
-#include "check/estimate/delta_parts.h"
 #include "check/estimate/observations.h"
 #include "check/verdict.h"
 #include "check/verdicts/statistics.h"

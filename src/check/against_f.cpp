@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "check/constants.h"
-#include "check/decide/tail.h"
-#include "check/estimate/scatter.h"
-#include "check/explain/text.h"
+#include "check/decide/check_at.h"
+#include "check/estimate/source.h"
 #include "math/statistics.h"
+#include "output/format.h"
 
 namespace crescent::check {
 

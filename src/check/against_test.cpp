@@ -1,5 +1,5 @@
 // Two samplers with known densities compared: distribution, f, and the ratio of their variances in closed form.
-#include "check/against.h"
+#include "check/check.h"
 
 #include <gtest/gtest.h>
 

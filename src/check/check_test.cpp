@@ -7,7 +7,7 @@
 #include "check/constants.h"
 #include "check/decide/check_at.h"
 #include "check/sources/cases.h"
-#include "check/verdict_names.h"
+#include "check/verdict.h"
 
 namespace crescent {
 namespace {

@@ -25,7 +25,6 @@
 
 #include "check/check.h"
 #include "check/sources/sampler_adapter.h"
-#include "check/sources/user_cases.h"
 #include "check/sources/user_sampler.h"
 
 namespace crescent::user {

@@ -1,15 +1,40 @@
-// Verdicts with their messages and the numbers behind them.
+// Verdicts: their list with the question that each answers, their messages with the numbers behind them, and the ones
+// that a caller expects.
 #pragma once
 
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+// In output order. The families of check/verdicts/ name the verdict that they make wrong. The list is used by `crescent
+// check` and its output, --expect, `crescent list verdicts` and the tests.
+// clang-format off: one a line
+#define CRESCENT_VERDICTS(verdict)                                                                              \
+    verdict(valid, "are all densities and weights finite and non-negative, and all directions of unit length?") \
+    verdict(support, "is p > 0 wherever f L cos > 0?")                                                          \
+    verdict(normalised, "does p integrate to the share of samples that draw a direction?")                      \
+    verdict(density, "do the draws follow p?")                                                                  \
+    verdict(identity, "do the sampler's functions agree?")                                                      \
+    verdict(physics, "is f a BRDF?")                                                                            \
+    verdict(tail, "how heavy is the weight f L cos / p?")                                                       \
+    verdict(mean, "do the weights average to the integral?")                                                    \
+    verdict(efficiency, "how large is variance times cost, against uniform and cosine sampling?")
+// clang-format on
+
 namespace crescent::inline results {
+
+#define CRESCENT_NAME(verdict, question) std::string_view(#verdict),
+inline constexpr std::array verdict_names = {CRESCENT_VERDICTS(CRESCENT_NAME)};
+#undef CRESCENT_NAME
+#define CRESCENT_QUESTION(verdict, question) std::string_view(question),
+inline constexpr std::array verdict_questions = {CRESCENT_VERDICTS(CRESCENT_QUESTION)};
+#undef CRESCENT_QUESTION
 
 /// error: the sampler could not be evaluated; it crashed, threw, violated the protocol or did not answer.
 enum class State { right, wrong, inconclusive, skipped, error };
@@ -17,6 +42,7 @@ std::string_view word(State state);
 
 /// The next step for a verdict. Each front end describes it by its own calls or flags (report/print.h).
 struct NextStep {
+    /// What would decide the verdict.
     enum class Kind { none, more_draws, more_time, heavier_pdf };
     Kind kind = Kind::none;
     double times = 0;  // required factor on the number of draws; 0: unknown
@@ -25,6 +51,7 @@ struct NextStep {
 /// The density that the draws of a sampler without pdf(w) imply, with standard errors, 1/sr: means over rings about n,
 /// and the highest of the cells.
 struct ImpliedDensity {
+    /// A mean over a ring, with its standard error.
     struct Ring {
         double from = 0, to = 0;  // degrees from n
         double pdf = 0, error = 0;
@@ -90,6 +117,7 @@ struct SkippedCase {
     std::string why;
 };
 
+/// The verdicts of a call, with what is drawn of them and how much was evaluated.
 struct CheckResult {
     std::vector<Verdict> verdicts;
     std::vector<SkippedCase> left_out;
@@ -109,5 +137,25 @@ void note_first_failure(const std::string& what, Verdict& v);
 
 /// Sets the state of the result: verdicts that the caller does not expect, and expectations that no verdict meets.
 void next_step(CheckResult& result);
+
+// ---- Verdicts other than "right" that a caller expects: "phong support=wrong: it never reaches the horizon". An
+// expected verdict does not count; an expectation that no verdict meets any more does.
+//
+//   [ARM ]VERDICT=STATE: REASON      STATE is wrong or inconclusive; without ARM, or with *, of every arm
+
+/// One expectation, and its place in the input.
+struct Waiver {
+    std::string arm, verdict, reason;  // arm "": any
+    State state = State::wrong;
+    std::string place;  // "--expect" or "waivers.txt:3"
+};
+
+/// Each text is a waiver, or a file of waivers, one on each line, with comments from # on. Throws InputError with the
+/// place and the nearest known word.
+std::vector<Waiver> read_waivers(std::span<const std::string> texts);
+/// Throws InputError if a waiver names none of these arms.
+void check_waivers(std::span<const Waiver> waivers, std::span<const std::string> arms);
+/// Excludes waived verdicts from the state of the result, and lists waivers that no verdict meets.
+void waive(CheckResult& result, std::span<const Waiver> waivers);
 
 }  // namespace crescent::inline results

@@ -5,8 +5,6 @@
 
 #include <set>
 
-#include "check/verdict_names.h"
-
 namespace crescent::inline results {
 namespace {
 

@@ -1,6 +1,6 @@
 // A line is split at its first '=' and at the next ':'. Words are compared with the known verdicts, and arms with those
 // that are checked.
-#include "check/waivers.h"
+#include "check/verdict.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -9,8 +9,6 @@
 
 #include "base/errors.h"
 #include "base/text.h"
-#include "check/verdict.h"
-#include "check/verdict_names.h"
 
 namespace crescent::inline results {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
-#include "check/print.h"
-#include "check/waivers.h"
+#include "check/report/print.h"
+#include "check/verdict.h"
 
 namespace crescent {
 namespace {

@@ -10,8 +10,8 @@
 #include "base/errors.h"
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
+#include "experiment/parser.h"
 #include "experiment/schema.h"
-#include "experiment/tree.h"
 #include "output/tone_map.h"
 
 namespace crescent::inline comparison {

@@ -17,7 +17,6 @@
 #include "compare/open_file.h"
 #include "compare/passes.h"
 #include "compare/plan.h"
-#include "compare/view.h"
 
 namespace crescent::inline comparison {
 

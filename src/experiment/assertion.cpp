@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiment/parser.h"
-#include "render/film_metrics/all.h"
+#include "render/film_metrics.h"
 
 namespace crescent::inline experiment {
 

@@ -11,7 +11,7 @@
 #include "experiment/parser.h"
 #include "math/simd/random.h"
 #include "render/combination.h"
-#include "render/combination_call.h"
+#include "render/kernel.h"
 #include "samplers/info.h"
 #include "samplers/weight_formula.h"
 

@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "experiment/input_files.h"
-#include "render/image_file.h"
+#include "render/exr.h"
 
 namespace crescent::inline experiment {
 

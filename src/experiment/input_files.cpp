@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "experiment/parser.h"
-#include "scene/image_pack.h"
+#include "scene/texture.h"
 
 namespace crescent::inline experiment {
 

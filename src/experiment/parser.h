@@ -1,16 +1,51 @@
 // An experiment while it is being read: values so far and every mistake so far.
 #pragma once
 
+#include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/errors.h"
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
-#include "experiment/tree.h"
 
 namespace crescent::inline experiment {
+
+// ---- An experiment file as a tree of plain nodes in file order, each with its place. The only interface to the TOML
+// parser.
+
+struct Member;
+
+/// One TOML value. Tables and arrays keep their members in file order; an array's members have no key.
+struct Node {
+    enum class Kind { table, array, text, integer, number, flag, date };
+    Kind kind = Kind::table;
+    SourceLocation at;
+    std::vector<Member> members;  // table, array
+    std::string text;
+    std::int64_t integer = 0;
+    double number = 0;  // number; integers too
+    bool flag = false;
+
+    bool is_table() const { return kind == Kind::table; }
+    bool is_array() const { return kind == Kind::array; }
+    const Member* find(std::string_view key) const;
+    Member* find(std::string_view key);
+};
+
+struct Member {
+    std::string key;
+    SourceLocation at;  // of the key
+    Node value;
+};
+
+/// Returns "the text 'red'", "3.5", "a table": what was found, for messages.
+std::string describe(const Node& node);
+
+/// Reads TOML; throws InputError if the syntax is wrong or a name is given twice. `file` is in every place.
+Node read_toml(std::string_view text, const std::string& file);
 
 /// A value that refers to another name in the file.
 struct Reference {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "estimator.h"
+#include "backend.h"
 #include "context.h"
 #include "tests/support/gl_test_scene.h"
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "estimator.h"
+#include "backend.h"
 #include "tests/support/gl_compare.h"
 #include "tests/support/gl_test_scene.h"
 

@@ -14,7 +14,7 @@
 #include "experiment/experiment.h"
 #include "math/statistics.h"
 #include "render/film.h"
-#include "render/film_metrics/all.h"
+#include "render/film_metrics.h"
 
 namespace crescent::inline metrics {
 

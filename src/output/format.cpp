@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "math/functions.h"
 
 namespace crescent::inline output {
 namespace {
@@ -59,6 +60,22 @@ std::string percent(double fraction, int digits) {
     if (!std::isfinite(fraction)) return shortest(fraction);
     return fmt::format("{:.{}g} %", 100 * fraction, digits);
 }
+
+std::string with_error(double value, double half) {
+    if (!(half > 0) || !std::isfinite(half)) return fmt::format("{:.5g}", value);
+    const double exponent = std::floor(math::log10(half) + 1e-9);
+    const int digits = -static_cast<int>(exponent) + (half < 1.95 * math::pow(10, exponent) ? 1 : 0);
+    if (digits > 12 || digits < -3) return fmt::format("{:.5g} +- {:.1g}", value, half);
+    return fmt::format("{:.{}f} +- {:.{}f}", value, std::max(digits, 0), half, std::max(digits, 0));
+}
+
+std::string percent_with_error(double share, double half) {
+    const std::string both = with_error(100 * share, 100 * half);
+    const std::size_t at = both.find(" +-");
+    return at == std::string::npos ? both + " %" : both.substr(0, at) + " %" + both.substr(at) + " %";
+}
+
+std::string direction_text(Vec3<double> w) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z); }
 
 std::size_t width(std::string_view utf8) {
     return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), starts_code_point));

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/vec.h"
+
 namespace crescent::inline output {
 
 /// Returns the shortest decimal that reads back as the same double; "nan", "inf", "-inf" for the rest.
@@ -28,6 +30,15 @@ std::string figures_of(std::string_view metric, double x, bool paired);
 
 /// A ratio or share in percent, "6.7 %"; at most `digits` significant figures.
 std::string percent(double fraction, int digits = 3);
+
+/// "0.9754 +- 0.0002": the half width of the interval with one digit, or two if the first is 1, and the value to the
+/// same place.
+std::string with_error(double value, double half);
+/// "12.3 % +- 0.4 %" for shares.
+std::string percent_with_error(double share, double half);
+
+/// "(0.5, 0, 0.866)".
+std::string direction_text(Vec3<double> w);
 
 /// Returns the code points in UTF-8 text: its columns in a terminal if every character is one wide.
 std::size_t width(std::string_view utf8);

@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "render/combination.h"
-#include "render/external_lights.h"
+#include "render/technique.h"
 
 namespace crescent::inline render {
 

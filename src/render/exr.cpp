@@ -6,14 +6,25 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/openexr.h>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/parallel.h"
+#include "scene/texture.h"
 
 namespace crescent::inline render {
 
@@ -105,5 +116,116 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
     const Attributes& attributes) {
     write_parts(path, parts, attributes);
 }
+
+// ---- Blocks of rows are read into one interleaved array that grows with them, converted to float by OpenEXR, on this
+// thread: a header that states more pixels than its file has takes no memory for them.
+
+namespace {
+
+/// Returns the names of the channels that become r, g and b.
+std::array<std::string, 3> channels_of(const Imf::Header& header, const std::string& path) {
+    const Imf::ChannelList& channels = header.channels();
+    std::array<std::string, 3> names = {"R", "G", "B"};
+    if (!channels.findChannel("R") && channels.findChannel("Y")) names = {"Y", "Y", "Y"};
+    for (const std::string& name : names) {
+        const Imf::Channel* channel = channels.findChannel(name);
+        if (!channel)
+            throw InputError(
+                {path, 0, 0}, fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part", name));
+        if (channel->xSampling != 1 || channel->ySampling != 1)
+            throw InputError({path, 0, 0}, fmt::format("expected a sample of '{}' for every pixel", name));
+    }
+    return names;
+}
+
+/// Returns what an image of this size is not; "" if it may be read.
+using WhyNot = std::string (*)(std::int64_t width, std::int64_t height);
+
+/// The size from the header, before anything else is read.
+std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path, WhyNot why_not) {
+    const auto side = [](int low, int high) { return std::int64_t{high} - low + 1; };
+    const std::int64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+    if (const std::string why = why_not(width, height); !why.empty()) throw InputError({path, 0, 0}, why);
+    return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+thread_local std::string header_message;
+
+/// Throws if a size in the headers contradicts the size of the file: OpenEXR's C library checks what its C++ library
+/// takes memory for.
+void check_header(const std::string& path) {
+    exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    start.error_handler_fn = [](exr_const_context_t, exr_result_t, const char* why) { header_message = why; };
+    exr_context_t context = nullptr;
+    header_message.clear();
+    const exr_result_t result = exr_start_read(&context, path.c_str(), &start);
+    exr_finish(&context);
+    // It skips a part of a broken attribute, and succeeds.
+    if (result != EXR_ERR_SUCCESS || !header_message.empty()) throw std::runtime_error(header_message);
+}
+
+std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_not) {
+    check_header(path);
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    const Imf::Header& header = file.header(0);
+    if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
+        throw InputError({path, 0, 0}, "expected a flat image, found a deep one");
+    const Imath::Box2i window = header.dataWindow();
+    const auto [width, height] = size_of(window, path, why_not);
+    const std::array<std::string, 3> names = channels_of(header, path);
+    Imf::InputPart part(file, 0);
+    constexpr std::size_t pixel = 3 * sizeof(float);
+    constexpr int rows = 256;  // the largest block of an OpenEXR file: DWAB
+    const std::size_t row = pixel * static_cast<std::size_t>(width);
+    const bool grey = names[0] == names[1];
+    std::vector<float> rgb;
+    for (int first = window.min.y; first <= window.max.y; first += rows) {
+        const int last = std::min(first + rows - 1, window.max.y);
+        rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(last - window.min.y + 1));
+        char* const origin = reinterpret_cast<char*>(rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
+            static_cast<std::ptrdiff_t>(row) * window.min.y;
+        Imf::FrameBuffer buffer;
+        for (std::size_t c = 0; c < (grey ? 1 : 3); ++c)
+            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), pixel, row));
+        part.setFrameBuffer(buffer);
+        part.readPixels(first, last);
+    }
+    for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
+    auto out = std::make_shared<RgbImage>();
+    out->hash = hash_of_texels(width, height, rgb);
+    out->width = width, out->height = height, out->rgb = std::move(rgb);
+    return out;
+}
+
+std::shared_ptr<const RgbImage> read_pack(const std::string& path, WhyNot why_not) {
+    std::shared_ptr<const RgbImage> image = read_image_file(contents_of(path), path);
+    if (const std::string why = why_not(image->width, image->height); !why.empty()) throw InputError({path, 0, 0}, why);
+    return image;
+}
+
+std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw InputError({path, 0, 0}, "expected a regular file");
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw InputError(
+            {path, 0, 0}, fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
+    std::string head(image_header_size, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (is_image_file(head)) return read_pack(path, why_not);
+    try {
+        return read_parts(path, why_not);
+    } catch (const InputError&) { throw; } catch (const std::exception& why) {
+        throw InputError({path, 0, 0}, fmt::format("expected an OpenEXR image: {}", why.what()));
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<const RgbImage> read_sky(const std::string& path) { return read(path, why_no_sky_of); }
+std::shared_ptr<const RgbImage> read_texture(const std::string& path) { return read(path, why_no_texture_of); }
 
 }  // namespace crescent::inline render

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "math/simd/random.h"
-#include "render/combination_call.h"
+#include "render/kernel.h"
 #include "render/kernel_lights.h"
 #include "samplers/all.h"
 

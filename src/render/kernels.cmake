@@ -1,5 +1,5 @@
-# One source makes the kernels of every instruction set that isas.h lists for this processor, each with its own flags;
-# they are added to ${crescent_kernel_target}.
+# One source makes the kernels of every instruction set that kernel.cpp lists for this processor, each with its own
+# flags; they are added to ${crescent_kernel_target}.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(family X86)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
@@ -11,7 +11,7 @@ if(CRESCENT_SCALAR)  # only on plain floats, to compile less
   set(family none)
   target_compile_definitions(${crescent_kernel_target} PRIVATE CRESCENT_SCALAR)
 endif()
-set(sets ${CMAKE_CURRENT_LIST_DIR}/isas.h)
+set(sets ${CMAKE_CURRENT_LIST_DIR}/kernel.cpp)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${sets})
 file(READ ${sets} sets)
 string(REGEX MATCH "define CRESCENT_ISAS_${family}[^#]*" sets "${sets}")

@@ -82,4 +82,19 @@ FormulaInputs formula_inputs(const ShadingPoints& points, const PointRun& run);
 void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const double> u, std::size_t numbers,
     const Choices& choices, std::span<PointDraw> out, std::vector<std::vector<double>>& p);
 
+// ---- What samplers from outside receive of shading points, and which of their draws are usable.
+
+/// Every light, in the scene's order; empty where there is none or no point.
+std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points);
+
+/// Appends each of these lights as shading point `at` sees it.
+void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vector<ExternalLightAt>& to);
+
+/// Rows at shading point `at`.
+ExternalRun run_at(const ShadingPoints& shading_points, std::size_t at, Vec3<double> wo, std::size_t rows);
+
+/// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
+/// precision, in which the estimate is computed. pdf 0, which means that nothing was drawn, is for the caller.
+bool is_usable(const Vec3<double>& wi, double pdf);
+
 }  // namespace crescent::inline render

@@ -10,14 +10,13 @@
 
 #include "base/errors.h"
 #include "base/text.h"
-#include "check/sources/builtin.h"
 #include "check/sources/cases.h"
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "render/combination.h"
 #include "render/estimator.h"
-#include "render/external_lights.h"
 #include "render/shading_points.h"
+#include "render/technique.h"
 #include "run/execute.h"
 #include "samplers/info.h"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "check/sources/sampler_adapter.h"
-#include "check/sources/user_cases.h"
 #include "experiment/experiment.h"
 #include "samplers/external_sampler.h"
 

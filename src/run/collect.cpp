@@ -11,10 +11,10 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "metrics/article_checks.h"
-#include "metrics/metrics.h"
 #include "metrics/furnace.h"
+#include "metrics/metrics.h"
 #include "render/estimator.h"
-#include "run/resources.h"
+#include "run/plan.h"
 #include "run/version.h"
 
 namespace crescent::inline runs {

@@ -9,15 +9,14 @@
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "metrics/metrics.h"
 #include "metrics/flip.h"
+#include "metrics/metrics.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
 #include "render/kernel.h"
-#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "run/checkpoint.h"
-#include "run/resources.h"
+#include "run/plan.h"
 
 namespace crescent::inline runs {
 

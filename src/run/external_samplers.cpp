@@ -1,4 +1,4 @@
-// A program (check/sources/pipe.h) has no limit to the whole; a library is opened by check/sources/plugin.h. A wrapper
+// A program (check/sources/external.h) has no limit to the whole; a library is opened there too. A wrapper
 // around either puts the arm's name into what it throws.
 #include "run/execute.h"
 
@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "check/sources/pipe.h"
-#include "check/sources/plugin.h"
-#include "check/sources/python_sampler.h"
+#include "check/sources/external.h"
 #include "experiment/experiment.h"
 
 namespace crescent::inline runs {

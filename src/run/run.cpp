@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "run/checkpoint.h"
 #include "run/execute.h"
-#include "run/resources.h"
+#include "run/plan.h"
 
 namespace crescent::inline runs {
 

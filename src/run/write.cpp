@@ -18,7 +18,7 @@
 #include "report/plates/plates.h"
 #include "report/plates/sheet.h"
 #include "run/collect.h"
-#include "run/resources.h"
+#include "run/plan.h"
 #include "run/version.h"
 
 namespace crescent::inline runs {

@@ -12,7 +12,7 @@
 
 #include "math/functions.h"
 #include "math/simd/scalar.h"
-#include "scene/image_pack.h"
+#include "scene/texture.h"
 
 namespace crescent::inline scene {
 

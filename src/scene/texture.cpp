@@ -1,11 +1,112 @@
-// Double precision; a coordinate just below a whole number may round up to the width, and counts as the last texel.
+// The .image file: its size is compared with that of the file before anything is allocated. Texels: double precision; a
+// coordinate just below a whole number may round up to the width, and counts as the last texel.
 #include "scene/texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/errors.h"
+#include "scene/sky.h"
+
 namespace crescent::inline scene {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "image files are little-endian");
+
+constexpr std::uint32_t image_kind = 0x67616d69, image_version = 1;
+
+struct ImageHeader {
+    char magic[8];
+    std::uint32_t kind, version, width, height;
+    std::uint64_t hash;
+};
+static_assert(sizeof(ImageHeader) == image_header_size);
+
+ImageHeader image_header_of(std::string_view head) {
+    ImageHeader header{};
+    std::memcpy(&header, head.data(), std::min(head.size(), sizeof header));
+    return header;
+}
+
+}  // namespace
+
+std::string why_no_sky_of(std::int64_t width, std::int64_t height) {
+    if (width >= 2 && width <= widest_sky && width == 2 * height) return "";
+    return fmt::format(
+        "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} x {}", widest_sky,
+        highest_sky, width, height);
+}
+
+std::string content_hash(const RgbImage& image) { return fmt::format("{:016x}", image.hash); }
+
+std::string why_no_texture_of(std::int64_t width, std::int64_t height) {
+    if (width >= 1 && width <= widest_texture && height >= 1 && height <= widest_texture) return "";
+    return fmt::format("expected an image of at most {0} x {0} texels, found {1} x {2}", widest_texture, width, height);
+}
+
+std::uint64_t hash_of_texels(int width, int height, const std::vector<float>& rgb) {
+    const std::uint32_t size[2] = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    return XXH3_64bits_withSeed(rgb.data(), rgb.size() * sizeof(float), XXH3_64bits(size, sizeof size));
+}
+
+std::string image_file(const RgbImage& image) {
+    ImageHeader header{{}, image_kind, image_version, static_cast<std::uint32_t>(image.width),
+        static_cast<std::uint32_t>(image.height), image.hash};
+    std::memcpy(header.magic, "crescent", 8);
+    std::string out(sizeof header, '\0');
+    std::memcpy(out.data(), &header, sizeof header);
+    return out.append(reinterpret_cast<const char*>(image.rgb.data()), image.rgb.size() * sizeof(float));
+}
+
+bool is_image_file(std::string_view head) {
+    const ImageHeader header = image_header_of(head);
+    return std::memcmp(header.magic, "crescent", 8) == 0 && header.kind == image_kind;
+}
+
+ImageSize read_image_size(std::string_view head, std::uint64_t size, const std::string& name) {
+    const auto fail = [&](const std::string& message) { throw InputError({name, 0, 0}, message); };
+    if (!is_image_file(head))
+        fail(
+            "expected an .image file (it begins with \"crescentimag\"); `crescent import` makes one of an OpenEXR "
+            "image");
+    if (size < sizeof(ImageHeader) || head.size() < sizeof(ImageHeader))
+        fail(fmt::format(
+            "expected an .image file, whose header has {} bytes; found {} bytes", sizeof(ImageHeader), size));
+    const ImageHeader header = image_header_of(head);
+    if (header.version != image_version)
+        fail(fmt::format("byte 12: expected version {} of the .image format, found {}", image_version, header.version));
+    if (header.width < 1 || header.height < 1 || header.width > widest_texture || header.height > widest_texture)
+        fail(fmt::format("byte 16: expected 1 x 1 to {0} x {0} texels, found {1} x {2}", widest_texture, header.width,
+            header.height));
+    const std::uint64_t expected = sizeof header + std::uint64_t{12} * header.width * header.height;
+    if (size != expected)
+        fail(fmt::format("expected {} bytes for {} x {} texels, found {}{}", expected, header.width, header.height,
+            size, size < expected ? ": the file is truncated" : ""));
+    return {header.width, header.height};
+}
+
+std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const std::string& name) {
+    const ImageSize size = read_image_size(bytes, bytes.size(), name);
+    auto out = std::make_shared<RgbImage>();
+    out->width = static_cast<int>(size.width), out->height = static_cast<int>(size.height);
+    out->rgb.resize(3 * out->texels());
+    std::memcpy(out->rgb.data(), bytes.data() + sizeof(ImageHeader), out->rgb.size() * sizeof(float));
+    out->hash = hash_of_texels(out->width, out->height, out->rgb);
+    if (const std::uint64_t stated = image_header_of(bytes).hash; stated != out->hash)
+        throw InputError({name, 0, 0},
+            fmt::format("byte 24: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
+                out->hash, stated));
+    return out;
+}
+
+// ---- Textures.
 
 std::string why_no_texture(const RgbImage& image, TextureOf of) {
     for (std::size_t k = 0; k < image.texels(); ++k) {

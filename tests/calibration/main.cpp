@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/errors.h"
-#include "check/sources/pipe.h"
+#include "check/sources/external.h"
 #include "check/sources/sampler_adapter.h"
 #include "tests/calibration/records.h"
 #include "tests/calibration/serve.h"

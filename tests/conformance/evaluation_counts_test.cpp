@@ -7,11 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "check/against.h"
-#include "check/print.h"
+#include "check/check.h"
+#include "check/report/print.h"
 #include "check/sources/cases.h"
 #include "check/sources/sampler_adapter.h"
-#include "check/sources/wrappers.h"
 #include "check/user.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/faulty/planted.h"

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "check/gtest.h"
-#include "check/report/summary.h"
-#include "check/verdict_names.h"
+#include "check/report/print.h"
+#include "check/verdict.h"
 
 namespace crescent {
 namespace {

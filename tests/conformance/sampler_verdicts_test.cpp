@@ -5,9 +5,9 @@
 #include <set>
 
 #include "base/errors.h"
-#include "check/print.h"
+#include "check/report/print.h"
 #include "check/sources/cases.h"
-#include "check/sources/pipe.h"
+#include "check/sources/external.h"
 #include "tests/support/checked.h"
 #include "tests/support/sanitized.h"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "check/print.h"
+#include "check/report/print.h"
 #include "check/sources/sample_file.h"
 #include "check/user.h"
 #include "math/simd/frame.h"

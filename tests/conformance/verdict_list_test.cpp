@@ -4,7 +4,7 @@
 
 #include "check/check.h"
 #include "check/sources/cases.h"
-#include "check/verdict_names.h"
+#include "check/verdict.h"
 
 namespace crescent {
 namespace {

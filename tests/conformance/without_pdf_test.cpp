@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "check/check.h"
-#include "check/print.h"
-#include "check/report/summary.h"
+#include "check/report/print.h"
 #include "check/sources/cases.h"
 #include "math/functions.h"
 #include "tests/known_samplers/correct/right.h"

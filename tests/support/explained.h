@@ -11,7 +11,7 @@
 
 #include "check/explain/causes.h"
 #include "check/explain/hypothesis.h"
-#include "check/report/sentences.h"
+#include "check/report/verdicts.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

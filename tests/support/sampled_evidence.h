@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "check/verdicts/questions.h"
-#include "check/verdicts/two_stages.h"
+#include "check/verdicts/statistics.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

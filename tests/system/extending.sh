@@ -1,6 +1,7 @@
 #!/bin/bash
 # Follows docs/extending.md exactly, in a copy of the tree: every section adds its fixture, which is built and run, and
-# may touch one new file and one existing file. The copy stays in the build folder, so that only changes are rebuilt.
+# may touch one new file and one existing file, or one existing file alone. The copy stays in the build folder, so that
+# only changes are rebuilt.
 . "$(dirname "$0")/common.sh"
 : "${CRESCENT_BUILD:?the build folder}"
 page=$CRESCENT_SOURCE/docs/extending.md
@@ -10,20 +11,23 @@ mkdir -p fresh
 (cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake include src apps tests "$work/fresh")
 cp -r fresh plain
 
-# The file of a `<!-- file PATH -->` is the block of code that follows. `<!-- list PATH "HEADER" WORD -->` is two words
-# there; `<!-- line PATH MACRO ["HEADER"] LINE -->` is a line at the end of the list MACRO, and the header that it
-# needs.
+# The file of a `<!-- file PATH -->` is the block of code that follows; that of `<!-- in PATH -->` is added to PATH, at
+# the end of its namespace. `<!-- list PATH "HEADER" WORD -->` is two words there; `<!-- line PATH MACRO ["HEADER"] LINE
+# -->` is a line at the end of the list MACRO, and the header that it needs.
 add_header() { sed -i "0,/^#include \"/s||#include $2\n&|" "fresh/$1"; } # PATH "HEADER"
 add_section() { # TITLE
     awk -v title="## $1" '/^## /{on = $0 == title} on' "$page" >section
     [ -s section ] || die "docs/extending.md has no section '$1'"
-    sed -n 's/^<!-- file \(.*\) -->$/\1/p' section | while read -r path; do
-        awk -v mark="<!-- file $path -->" '
+    sed -n 's/^<!-- \(file\|in\) \(.*\) -->$/\1 \2/p' section | while read -r how path; do
+        awk -v mark="<!-- $how $path -->" '
             $0 == mark { wait = 1; next }
             wait && /^```/ { if (inside) exit; inside = 1; next }
             inside
-        ' section >"fresh/$path"
-        [ -s "fresh/$path" ] || die "docs/extending.md has no code for $path"
+        ' section >code
+        [ -s code ] || die "docs/extending.md has no code for $path"
+        [ "$how" = file ] && cp code "fresh/$path" && continue
+        awk 'FNR == NR { code = code $0 "\n"; next } /^}  \/\/ namespace/ { print code } 1' code "fresh/$path" >listed &&
+            mv listed "fresh/$path"
     done || exit 1
     sed -n 's/^<!-- list \(.*\) -->$/\1/p' section | while read -r path header word; do
         add_header "$path" "$header"
@@ -46,7 +50,8 @@ for title in "A sampler" "A lobe" "A shape" "A light" "A metric" "A plate" "A ve
     add_section "$title"
     diff -rq plain fresh | sort >differences || true
     count=$(wc -l <differences)
-    [ $((count - touched)) -eq 2 ] || die "$title touches $((count - touched)) places, not one new file and one list:
+    places=$((1 + $(grep -c '^<!-- file ' section)))
+    [ $((count - touched)) -eq $places ] || die "$title touches $((count - touched)) places, not one list and one new file:
 $(cat differences)"
     touched=$count
 done

@@ -9,8 +9,8 @@
 #include "base/progress.h"
 #include "check/constants.h"
 #include "check/decide/small_tests.h"
-#include "check/estimate/scatter.h"
-#include "check/verdicts/two_stages.h"
+#include "check/estimate/source.h"
+#include "check/verdicts/statistics.h"
 
 namespace crescent::check {
 

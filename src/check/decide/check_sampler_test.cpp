@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "check/sources/user_cases.h"
+#include "check/sources/sampler_adapter.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

@@ -1,5 +1,5 @@
 // Known variances, and ranks by them.
-#include "check/decide/efficiency.h"
+#include "check/decide/check_sampler.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // A fault of size e shifts the difference of a test by e times its effect, and adds e times the variance of its draws.
 // It is found if the difference passes both stages. The second stage has as many draws and points as the first and a
 // less extreme level for one member, so nearly all differences that pass the first stage pass it too.
-#include "check/decide/sizes.h"
+#include "check/decide/check_at.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // A tail is heavy if the interval of its index is at or above 1/2, and open if the interval contains 1/2.
-#include "check/decide/tail.h"
+#include "check/decide/check_at.h"
 
 #include <algorithm>
 #include <cmath>

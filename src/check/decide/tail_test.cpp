@@ -1,10 +1,10 @@
 // Cosine powers on Lambert have a known Pareto index; lobes that leave Lambert's light to directions they rarely draw
 // have an unseen tail.
-#include "check/decide/tail.h"
+#include "check/decide/check_at.h"
 
 #include <gtest/gtest.h>
 
-#include "check/report/sentences.h"
+#include "check/report/verdicts.h"
 
 namespace crescent::check {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/estimate/scatter.h"
+#include "check/estimate/source.h"
 
 namespace crescent::check {
 

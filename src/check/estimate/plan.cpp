@@ -1,13 +1,291 @@
-// The pilot draws shape the tree and have no other use, so that the choice of the tree causes no bias.
+// The tree grows in rounds, so that p is evaluated in batches: all nodes to `even_depth`, then in each round the eighth
+// of the leaves with the highest score. The pilot draws shape the tree and have no other use, so that the choice of the
+// tree causes no bias.
 #include "check/estimate/plan.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/estimate/scatter.h"
+#include "check/estimate/source.h"
 
 namespace crescent::check {
+
+namespace {
+
+constexpr std::size_t round_share = 8;  // one leaf in eight is cut in a round
+constexpr double least_score = 1e-7;    // a score too small for a cut: 1/2000 of the detection floor
+constexpr int fewest_steps = 4;         // measured steps in a leaf that has its own mean
+constexpr double fewest_pilots = 8;     // draws of a leaf that is cut without a density, so that its halves have some
+
+}  // namespace
+
+class TreeGrowth {
+    /// The state of a leaf while the tree grows.
+    struct Growing {
+        std::vector<DensityPoint> points;
+        std::size_t first = 0, last = 0;  // its pilot draws
+        double spread = 0, score = 0, q = 0;
+        bool met = false;
+    };
+
+public:
+    TreeGrowth(Tree& tree, Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step,
+        const CheckBudget& budget, const StreamKey& key)
+        : tree_(tree),
+          source_(source),
+          pilots_(std::move(pilots)),
+          of_(of),
+          step_(step),
+          budget_(budget),
+          stream_(key) {}
+
+    void grow(std::vector<DensityPoint> hints) {
+        tree_.nodes_.push_back({});
+        tree_.nodes_[0].step = step_;
+        growing_.push_back({});
+        growing_[0].points = std::move(hints);
+        for (DensityPoint& e : growing_[0].points) e.hint = true;
+        growing_[0].last = pilots_.size();
+        rate({0});
+        std::vector<int> front = {0};
+        for (int depth = 0; depth < even_depth; ++depth) front = cut(front);
+        std::vector<int> open;
+        for (std::size_t i = 0; i < tree_.nodes_.size(); ++i)
+            if (tree_.nodes_[i].child < 0) open.push_back(static_cast<int>(i));
+        while (grow_round(open)) {}
+        tree_.number_leaves();
+        for (Leaf& leaf : tree_.leaves_) {
+            const Growing& g = growing_[static_cast<std::size_t>(leaf.node)];
+            leaf.q = g.q, leaf.spread = g.spread, leaf.score = g.score, leaf.met = g.met;
+        }
+    }
+
+private:
+    Tree& tree_;
+    Source& source_;
+    std::vector<DensityPoint> pilots_;
+    std::uint32_t of_;
+    double step_;
+    const CheckBudget& budget_;
+    Stream stream_;
+    std::vector<Growing> growing_;  // by node
+
+    /// One round of best-first growth; false at the end.
+    bool grow_round(std::vector<int>& open) {
+        double spread = 0;
+        for (int i : open) spread += at(i).spread;
+        const auto limit = static_cast<std::size_t>(
+            spread / std::sqrt(static_cast<double>(budget_.points())) > detection_floor / 4 ? budget_.most_leaves()
+                                                                                            : budget_.leaves());
+        if (open.size() >= limit) return false;
+        std::size_t count = std::min(std::max(open.size() / round_share, std::size_t{16}), limit - open.size());
+        count = std::min(count, open.size());
+        std::partial_sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count), open.end(),
+            [&](int a, int b) { return at(a).score != at(b).score ? at(a).score > at(b).score : a < b; });
+        std::vector<int> chosen(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
+        std::erase_if(chosen, [&](int i) { return at(i).score <= least_score; });
+        if (chosen.empty()) return false;
+        const std::vector<int> fresh = cut(chosen);
+        for (int i : chosen)
+            if (tree_.nodes_[static_cast<std::size_t>(i)].child < 0) at(i).score = 0;  // too narrow
+        std::erase_if(open, [&](int i) { return tree_.nodes_[static_cast<std::size_t>(i)].child >= 0; });
+        open.insert(open.end(), fresh.begin(), fresh.end());
+        return true;
+    }
+
+    Growing& at(int node) { return growing_[static_cast<std::size_t>(node)]; }
+
+    /// The side to cut, by the difference of the halves; none if both sides are too narrow.
+    std::optional<bool> side_to_cut(const TreeNode& node, const Growing& g) const {
+        const ChartRect& rect = node.rect;
+        const double least = std::max(least_width, 4 * node.step);
+        double gain[2];
+        for (bool along_phi : {false, true}) {
+            const double middle = rect.middle(along_phi);
+            const auto left = [&](ChartPoint at) { return (along_phi ? at.phi : at.t) < middle; };
+            double sum[2] = {}, count[2] = {}, drawn = 0;
+            for (const DensityPoint& e : g.points) sum[!left(e.at)] += e.p, ++count[!left(e.at)];
+            for (std::size_t k = g.first; k < g.last; ++k) drawn += left(pilots_[k].at);
+            double& to = gain[along_phi];
+            to = std::fabs(2 * drawn - static_cast<double>(g.last - g.first)) / of_ + 1e-12;
+            if (count[0] > 0 && count[1] > 0) to += rect.area() * std::fabs(sum[0] / count[0] - sum[1] / count[1]) / 2;
+            if (rect.width(along_phi) > rect.width(!along_phi)) to *= wider_side;
+            if (rect.width(along_phi) < least) to = 0;
+        }
+        if (gain[0] == 0 && gain[1] == 0) return {};
+        return gain[1] > gain[0];
+    }
+
+    /// Cuts these leaves in two if possible, and rates the halves.
+    std::vector<int> cut(const std::vector<int>& which) {
+        std::vector<int> fresh;
+        for (int i : which) {
+            const std::optional<bool> side = side_to_cut(tree_.nodes_[static_cast<std::size_t>(i)], at(i));
+            if (!side) continue;
+            TreeNode& parent = tree_.nodes_[static_cast<std::size_t>(i)];
+            const double middle = parent.rect.middle(*side), step = parent.step;
+            parent.along_phi = *side;
+            parent.child = static_cast<int>(tree_.nodes_.size());
+            TreeNode halves[2] = {{parent.rect, -1, parent.depth + 1}, {parent.rect, -1, parent.depth + 1}};
+            (*side ? halves[0].rect.phi1 : halves[0].rect.t1) = middle;
+            (*side ? halves[1].rect.phi0 : halves[1].rect.t0) = middle;
+            const auto left = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
+            Growing parts[2];
+            Growing whole = std::move(at(i));
+            for (const DensityPoint& e : whole.points) parts[!left(e)].points.push_back(e);
+            const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.first);
+            const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.last);
+            const auto split = static_cast<std::size_t>(std::partition(begin, end, left) - pilots_.begin());
+            parts[0].first = whole.first, parts[0].last = parts[1].first = split, parts[1].last = whole.last;
+            for (int k : {0, 1}) {
+                fresh.push_back(static_cast<int>(tree_.nodes_.size()));
+                halves[k].step = step_in(parts[k], step);
+                tree_.nodes_.push_back(halves[k]);
+                growing_.push_back(std::move(parts[k]));
+            }
+            tree_.depth_ = std::max(tree_.depth_, halves[0].depth);
+        }
+        rate(fresh);
+        return fresh;
+    }
+
+    /// The mean step over the draws with a measured step; that of the parent if they are too few.
+    double step_in(const Growing& g, double of_whole) const {
+        double sum = 0;
+        int count = 0;
+        for (std::size_t k = g.first; k < g.last; ++k)
+            if (pilots_[k].step >= 0) sum += pilots_[k].step, ++count;
+        return count < fewest_steps ? of_whole : std::max(step_, sum / count);
+    }
+
+    static int sampled(const Growing& g) {
+        return static_cast<int>(std::ranges::count_if(g.points, [](const DensityPoint& e) { return !e.hint; }));
+    }
+
+    /// Evaluates p until each leaf has its points, in one batch, and scores them.
+    void rate(const std::vector<int>& which) {
+        std::vector<ChartPoint> places;
+        std::vector<Vec3d> w;
+        for (int i : which)
+            for (int k = sampled(at(i)); k < points_per_leaf; ++k) {
+                const double x = stream_.number(), y = stream_.number();
+                places.push_back(tree_.nodes_[static_cast<std::size_t>(i)].rect.at(x, (k + y) / points_per_leaf));
+                w.push_back(from_chart(places.back()));
+            }
+        std::vector<double> p(w.size());
+        source_.density(w, p);
+        std::size_t next = 0;
+        for (int i : which) {
+            Growing& g = at(i);
+            for (int k = sampled(g); k < points_per_leaf; ++k, ++next) g.points.push_back({places[next], p[next]});
+            score(tree_.nodes_[static_cast<std::size_t>(i)].rect.area(), g);
+        }
+    }
+
+    /// Without a density only the draws decide where leaves are needed.
+    void score_by_draws(double area, Growing& g) const {
+        const double drawn = static_cast<double>(g.last - g.first);
+        g.score = drawn < fewest_pilots ? 0 : drawn / of_;
+        g.met = drawn > 0;
+        g.q = std::max(drawn, 0.5) / of_ / area;
+    }
+
+    void score(double area, Growing& g) const {
+        if (!source_.has_density()) return score_by_draws(area, g);
+        const double n = sampled(g);
+        double mean = 0, square = 0, top = 0, largest_known = 0;
+        for (const DensityPoint& e : g.points) {
+            if (e.hint) {
+                largest_known = std::max(largest_known, e.p);
+                continue;
+            }
+            mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
+        }
+        for (std::size_t k = g.first; k < g.last; ++k) largest_known = std::max(largest_known, pilots_[k].p);
+        const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
+        const bool missed = largest_known > alike * top;
+        const double hidden = missed ? std::max(drawn, area * std::min(largest_known, 1 / area) / n) : 0;
+        g.spread = area * std::sqrt(std::max(0.0, square - mean * mean));
+        g.score = g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + hidden;
+        // Not from the draws alone: their noise would make h vary from leaf to leaf, and replicates would gain nothing.
+        g.q = missed ? (mean + drawn / area) / 2 : mean;
+        g.met = g.q > 0;
+        if (!g.met) g.q = std::max(drawn, 0.5 / of_) / area;
+    }
+};
+
+Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
+    double step, const CheckBudget& budget, const StreamKey& key) {
+    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow(std::move(hints));
+    find_edges();
+}
+
+void Tree::number_leaves() {
+    std::vector<int> up(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        TreeNode& x = nodes_[i];
+        if (x.depth <= replicated_depth) up[i] = x.row = static_cast<int>(rows_++);
+        if (x.child >= 0) {
+            const TreeNode& c = nodes_[static_cast<std::size_t>(x.child)];
+            up[static_cast<std::size_t>(x.child)] = up[static_cast<std::size_t>(x.child) + 1] = up[i];
+            cuts_.push_back(
+                {x.along_phi ? c.rect.phi1 : c.rect.t1, static_cast<std::uint32_t>(x.child), x.along_phi, 0});
+            continue;
+        }
+        x.leaf = static_cast<int>(leaves_.size());
+        cuts_.push_back({NAN, static_cast<std::uint32_t>(i), false, static_cast<std::uint32_t>(x.leaf)});
+        Leaf leaf;
+        leaf.node = static_cast<int>(i);
+        leaf.coarse = up[i];
+        leaf.step = x.step;
+        leaves_.push_back(leaf);
+    }
+}
+
+void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const {
+    constexpr std::size_t together = 16;
+    for (std::size_t first = 0; first < at.size(); first += together) {
+        const std::size_t n = std::min(together, at.size() - first);
+        std::array<ChartPoint, together> points;
+        std::array<std::uint32_t, together> node{};
+        for (std::size_t k = 0; k < together; ++k) points[k] = at[first + std::min(k, n - 1)];
+        for (bool moved = true; moved;) {
+            moved = false;
+            for (std::size_t k = 0; k < together; ++k) {
+                const std::uint32_t next = cuts_[node[k]].next(points[k]);
+                moved |= next != node[k];
+                node[k] = next;
+            }
+        }
+        for (std::size_t k = 0; k < n; ++k) leaves[first + k] = cuts_[node[k]].leaf;
+    }
+}
+
+/// Whether a neighbouring leaf has another density, so that this leaf may contain a strip of it without any point.
+bool Tree::at_edge(const Leaf& leaf) const {
+    constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
+    const ChartRect& r = rect(leaf);
+    for (int face = 0; face < 4; ++face)
+        for (double x : places) {
+            ChartPoint at = r.at(x, x);
+            if (face == 0) at.t = r.t0 - outside;
+            if (face == 1) at.t = r.t1 + outside;
+            if (face == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
+            if (face == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
+            if (at.t < 0 || at.t > 2) continue;
+            const Leaf& neighbour = leaves_[find(at)];
+            const double q = neighbour.met ? neighbour.q : 0;
+            if (std::max(q, leaf.q) > alike * std::min(q, leaf.q)) return true;
+        }
+    return false;
+}
+
+void Tree::find_edges() {
+    for (Leaf& leaf : leaves_) leaf.edge = leaf.met && at_edge(leaf);
+}
+
+// ---- The pilot draws and the step of the arithmetic.
 
 double step_of(std::vector<double> v) {
     if (v.size() < 64) return 0;

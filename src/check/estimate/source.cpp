@@ -3,6 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+
+#include "check/constants.h"
+#include "check/estimate/chart.h"
+#include "check/sources/sampler_adapter.h"
+#include "math/simd/frame.h"
+#include "math/statistics.h"
 
 namespace crescent::check {
 
@@ -102,6 +109,239 @@ void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) 
         const double c = std::fabs(wi[i].z);
         out[i] = {checked(out[i].x) * c, checked(out[i].y) * c, checked(out[i].z) * c};
     }
+}
+
+// ---- 64 pairs: a function of another kind practically never agrees at all of them by chance.
+
+namespace {
+
+constexpr int pair_count = 64;
+constexpr int fewest = 16;  // pairs with f > 0; fewer show nothing
+
+bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_tolerance * std::max(a, b); }
+
+}  // namespace
+
+BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
+    const Traits traits = adapter.traits();
+    if (!adapter.has_f() || traits.eta || traits.wo == Traits::WoDomain::none) return BothWays::not_known;
+    const bool both = traits.wo == Traits::WoDomain::both;
+    Stream stream(key);
+    const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
+    std::vector<Pair> there, back, through;
+    for (int i = 0; i < pair_count; ++i) {
+        there.push_back({direction(both && (i & 1)), direction(both && !(i & 1))});
+        back.push_back({there.back().wi, there.back().wo});
+        through.push_back({direction(false), direction(true)});
+    }
+    std::vector<double> f(pair_count), g(pair_count), h(pair_count);
+    adapter.f(there, f), adapter.f(back, g), adapter.f(through, h);
+    const auto everywhere = [](const std::vector<double>& v) {
+        return std::ranges::all_of(v, [](double x) { return x > 0; });
+    };
+    bool phase = everywhere(f) && everywhere(g) && everywhere(h), same = both;
+    int positive = 0;
+    for (std::size_t i = 0; i < f.size(); ++i) {
+        positive += f[i] > 0;
+        phase = phase && nearly_equal(f[i] * std::fabs(there[i].wi.z), g[i] * std::fabs(there[i].wo.z));
+        same = same && nearly_equal(f[i], g[i]);
+    }
+    if (phase) return BothWays::phase_function;
+    return same && positive >= fewest ? BothWays::same_f : BothWays::not_known;
+}
+
+// ---- Finds the next change by increasing moves of one number, then by bisection.
+
+namespace {
+
+constexpr double longest_move = 0x1p-4, side_move = 0x1p-10;
+constexpr std::ptrdiff_t draws_to_begin = 64;  // without a step among these draws, no others are tested
+// They bisect the last fourfold move: the jump is then known to 1/16 of the distance to it.
+constexpr int step_halvings = 6;
+
+class Moved {
+    static constexpr double nowhere = 2;  // larger than any distance of directions
+
+public:
+    Moved(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w)
+        : source_(source), u_(u), w_(w) {}
+
+    /// The jumps of these draws if number k moves inwards by the given distances.
+    std::vector<LocalStep> by_moving(const std::vector<std::size_t>& which, int k, const std::vector<double>& by) {
+        std::vector<PrimarySample> v;
+        for (std::size_t i : which) {
+            v.push_back(u_[i]);
+            v.back()[k] += v.back()[k] < 0.5 ? by[i] : -by[i];
+        }
+        std::vector<Draw> draws(v.size());
+        source_.draw(v, draws);
+        std::vector<LocalStep> out;
+        for (std::size_t j = 0; j < which.size(); ++j) {
+            const Vec3d d = draws[j].wi - w_[which[j]];
+            const bool drawn = draws[j].pdf > 0 && draws[j].delta == 0;
+            out.push_back({drawn ? std::sqrt(dot(d, d)) : nowhere, draws[j].wi});
+        }
+        return out;
+    }
+
+private:
+    Source& source_;
+    const std::vector<PrimarySample>& u_;
+    const std::vector<Vec3d>& w_;
+};
+
+/// The jump at the next change of each draw along number k; 0 if the smallest move already changes it, or none does.
+std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
+    std::vector<LocalStep> out(count);
+    std::vector<double> same(count), other(count, ulp);
+    std::vector<std::size_t> open(count), closing;
+    for (std::size_t i = 0; i < count; ++i) open[i] = i;
+    for (double by = ulp; by <= longest_move && !open.empty(); by *= 4) {
+        std::vector<std::size_t> still;
+        const std::vector<LocalStep> d = moved.by_moving(open, k, other);
+        for (std::size_t j = 0; j < open.size(); ++j) {
+            const std::size_t i = open[j];
+            if (d[j].jump == 0) same[i] = by, other[i] = 4 * by, still.push_back(i);
+            else if (by > ulp) out[i] = d[j], closing.push_back(i);
+        }
+        open = std::move(still);
+    }
+    std::vector<double> middle(count);
+    for (int n = 0; n < step_halvings && !closing.empty(); ++n) {
+        for (std::size_t i : closing) middle[i] = (same[i] + other[i]) / 2;
+        const std::vector<LocalStep> d = moved.by_moving(closing, k, middle);
+        for (std::size_t j = 0; j < closing.size(); ++j) {
+            const std::size_t i = closing[j];
+            (d[j].jump == 0 ? same[i] : other[i]) = middle[i];
+            if (d[j].jump > 0) out[i] = d[j];
+        }
+    }
+    return out;
+}
+
+std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
+    std::vector<LocalStep> out(w.size());
+    Moved moved(source, u, w);
+    for (int k = 0; k < source.numbers(); ++k) {
+        const std::vector<LocalStep> steps = jumps_along(moved, k, w.size());
+        std::vector<std::size_t> jumping;
+        for (std::size_t i = 0; i < w.size(); ++i)
+            if (steps[i].jump > 0) jumping.push_back(i);
+        std::vector<double> beside(w.size());  // largest movement of w by another number, per unit
+        for (int j = 0; j < source.numbers() && !jumping.empty(); ++j) {
+            if (j == k) continue;
+            const std::vector<LocalStep> d = moved.by_moving(jumping, j, std::vector<double>(w.size(), side_move));
+            for (std::size_t n = 0; n < jumping.size(); ++n)
+                beside[jumping[n]] = std::max(beside[jumping[n]], d[n].jump / side_move);
+        }
+        for (std::size_t i : jumping) {
+            const double jump = steps[i].jump, area = jump * std::max(beside[i], two_pi / 2 * jump);
+            if (jump > out[i].jump && area <= one_direction) out[i] = steps[i];
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<LocalStep> local_steps(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
+    if (source.traits.own_random || !source.adapter.can_draw()) return {};
+    const auto first = std::min<std::ptrdiff_t>(draws_to_begin, std::ssize(w));
+    const std::vector<LocalStep> some =
+        steps_of(source, {u.begin(), u.begin() + first}, {w.begin(), w.begin() + first});
+    const bool any = std::ranges::any_of(some, [](const LocalStep& s) { return s.jump > 0; });
+    return any ? steps_of(source, u, w) : some;
+}
+
+// ---- Compares the first answers with a second round at the same directions, then with neighbours at two distances:
+// the differences of a smooth function shrink with the distance, those of an estimate do not.
+
+namespace {
+
+constexpr double fine_step = 0x1p-22, coarse_step = 0x1p-18;  // to a neighbour, radians
+
+/// Relative differences of two rounds of answers where they are not both 0.
+std::vector<double> differences(std::span<const double> a, std::span<const double> b) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double size = std::max(std::fabs(a[i]), std::fabs(b[i]));
+        if (size > 0 && std::isfinite(size)) out.push_back(std::fabs(a[i] - b[i]) / size);
+    }
+    return out;
+}
+
+/// Whether repeated answers differ at three directions at least and at one of twenty: a single difference is due to
+/// state.
+double of_repetition(const std::vector<double>& apart) {
+    const auto differ = std::ranges::count_if(apart, [](double v) { return v > same_number; });
+    return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median_of(apart), same_number) : 0;
+}
+
+/// Neighbours differ if the difference does not shrink with the step: that of a slope is sixteen times smaller at the
+/// fine step.
+double of_neighbours(const std::vector<double>& near, const std::vector<double>& far) {
+    constexpr double no_rounding = 0.1;  // larger than the rounding of sharp lobes in single precision
+    constexpr std::size_t enough = 16;
+    const double small = median_of(near);
+    return near.size() >= enough && small > no_rounding && median_of(far) < 4 * small ? small : 0;
+}
+
+std::vector<Vec3d> beside(std::span<const Vec3d> at, double step) {
+    std::vector<Vec3d> out;
+    for (Vec3d w : at) {
+        const Frame<double> frame = frame_about(w);
+        out.push_back(normalize(w + frame.t * step + frame.b * (0.7 * step)));
+    }
+    return out;
+}
+
+std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
+    constexpr double golden = 2.399963229728653;  // radians
+    std::vector<PrimarySample> u(48);
+    std::vector<Draw> draws(u.size());
+    source.draw(key, 0, u, draws);
+    std::vector<Vec3d> out;
+    for (const Draw& d : draws)
+        if (d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0) out.push_back(normalize(d.wi));
+    for (int i = 0; i < 32; ++i) out.push_back(from_chart({(i + 0.5) / 16, std::fmod(golden * i, two_pi)}));
+    return out;
+}
+
+}  // namespace
+
+EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
+    EvaluationNoise out;
+    if (!source.adapter.can_draw()) return out;  // a file has one answer for each direction
+    const std::vector<Vec3d> at = places_of(source, key), near = beside(at, fine_step), far = beside(at, coarse_step);
+    const SamplerAdapter& sampler = uncached(source.adapter);
+    const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
+        std::vector<Pair> pairs;
+        for (Vec3d w : wi) pairs.push_back({source.wo, w});
+        std::vector<double> v(wi.size());
+        source.count(wi.size());
+        of_f ? sampler.f(pairs, v) : sampler.pdf(source.technique, pairs, v);
+        return v;
+    };
+    for (bool of_f : {false, true}) {
+        if (of_f ? !source.has_f() : !source.has_density()) continue;
+        double& scatter = of_f ? out.of_f : out.of_pdf;
+        const std::vector<double> first = answers(at, of_f);
+        scatter = of_repetition(differences(first, answers(at, of_f)));
+        if (scatter > 0) continue;
+        scatter = of_neighbours(differences(first, answers(near, of_f)), differences(first, answers(far, of_f)));
+        out.hashed = out.hashed || scatter > 0;
+    }
+    return out;
+}
+
+std::string text_of(const EvaluationNoise& s) {
+    if (!s.pdf() && !s.f()) return "";
+    const char* what = s.pdf() && s.f() ? "pdf(w) and f(w) are random estimates"
+        : s.pdf()                       ? "pdf(w) is a random estimate"
+                                        : "f(w) is a random estimate";
+    return fmt::format("{}: {} differ by {:.2g} % (median). Their means are tested.", what,
+        s.hashed ? "answers for directions 2e-7 apart" : "two answers for one direction",
+        100 * std::max(s.of_pdf, s.of_f));
 }
 
 }  // namespace crescent::check

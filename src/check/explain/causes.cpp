@@ -9,8 +9,7 @@
 
 #include "check/constants.h"
 #include "check/decide/small_tests.h"
-#include "check/explain/factors.h"
-#include "check/explain/text.h"
+#include "output/format.h"
 
 namespace crescent::check {
 

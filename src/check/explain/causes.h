@@ -4,11 +4,14 @@
 // candidate does as well; otherwise no cause is named.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "check/decide/check_sampler.h"
+#include "check/explain/hypothesis.h"
+#include "check/sources/sampler_adapter.h"
 
 namespace crescent::check {
 
@@ -21,5 +24,131 @@ struct Cause {
 
 /// The cause; none if no cause is named.
 std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
+
+// ---- Candidate factors for an error of a density, a weight or f, as functions of the directions.
+
+struct Factor {
+    std::string name;
+    /// Positive; 0 if it is not defined. m: the half vector; for refraction across a boundary with a declared index.
+    std::function<double(Vec3d wo, Vec3d wi)> value;
+    /// The constant that is often omitted together with the factor: for "w_o.m" it is 4, from 4 (w_o.m).
+    double usual_constant = 1;
+    /// Whether any exponent is possible (a roughness, an exponent), not only a simple one.
+    bool any_exponent = false;
+};
+
+/// The factors that apply to a sampler's traits and light. An index is used only if it is declared.
+std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light);
+
+/// The microfacet normal between wo and wi, or its opposite: for a reflection, or for a refraction with eta = index on
+/// the other side over the index on this side (Walter et al. 2007, (13), (16)). Unit length; n if the two directions
+/// are opposite.
+Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta);
+
+/// "2", "1/pi", "eta^2"; "" for an unknown number. known_to: relative.
+std::string number_name(double value, double known_to, const Traits& traits);
+
+// ---- Ratios without noise, such as that of a weight to f cos / p at a draw, and the constant or factor that they
+// have.
+
+/// The ratio of a given to the expected value for one pair of directions; positive.
+struct KnownRatio {
+    Vec3d wo{}, wi{};
+    double value = 1;
+    double error = 0;  // relative
+};
+
+struct RatioCause {
+    std::string name;  // "constant", "cos theta_i"
+    double exponent = 0, constant = 1;
+    double explained = 0;  // share of the ratios
+};
+
+/// A constant, or a constant times a simple power of one factor, if nine of ten ratios agree with it; none if half of
+/// them are 1.
+std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std::span<const Factor> factors);
+
+// ---- The regression of the counts of a check on candidate factors: the factor, its exponent, and the constants.
+
+/// A factor of the density of the draws besides p, with its exponent: draws ~ constant p factor^exponent.
+struct FactorHypothesis {
+    Hypothesis hypothesis;
+    std::string name;
+    double exponent = 0, fitted = 0, error = 0;
+    double usual_constant = 1;
+};
+
+/// Draws follow p times a power of a factor, with a free constant.
+Hypothesis times(const Factor& factor, double exponent);
+/// Single factors with a simple exponent, the largest likelihood first.
+std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places);
+/// Draws follow a power of p.
+std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places);
+
+// ---- Draws in another frame than p: mirrored, axes exchanged, rotated. p is evaluated at transformed directions.
+
+/// Reflections, exchanges and rotations that have a name, the largest likelihood first.
+std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places);
+
+/// The rotation of largest likelihood at one place, searched from the identity; about the z axis from any angle.
+struct Turn {
+    Vec3d by{};        // axis times angle, radians
+    double error = 0;  // of the angle, one standard error
+};
+struct FoundTurn {
+    Hypothesis hypothesis;
+    std::vector<Turn> turns;  // by place
+    /// Whether each angle exceeds its error by far.
+    bool is_clear() const {
+        constexpr double errors = 5;
+        return std::ranges::all_of(
+            turns, [](const Turn& t) { return dot(t.by, t.by) > errors * errors * t.error * t.error; });
+    }
+};
+std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places);
+/// A rotation about z by the same angle at all places.
+std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places);
+
+// ---- Lobes selected by one random number: each is drawn separately, and p is compared with their sum.
+
+/// An interval of the number that selects a lobe.
+struct LobeInterval {
+    double from = 0, to = 1;
+    double share() const { return to - from; }
+};
+struct LobeChooser {
+    int number = 0;
+    std::vector<LobeInterval> lobes;
+};
+
+/// The number that selects among two to eight lobes; none if no number or several numbers do.
+std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key);
+/// Lobes are drawn with other probabilities than those in p.
+std::optional<Cause> lobe_cause(std::span<const Place> places);
+
+// ---- The location of the draws: a share of them is spread uniformly, none where p is positive, or all on a curve.
+
+/// A share of the draws is spread uniformly over the sphere or the upper hemisphere, and p does not include it.
+struct Leak {
+    Hypothesis hypothesis;
+    double share = 0, error = 0;
+    bool whole = true;  // sphere
+    bool is_clear() const;
+};
+std::vector<Leak> leak_hypotheses(std::span<const Place> places);
+std::string leak_sentence(const Leak& leak);
+
+/// A curve, if the numbers that change no draw leave fewer than two.
+std::optional<Cause> curve_cause(std::span<const Place> places);
+/// p is positive where there are no draws.
+std::optional<Cause> unreached_cause(std::span<const Place> places);
+
+// ---- Causes for weights, f and densities that are returned with the draws: their ratio to the expected value is known
+// at every draw, without noise.
+
+std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
+
+/// "Weights are f cos / p over cos theta_i and a constant 0.5 = 1/2."
+std::string ratio_sentence(const char* given, const char* expected, const RatioCause& cause, const Traits& traits);
 
 }  // namespace crescent::check

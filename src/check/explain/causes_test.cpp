@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "check/explain/text.h"
+#include "output/format.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {
@@ -51,7 +51,7 @@ TEST(CheckText, PrintsTheSignificantDigits) {
     EXPECT_EQ(with_error(0.975366, 0.0002), "0.9754 +- 0.0002");
     EXPECT_EQ(with_error(3.14163, 0.000123), "3.14163 +- 0.00012");
     EXPECT_EQ(with_error(42.4, 3), "42 +- 3");
-    EXPECT_EQ(percent(0.1234, 0.004), "12.3 % +- 0.4 %");
+    EXPECT_EQ(percent_with_error(0.1234, 0.004), "12.3 % +- 0.4 %");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Equations of refraction: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces".
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 
 #include <algorithm>
 #include <cmath>

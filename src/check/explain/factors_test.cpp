@@ -1,5 +1,5 @@
 // Factors of a density, the numbers with a name, and ratios that have a simple cause.
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Named frames are tested with a few hundred draws. Rotations are searched first with the densities of the tree, which
 // costs no evaluations, and then with p itself.
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Draws in another frame than p: mirrored, and turned by an angle that is measured.
 #include <gtest/gtest.h>
 
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

@@ -1,7 +1,7 @@
 // The ends of the lobes are jumps of the direction along one number, at the same position for all values of the others.
 // By (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, with
 // x = 1 if p has the lobe as it is drawn. Weighted least squares over cells gives x.
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "check/constants.h"
-#include "math/least_squares.h"
 #include "math/statistics.h"
 
 namespace crescent::check {

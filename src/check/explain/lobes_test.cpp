@@ -1,7 +1,7 @@
 // Lobes that one random number selects: their intervals, and the probabilities with which they are drawn.
 #include <gtest/gtest.h>
 
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

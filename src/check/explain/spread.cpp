@@ -1,5 +1,5 @@
 // Uses the counts and densities of the leaves.
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The place of the draws: a uniform share, a curve, a part of where p is positive.
 #include <gtest/gtest.h>
 
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

@@ -1,5 +1,5 @@
 // Uses fresh draws at up to three w_o where a test of them failed.
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Causes for weights and f, whose ratio to the expected value is known at every draw.
 #include <gtest/gtest.h>
 
-#include "check/explain/factors.h"
+#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

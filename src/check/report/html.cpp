@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "check/report/print.h"
-#include "check/report/summary.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 #include "output/charts.h"
@@ -193,7 +192,7 @@ void add_matrix(const CheckResult& j, Json& to) {
 }
 
 /// Every case with its verdicts, maps, implied density and weights.
-Json cases_of(const CheckResult& j) {
+Json case_models(const CheckResult& j) {
     Json out = Json::array();
     std::size_t map = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
@@ -230,7 +229,7 @@ std::string verdict_html(const CheckResult& j, const ResultSource& source) {
         {"left_out", left_out}, {"nothing_found", findings.empty() && j.unmet.empty() && left_out.empty()},
         {"statistical_tests", j.tests}, {"alpha", fmt::format("{:g}", j.alpha)}, {"screened", j.screened},
         {"confirmed", j.confirmed}, {"questions", j.questions > 0 ? std::to_string(j.questions) : ""},
-        {"unseen", unseen_text(j)}, {"nothing_drawn", nothing_drawn_text(j)}, {"cases", cases_of(j)}};
+        {"unseen", unseen_text(j)}, {"nothing_drawn", nothing_drawn_text(j)}, {"cases", case_models(j)}};
     add_matrix(j, model);
     return render_page(check_templates(), "check.html", model);
 }

@@ -1,11 +1,12 @@
 // The cells are nodes of the tree, cut while their halves have enough draws. A bin of a map takes its share of each
 // leaf, since both are rectangles of the same chart. Counts have binomial standard errors.
-#include "check/report/sentences.h"
-#include "check/explain/text.h"
+#include "check/report/verdicts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+
+#include "output/format.h"
 
 namespace crescent::check {
 

@@ -1,5 +1,5 @@
 // Bins need not align with leaves: a leaf is divided by area, and leaves are small where mass is.
-#include "check/report/pictures.h"
+#include "check/report/verdicts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Maps sum to the draws, follow the lobe, and show differences.
-#include "check/report/pictures.h"
+#include "check/report/verdicts.h"
 
 #include <gtest/gtest.h>
 #include <numeric>

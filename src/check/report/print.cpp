@@ -7,8 +7,7 @@
 #include <map>
 
 #include "base/text.h"
-#include "check/report/summary.h"
-#include "check/verdict_names.h"
+#include "check/verdict.h"
 #include "output/format.h"
 
 namespace crescent::inline results {

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "check/verdict.h"
 
@@ -36,5 +37,49 @@ enum class FrontEnd { command_line, cpp, python };
 std::string next_step_text(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
 /// How to check the sampler at a single w_o: theta and azimuth in degrees.
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end);
+
+// ---- The summary of a result: one line for each finding over all w_o, worst first; then the details, each sentence
+// once with its cases.
+
+/// A verdict of one arm in one state other than right or skipped, over all its cases.
+struct Finding {
+    std::string arm, name;
+    State state = State::wrong;
+    bool expected = false;  // expected, with the reason in `worst`
+    std::size_t count = 0, of = 0;
+    const char* cases = "w_o";       // unit of the counts
+    const Verdict* worst = nullptr;  // largest deviation in the evidence, else the first
+    std::vector<std::pair<std::string, std::vector<std::string>>>
+        sentences;        // sentences that the worst verdict does not have, each with its cases
+    std::string cause{};  // of the worst, or of another wrong verdict of the arm
+};
+
+/// Wrong findings first, then errors, then inconclusive ones. Verdicts that were left out for lack of time are not
+/// included, and all errors of one arm count as its first. The result contains pointers into `result`.
+std::vector<Finding> findings_of(const CheckResult& result);
+/// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
+std::string describe(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
+/// "Left out: all but valid at 3 of 8 w_o (w_o 0 deg; ...). ..."; "" if nothing was left out.
+std::string skipped_text(const CheckResult& result);
+/// Sizes of faults that right verdicts would have found, over all cases: "... a constant factor of 0.03 %, ..."; "" if
+/// there are none.
+std::string unseen_text(const CheckResult& result);
+/// The largest share of draws without a sample, if it exceeds 1 %; otherwise "".
+std::string nothing_drawn_text(const CheckResult& result);
+/// The sentences of a verdict: message, cause, next step and time.
+std::string describe(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
+/// Splits a text into sentences; each begins with a capital letter.
+std::vector<std::string> sentences_of(const std::string& text);
+/// All findings except expected ones, one line each, then what was left out, then the details.
+std::string summary_of(const CheckResult& result);
+/// The findings in at most `most_lines` (5 or more), for a failing test: message, size, place and cause of the first
+/// ones, then the names of the others and the next step in calls of C++; "" if there are none.
+std::string what_is_wrong(const CheckResult& result, std::size_t most_lines = 8);
+
+// ---- The end of a result's table: the density implied by draws without pdf(w).
+
+/// One line for each w_o of a sampler without pdf(w): the mean of the implied density over rings about n, 1/sr, each
+/// with its standard error, and its maximum; "" if every sampler has a pdf(w).
+std::string implied_text(const CheckResult& result);
 
 }  // namespace crescent::inline results

@@ -1,12 +1,12 @@
 // Each sentence is computed only from the numbers of the finding. The verdict that contains it names w_o.
-#include "check/report/sentences.h"
+#include "check/report/verdicts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "check/constants.h"
-#include "check/explain/text.h"
+#include "output/format.h"
 
 namespace crescent::check {
 
@@ -63,8 +63,8 @@ std::string node_sentence(const CheckAt& c, int node, const Answer& a) {
     if (!(expected > 0) || std::fabs(difference) > 9 * expected)
         return fmt::format("Draws fall where p expects {} of them: {}.", expected > 0 ? "a tenth" : "none", where);
     return fmt::format("{} {} draws than p expects {}.",
-        percent(std::fabs(difference) / expected, interval * a.sd / expected), difference > 0 ? "more" : "fewer",
-        where);
+        percent_with_error(std::fabs(difference) / expected, interval * a.sd / expected),
+        difference > 0 ? "more" : "fewer", where);
 }
 
 std::string band_sentence(int member, const Answer& a) {
@@ -72,7 +72,7 @@ std::string band_sentence(int member, const Answer& a) {
     constexpr double degrees = 360 / two_pi;
     const bool of_phi = r.t0 == 0 && r.t1 == 2;
     return fmt::format("{} {} draws than p expects at {} from {:.4g} to {:.4g} degrees.",
-        percent(std::fabs(a.difference) / a.expected, interval * a.sd / a.expected),
+        percent_with_error(std::fabs(a.difference) / a.expected, interval * a.sd / a.expected),
         a.difference > 0 ? "more" : "fewer", of_phi ? "azimuths" : "polar angles",
         degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
 }
@@ -88,8 +88,8 @@ std::string channel_of(const Answer& a, bool of_three) {
 std::string light_sentence(const Answer& a, Family family, bool of_three) {
     const double half = interval * a.sd;
     if (family == Family::support)
-        return fmt::format(
-            "p is 0 over directions that carry {} of f L cos.", percent(a.difference / a.expected, half / a.expected));
+        return fmt::format("p is 0 over directions that carry {} of f L cos.",
+            percent_with_error(a.difference / a.expected, half / a.expected));
     if (family == Family::albedo)
         return fmt::format("f returns {} times the power of a uniform light{}. Expected at most 1.",
             with_error(1 + a.difference, half), channel_of(a, of_three));
@@ -115,7 +115,8 @@ std::string sum_sentence(const Finding& f, const Answer& a) {
                 a.difference + a.expected, a.expected, f.first.member);
         default:
             return fmt::format("Draws, weighted by h = q / (p + q), are {} {} than p expects.",
-                percent(std::fabs(a.difference) / a.expected, half / a.expected), a.difference > 0 ? "more" : "fewer");
+                percent_with_error(std::fabs(a.difference) / a.expected, half / a.expected),
+                a.difference > 0 ? "more" : "fewer");
     }
 }
 

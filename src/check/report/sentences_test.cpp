@@ -1,5 +1,5 @@
 // What a verdict states without a fault: its limits, and the density that draws without pdf(w) imply.
-#include "check/report/sentences.h"
+#include "check/report/verdicts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

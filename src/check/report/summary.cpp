@@ -1,6 +1,6 @@
 // Verdicts of one arm with equal name and state form one finding, described by the one with the largest deviation.
 // Other sentences follow with their w_o.
-#include "check/report/summary.h"
+#include "check/report/print.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include "base/vec.h"
 #include "check/sources/sampler_adapter.h"
 #include "check/verdict.h"
-#include "check/verdict_names.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 

@@ -1,5 +1,5 @@
 // The text of a failing test for a result: few lines, in a fixed order, in calls of C++.
-#include "check/report/summary.h"
+#include "check/report/print.h"
 
 #include <gtest/gtest.h>
 

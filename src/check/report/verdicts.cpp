@@ -1,14 +1,14 @@
 // A verdict is wrong if there is a finding of its families; inconclusive if a stated size is too large; skipped if the
 // sampler provides nothing that its families can test; otherwise right.
-#include "check/report/sentences.h"
+#include "check/report/verdicts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "check/constants.h"
-#include "check/decide/tail.h"
-#include "check/verdict_names.h"
+#include "check/decide/check_at.h"
+#include "check/verdict.h"
 #include "check/verdicts/kinds.h"
 
 namespace crescent::check {

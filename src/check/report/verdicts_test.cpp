@@ -1,5 +1,5 @@
 // Findings become verdicts.
-#include "check/report/sentences.h"
+#include "check/report/verdicts.h"
 
 #include <gtest/gtest.h>
 

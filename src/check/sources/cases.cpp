@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "check/sources/wrappers.h"
+#include "check/sources/sampler_adapter.h"
 #include "math/functions.h"
 
 namespace crescent::inline sources {

@@ -1,12 +1,156 @@
-// The cases of the built-in samplers, and the verdicts that are expected of them.
+// A built-in arm as a sampler, its cases, and the verdicts that are expected of them. It draws in float as it renders,
+// and has densities in double for quadrature. The surface is f = rho_d/pi + rho_s lobe.
 #pragma once
 
+#include <array>
 #include <map>
+#include <variant>
 
-#include "check/sources/builtin.h"
-#include "check/sources/user_cases.h"
+#include "base/vec.h"
+#include "check/sources/sampler_adapter.h"
+#include "samplers/all.h"
+#include "scene/lobes/all.h"
 
 namespace crescent::inline sources {
+
+/// The surface of a case.
+struct SurfaceSetup {
+    LobeKind lobe = LobeKind::none;
+    double rho_d = 0, rho_s = 0;
+    double s = 32, alpha = 0.3;
+};
+
+/// f of the surface, 1/sr, without the cosine.
+double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
+
+/// The shading point of an arm in number type F; `disks` and `others` must outlive it.
+template <class F> ShadingPoint<F> point_of(const SurfaceSetup& surface, Vec3d wo,
+    const std::vector<LocalDisk<F>>& disks, const std::vector<LocalLight<F>>& others) {
+    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d),
+        static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size()), others.data(),
+        static_cast<int>(others.size())};
+}
+/// Power of the light: L r^2 of the disks plus that of the other lights.
+inline double power_of(const CaseLighting& light) {
+    double total = 0;
+    for (const CaseDiskLight& d : light.disks) total += d.radiance * sqr(d.radius);
+    for (const CaseAreaLight& area_light : light.area_lights) total += area_light.power();
+    return total;
+}
+/// One-sided disks, each with its probability of selection among the lights.
+template <class F> std::vector<LocalDisk<F>> disks_of(const CaseLighting& light) {
+    const double total = power_of(light);
+    std::vector<LocalDisk<F>> out;
+    for (const CaseDiskLight& d : light.disks)
+        out.push_back({as<F>(d.center), as<F>(d.normal), static_cast<F>(d.radius), F(0),
+            static_cast<F>(d.radiance * sqr(d.radius) / total)});
+    return out;
+}
+
+/// The lights that are not disks, in the frame of the surface.
+template <class F> std::vector<LocalLight<F>> others_of(const CaseLighting& light) {
+    const double total = power_of(light);
+    const Frame<double> frame = frame_about(Vec3d{0, 0, 1});
+    std::vector<LocalLight<F>> out;
+    for (const CaseAreaLight& area_light : light.area_lights) {
+        const LightNumbers n = std::visit(
+            [&](const auto& l) -> LightNumbers {
+                if constexpr (requires { l.numbers(Vec3d{}, frame); }) return l.numbers(Vec3d{}, frame);
+                else return {};
+            },
+            area_light.form);
+        out.push_back({area_light.form.index(), static_cast<F>(area_light.power() / total), as<F>(n.a), as<F>(n.b),
+            as<F>(n.c), {}});
+        for (std::size_t k = 0; k < n.number.size(); ++k) out.back().number[k] = static_cast<F>(n.number[k]);
+    }
+    return out;
+}
+
+/// The same point with the sky and triangles around it, which must outlive it.
+template <class F> ShadingPoint<F> with_around(ShadingPoint<F> point, const CaseLighting& light) {
+    if (!light.around) return point;
+    point.around = light.around.get();
+    point.position = as<F>(light.position);
+    point.frame = {as<F>(light.frame.t), as<F>(light.frame.b), as<F>(light.frame.n)};
+    return point;
+}
+
+/// A is an arm template; planted faults are arms too.
+template <template <class> class A> class BuiltIn : public SamplerAdapter {
+public:
+    /// The arm on a surface, seen from wo.
+    BuiltIn(const SurfaceSetup& surface, Vec3d wo, const CaseLighting& light)
+        : surface_(surface),
+          disks_single_(disks_of<float>(light)),
+          disks_double_(disks_of<double>(light)),
+          others_single_(others_of<float>(light)),
+          others_double_(others_of<double>(light)),
+          around_(light.around),
+          single_(with_around(point_of<float>(surface, wo, disks_single_, others_single_), light)),
+          double_(with_around(point_of<double>(surface, wo, disks_double_, others_double_), light)) {}
+    BuiltIn(const BuiltIn&) = delete;
+    BuiltIn& operator=(const BuiltIn&) = delete;
+
+    std::string name() const override { return std::string(A<float>::name); }
+    int techniques() const override {
+        if constexpr (paired) return A<float>::techniques;
+        else return 1;
+    }
+    void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        const Vec3<float> o = as<float>(wo);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const Drawn<float> d = draw(technique, o, {static_cast<float>(u[i].x), static_cast<float>(u[i].y)});
+            out[i] = {widen(d.wi), static_cast<double>(d.pdf.v), {}};
+        }
+    }
+    void pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i)
+            out[i] = static_cast<double>(density(single_, technique, as<float>(at[i].wo), as<float>(at[i].wi)));
+    }
+    void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = density(double_, technique, at[i].wo, at[i].wi);
+    }
+    void mis_weight(int technique, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            out[i] = 1;
+            if constexpr (paired) {
+                const Vec3<float> o = as<float>(at[i].wo), w = as<float>(at[i].wi);
+                const float own = density(single_, technique, o, w);
+                const Drawn<float> d{w, {own}};
+                out[i] = static_cast<double>(
+                    technique == 0 ? single_.template weight<0>(o, d) : single_.template weight<1>(o, d));
+            }
+        }
+    }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    }
+
+protected:
+    static constexpr bool paired = requires { A<float>::techniques; };
+
+    Drawn<float> draw(int technique, Vec3<float> wo, Vec2<float> u) const {
+        if constexpr (paired)
+            return technique == 0 ? single_.template sample_technique<0>(wo, u)
+                                  : single_.template sample_technique<1>(wo, u);
+        else return single_.sample(wo, u);
+    }
+    template <class F> static F density(const A<F>& arm, int technique, Vec3<F> wo, Vec3<F> wi) {
+        if constexpr (paired)
+            return technique == 0 ? arm.template pdf_technique<0>(wo, wi).v : arm.template pdf_technique<1>(wo, wi).v;
+        else return arm.pdf(wo, wi).v;
+    }
+
+    SurfaceSetup surface_;
+    std::vector<LocalDisk<float>> disks_single_;
+    std::vector<LocalDisk<double>> disks_double_;
+    std::vector<LocalLight<float>> others_single_;
+    std::vector<LocalLight<double>> others_double_;
+    std::shared_ptr<const Surroundings> around_;
+    A<float> single_;
+    A<double> double_;
+};
 
 /// Values given with --set: "s", "alpha", "rho_d", "rho_s".
 using Settings = std::map<std::string, double>;

@@ -1,11 +1,13 @@
 // Rows of a request are sent as lines or blocks, and the answers are rows of doubles in both formats. Directions below
 // the horizon are not sent to a sampler of the hemisphere. One request along the normal determines whether the program
 // has an f.
-#include "check/sources/pipe.h"
+#include "check/sources/external.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <functional>
 #include <mutex>
@@ -14,9 +16,9 @@
 
 #include "base/errors.h"
 #include "base/text.h"
-#include "check/sources/context_columns.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/sampler_adapter.h"
+#include "samplers/external_sampler.h"
 
 namespace crescent::inline sources {
 
@@ -429,6 +431,40 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
         return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
     out.traits.delta = out.delta;
     return {};
+}
+
+// ---- Python files: crescent.serve of the Python package answers in the same protocol.
+
+bool names_python_sampler(const std::string& word) {
+    if (word.ends_with(".py")) return true;
+    const auto in_name = [](char c) {
+        return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    };
+    const std::size_t colon = word.rfind(':');
+    if (colon == std::string::npos || colon == 0) return false;
+    const std::string where = word.substr(0, colon), name = word.substr(colon + 1);
+    if (name.empty() || !std::ranges::all_of(name, in_name)) return false;
+    return where.ends_with(".py") || std::ranges::all_of(where, [&](char c) { return in_name(c) || c == '.'; });
+}
+
+std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits) {
+    const char* given = std::getenv("CRESCENT_PYTHON");
+    const std::string python = given && *given ? given : "python3";
+    // -P: a file in the current folder does not replace a module that the package imports. An interpreter that the
+    // shell cannot start (126, 127) is reported in the same way as a missing package.
+    const std::string command = fmt::format(
+        "{} -P -m crescent.serve {}; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] "
+        "|| code=1; exit $code",
+        shell_word(python), shell_word(word));
+    try {
+        return start_pipe(command, limits, word);
+    } catch (const SamplerTimeout&) { throw; } catch (const SamplerError& error) {
+        if (std::string_view(error.what()).find("exit code 1") == std::string_view::npos) throw;
+        throw OutputError(fmt::format(
+            "{}: '{}' cannot run the module crescent.serve: install the package with `pip install crescent-bench`, or "
+            "set CRESCENT_PYTHON to an interpreter that has it",
+            word, python));
+    }
 }
 
 }  // namespace crescent::inline sources

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "base/process.h"
-#include "check/sources/pipe.h"
+#include "check/sources/external.h"
 
 namespace crescent::inline sources {
 

@@ -1,15 +1,14 @@
 // The handshake of programs, and the errors for those that break the protocol.
-#include <csignal>
-#include <gtest/gtest.h>
+#include "check/sources/external.h"
 
 #include <cmath>
+#include <csignal>
+#include <gtest/gtest.h>
 #include <limits>
 
-#include "check/sources/context_columns.h"
-#include "check/sources/pipe.h"
 #include "check/sources/pipe_io.h"
-#include "check/sources/python_sampler.h"
 #include "check/sources/sampler_adapter.h"
+#include "samplers/external_sampler.h"
 
 namespace crescent {
 namespace {

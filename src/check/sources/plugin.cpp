@@ -1,6 +1,6 @@
 // A host process is started if a thread calls and none is free, and then kept. A request has the surface once for each
 // run of rows.
-#include "check/sources/plugin.h"
+#include "check/sources/external.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -27,9 +27,9 @@
 #include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "check/sources/context_columns.h"
 #include "check/sources/plugin_host.h"
 #include "check/sources/sampler_adapter.h"
+#include "samplers/external_sampler.h"
 
 namespace crescent::inline sources {
 

@@ -1,5 +1,5 @@
 // The plugin is compiled from tests/system/odd_plugin.c; this program, executed again, is its host.
-#include "check/sources/plugin.h"
+#include "check/sources/external.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

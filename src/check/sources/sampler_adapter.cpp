@@ -1,13 +1,20 @@
-// The nearest light along w_i counts. Disks emit from the side of their normal; distances in m.
+// Lights of a case, random numbers of a sampler, and adapters.
 #include "check/sources/sampler_adapter.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <unordered_map>
 
+#include "base/text.h"
 #include "math/functions.h"
+#include "math/simd/random.h"
 #include "math/simd/scalar.h"
 
 namespace crescent::inline sources {
+
+// ---- The nearest light along w_i counts. Disks emit from the side of their normal; distances in m.
 
 std::optional<double> CaseDiskLight::distance(Vec3d wi) const {
     const double c = dot(center, normal), v = dot(wi, normal);
@@ -71,6 +78,233 @@ std::string CheckCase::text() const {
 Vec3d tilt(double theta_deg, double azimuth_deg) {
     const math::SinCos theta = math::sincos(theta_deg * pi / 180);
     return math::spherical(theta.sin, theta.cos, azimuth_deg * pi / 180);
+}
+
+// ---- Random numbers in pairs from the stream of the pixel, at most 1 - 2^-24.
+
+PrimarySample drawn_numbers(
+    std::uint32_t seed, std::uint32_t pixel, std::uint64_t i, std::uint32_t technique, int count) {
+    PrimarySample out;
+    for (int k = 0; k < count; k += 2) {
+        const Vec2<float> u = draw(seed, pixel, i, technique + 16 * static_cast<std::uint32_t>(k) / 2);
+        out[k] = u.x;
+        if (k + 1 < PrimarySample::most) out[k + 1] = u.y;
+    }
+    return out;
+}
+
+// ---- Caches answers by the bits of (w_o, w_i), and draws by the bits of w_o and u. Only new pairs are evaluated, in
+// their order. If a sampler throws, nothing of that call is cached.
+
+namespace {
+
+struct Key {
+    std::array<std::uint64_t, 6> bits;
+    explicit Key(const Pair& p)
+        : bits{std::bit_cast<std::uint64_t>(p.wo.x), std::bit_cast<std::uint64_t>(p.wo.y),
+              std::bit_cast<std::uint64_t>(p.wo.z), std::bit_cast<std::uint64_t>(p.wi.x),
+              std::bit_cast<std::uint64_t>(p.wi.y), std::bit_cast<std::uint64_t>(p.wi.z)} {}
+    bool operator==(const Key&) const = default;
+};
+
+struct KeyHash {
+    std::size_t operator()(const Key& key) const {
+        std::uint64_t h = 0x9e3779b97f4a7c15u;
+        for (std::uint64_t b : key.bits) h = (h ^ (b >> 29) ^ b) * 0xbf58476d1ce4e5b9u;
+        return static_cast<std::size_t>(h ^ (h >> 32));
+    }
+};
+
+template <class Value> using Cache = std::unordered_map<Key, Value, KeyHash>;
+
+/// Returns cached answers; `forward` is called once with the new pairs, in their order.
+template <class Value, class Forward>
+void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out, const Forward& forward) {
+    std::vector<Pair> fresh;
+    for (const Pair& p : at)
+        if (cache.try_emplace(Key(p)).second) fresh.push_back(p);
+    std::vector<Value> values(fresh.size());
+    try {
+        if (!fresh.empty()) forward(std::span<const Pair>(fresh), std::span<Value>(values));
+    } catch (...) {
+        for (const Pair& p : fresh) cache.erase(Key(p));
+        throw;
+    }
+    for (std::size_t i = 0; i < fresh.size(); ++i) cache[Key(fresh[i])] = values[i];
+    for (std::size_t i = 0; i < at.size(); ++i) out[i] = cache[Key(at[i])];
+}
+
+bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
+
+/// Counts the calls of one case, independent of other cases of the same sampler.
+class Counted : public ForwardingAdapter {
+public:
+    using ForwardingAdapter::ForwardingAdapter;
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        answers_ += u.size();
+        inner().sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().pdf(t, at, out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().exact_pdf(t, at, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().f(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        answers_ += at.size();
+        inner().f_channels(at, out);
+    }
+    QueryUsage spending() const override {
+        const QueryUsage of_all = inner().spending();
+        return {answers_, of_all.seconds, of_all.allowed};
+    }
+
+private:
+    mutable std::uint64_t answers_ = 0;
+};
+
+class CachingAdapter : public ForwardingAdapter {
+public:
+    CachingAdapter(std::shared_ptr<const SamplerAdapter> sampler, bool draws)
+        : ForwardingAdapter(std::make_shared<Counted>(std::move(sampler))), caches_draws_(draws) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        if (!caches_draws_) return inner().sample(t, wo, u, out);
+        for (const Drawn& d : drawn_)
+            if (d.technique == t && Key({wo, wo}) == Key({d.wo, d.wo}) && std::ranges::equal(d.u, u, same)) {
+                std::ranges::copy(d.draws, out.begin());
+                return;
+            }
+        inner().sample(t, wo, u, out);
+        drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        if (!caches_draws_ || t > 1) return inner().pdf(t, at, out);
+        answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
+            [&](std::span<const Pair> a, std::span<double> o) { inner().pdf(t, a, o); });
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        if (t > 1) return inner().exact_pdf(t, at, out);
+        answer<double>(pdf_[static_cast<std::size_t>(t)], at, out,
+            [&](std::span<const Pair> a, std::span<double> o) { inner().exact_pdf(t, a, o); });
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        if (inner().traits().channels == 1)
+            return answer<double>(f_, at, out, [&](auto a, auto o) { inner().f(a, o); });
+        std::vector<Vec3d> by_channel(at.size());
+        f_channels(at, by_channel);
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = luminance(by_channel[i]);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        answer<Vec3d>(channels_, at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
+    }
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        if (has_true_f()) inner().reference_f(at, out);
+        else f(at, out);
+    }
+    const SamplerAdapter& uncached_sampler() const { return inner(); }
+
+private:
+    struct Drawn {
+        int technique;
+        Vec3d wo;
+        std::vector<PrimarySample> u;
+        std::vector<Draw> draws;
+    };
+    bool caches_draws_;
+    mutable std::vector<Drawn> drawn_;
+    mutable std::array<Cache<double>, 2> plain_pdf_;  // by technique
+    mutable std::array<Cache<double>, 2> pdf_;        // by technique
+    mutable Cache<double> f_;
+    mutable Cache<Vec3d> channels_;
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> cached(std::shared_ptr<const SamplerAdapter> sampler, bool draws) {
+    return std::make_shared<CachingAdapter>(std::move(sampler), draws);
+}
+
+Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
+    Side out{check_case, stream};
+    if (!check_case.adapter->limited()) return out;
+    if (!check_case.adapter->serial())
+        return out.check_case.adapter = cached(check_case.adapter), out;  // called by many threads
+    const std::array<double, 3> wo = {check_case.wo.x, check_case.wo.y, check_case.wo.z};
+    if (cached_of_ != check_case.adapter || wo != wo_)
+        cached_of_ = check_case.adapter, wo_ = wo, stream_ = stream, cache_ = cached(check_case.adapter, true);
+    out.stream = stream_;
+    out.check_case.adapter = cache_;
+    return out;
+}
+
+const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
+    const auto* cache = dynamic_cast<const CachingAdapter*>(&sampler);
+    return cache ? cache->uncached_sampler() : sampler;
+}
+
+// ---- Adds the side to the message of an error and throws it again with the same type.
+
+namespace {
+
+constexpr std::string_view side_prefix = "sampler ";  // no error of a sampler begins with it
+
+class LabelledAdapter : public ForwardingAdapter {
+public:
+    LabelledAdapter(std::shared_ptr<const SamplerAdapter> sampler, const std::string& side)
+        : ForwardingAdapter(std::move(sampler)),
+          prefix_(fmt::format("{}{} ({}): ", side_prefix, side, printable(inner().name(), 40))) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        forward([&] { inner().sample(t, wo, u, out); });
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        forward([&] { inner().pdf(t, at, out); });
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        forward([&] { inner().exact_pdf(t, at, out); });
+    }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        forward([&] { inner().mis_weight(t, at, out); });
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        forward([&] { inner().f(at, out); });
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        forward([&] { inner().f_channels(at, out); });
+    }
+    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
+        forward([&] { inner().reference_f(at, out); });
+    }
+
+private:
+    std::string prefix_;
+
+    std::string message_of(const SamplerError& fault) const {
+        const std::string_view what = fault.what();
+        return what.starts_with(side_prefix) ? std::string(what) : prefix_ + std::string(what);
+    }
+    template <class Call> void forward(Call&& call) const {
+        try {
+            call();
+        } catch (const SamplerTimeout& fault) {
+            throw SamplerTimeout(message_of(fault));
+        } catch (const SamplerExited& fault) {
+            throw SamplerExited(message_of(fault));
+        } catch (const SamplerError& fault) { throw SamplerError(message_of(fault)); }
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> named_side(
+    std::shared_ptr<const SamplerAdapter> sampler, const std::string& side) {
+    if (!sampler->can_draw() || !sampler->limited()) return sampler;
+    return std::make_shared<LabelledAdapter>(std::move(sampler), side);
 }
 
 }  // namespace crescent::inline sources

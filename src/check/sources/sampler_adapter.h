@@ -1,5 +1,5 @@
-// The interface of a sampler under test, independent of its language, with the errors of external samplers and the
-// adapters that forward, record or limit calls.
+// The interface of a sampler under test, independent of its language, with the errors of external samplers, the
+// adapters that forward, record, cache or limit calls, and the cases of a user's sampler.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/vec.h"
@@ -317,5 +318,58 @@ private:
         if (spending().answers + questions > most_) throw SamplerTimeout("the limit of queries is reached");
     }
 };
+
+// ---- The cases of a user's sampler; cases.h has those of the built-in arms.
+
+/// User-defined w_o: theta and azimuth in degrees.
+using Grid = std::vector<std::pair<double, double>>;
+
+/// A user's sampler over the grid of w_o under a uniform light, with uniform and cosine as baselines if it has a BRDF.
+/// A sampler without BRDF whose draws and p do not depend on w_o, such as that of an environment light, is checked
+/// once.
+std::vector<CheckCase> make_user_cases(
+    const std::shared_ptr<const SamplerAdapter>& adapter, bool full, const Grid& grid = {});
+/// The same at one w_o.
+CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& adapter, double theta, double azimuth);
+
+// ---- The random numbers for samplers under test, multiples of 2^-24 since a sampler may compute in single precision.
+
+/// Sample i of a stream: pairs of numbers from pcg4d, as the estimator draws them. `technique` selects the block of
+/// dimensions.
+PrimarySample drawn_numbers(
+    std::uint32_t seed, std::uint32_t pixel, std::uint64_t i, std::uint32_t technique, int count);
+// ---- A cache of p and f at pairs of directions for the duration of a case. Integrals of one case start from the same
+// cells, so that each of their points is evaluated once.
+
+/// `sampler` with a cache of its exact densities and f and a counter of its answers; for one thread. draws: also caches
+/// draws for the same u, and pdf(w) at them.
+std::shared_ptr<const SamplerAdapter> cached(std::shared_ptr<const SamplerAdapter> sampler, bool draws = false);
+/// The sampler without its cache.
+const SamplerAdapter& uncached(const SamplerAdapter& sampler);
+
+/// One side of a comparison and its random stream.
+struct Side {
+    CheckCase check_case;
+    std::uint32_t stream = 0;
+};
+
+/// Queries a program once for each w_o: its answers and draws serve every case with this w_o, independent of the
+/// surface and the light of the other side. Cases of one w_o must be consecutive.
+class PerDirectionCache {
+public:
+    Side of(const CheckCase& check_case, std::uint32_t stream);
+
+private:
+    std::shared_ptr<const SamplerAdapter> cached_of_, cache_;
+    std::array<double, 3> wo_{};
+    std::uint32_t stream_ = 0;
+};
+
+// ---- Errors in a comparison of two samplers name the failing sampler.
+
+/// `sampler`, whose errors begin with `side`, such as "A", and its name, unless they already name a side. A recorded
+/// sampler, or one that cannot fail, is returned unchanged.
+std::shared_ptr<const SamplerAdapter> named_side(
+    std::shared_ptr<const SamplerAdapter> sampler, const std::string& side);
 
 }  // namespace crescent::inline sources

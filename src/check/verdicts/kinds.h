@@ -1,4 +1,4 @@
-// The properties of each verdict of the list (verdict_names.h) besides its name and question. A verdict is wrong if a
+// The properties of each verdict of the list besides its name and question. A verdict is wrong if a
 // family of questions.h that names it fails; other tests are defined here.
 #pragma once
 
@@ -6,7 +6,6 @@
 
 #include "check/decide/check_at.h"
 #include "check/verdict.h"
-#include "check/verdict_names.h"
 
 namespace crescent::check {
 

@@ -1,7 +1,9 @@
-// The list of families, in the order of the enumeration.
+// The list of families, in the order of the enumeration, and the requirements of each verdict.
 #include "check/verdicts/questions.h"
 
 #include <array>
+
+#include "check/verdicts/kinds.h"
 
 namespace crescent::check {
 
@@ -47,3 +49,32 @@ bool is_of_f(Family f) {
 }
 
 }  // namespace crescent::check
+
+namespace crescent::check::kinds {
+
+// ---- The requirements of each verdict: a pdf, f, weights.
+
+namespace {
+
+bool always(const SamplerAdapter&) { return true; }
+bool never(const SamplerAdapter&) { return false; }
+bool with_pdf(const SamplerAdapter& s) { return s.traits().has_pdf; }
+bool with_pdf_and_f(const SamplerAdapter& s) { return s.traits().has_pdf && s.has_f(); }
+bool with_f(const SamplerAdapter& s) { return s.has_f(); }
+bool with_power(const SamplerAdapter& s) { return s.has_f() || s.traits().delta; }
+bool with_weights(const SamplerAdapter& s) { return s.has_drawn_f(); }
+
+}  // namespace
+
+constinit const VerdictKind valid = {.applies = always};
+constinit const VerdictKind support = {.applies = with_pdf_and_f, .needs = "Needs pdf and f."};
+constinit const VerdictKind normalised = {.applies = with_pdf, .needs = "Needs pdf."};
+constinit const VerdictKind density = {.applies = always};  // without a pdf: the density that the draws imply
+constinit const VerdictKind identity = {.applies = always};
+constinit const VerdictKind physics = {.applies = with_power, .needs = "Needs f."};
+constinit const VerdictKind tail = {.applies = with_weights, .needs = "Needs f or weights."};
+constinit const VerdictKind mean = {.applies = with_f, .needs = "Needs f."};
+constinit const VerdictKind efficiency = {
+    .applies = never, .needs = "Needs f and another sampler at the same w_o."};  // decide/efficiency.cpp
+
+}  // namespace crescent::check::kinds

@@ -1,13 +1,14 @@
 // Packs of floats over Highway's static target: the only intrinsics of crescent. The file that includes this one is
-// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of render/isas.h), which becomes the
-// namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
+// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of the list in render/kernel.cpp),
+// which becomes the namespace, so that no two instruction sets share a symbol. No operation here contracts or
+// reassociates.
 //
 // A pack is two vectors: a sample is one long chain of dependent operations, and a second, independent chain fills the
 // latency of each step of the first.
 #pragma once
 
 #ifndef CRESCENT_ISA
-#error "simd/pack.h needs CRESCENT_ISA: a name of estimator/isas.h"
+#error "simd/pack.h needs CRESCENT_ISA: a name of the list in render/kernel.cpp"
 #endif
 #define HWY_COMPILE_ONLY_STATIC
 #define HWY_DISABLE_BMI2_FMA

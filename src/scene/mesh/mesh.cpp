@@ -1,12 +1,184 @@
-// Bounds and the removal of useless triangles; the .mesh file is in mesh_file.cpp. A triangle without area is one whose
-// corners repeat or lie on a line: the cross product of two edges, in double precision, is 0.
+// Reads and writes the .mesh file, and removes useless triangles.
 #include "scene/mesh/mesh.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
 #include <utility>
 
+// ---- The counts are compared with the size of the file before anything is allocated, so that memory is bounded by
+// that size.
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/errors.h"
+
 namespace crescent::inline scene {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "mesh files are little-endian");
+static_assert(sizeof(Vec3f) == 12 && sizeof(Vec2<float>) == 8 && sizeof(Triangle) == 12);
+
+constexpr std::uint32_t mesh_kind = 0x6873656d, mesh_version = 1, with_normals = 1, with_uv = 2;
+constexpr float farthest = 1e30f;  // so that no product of three coordinates in normalised space overflows
+
+struct Header {
+    char magic[8];
+    std::uint32_t kind, version, vertices, triangles, flags, reserved;
+    std::uint64_t hash;
+};
+static_assert(sizeof(Header) == mesh_header_size);
+
+template <class T> void append(std::string& to, const std::vector<T>& all) {
+    if (!all.empty()) to.append(reinterpret_cast<const char*>(all.data()), all.size() * sizeof(T));
+}
+
+/// Reads the header of a file of `size` bytes and checks all of it but the hash.
+Header checked_header(std::string_view head, std::uint64_t size, const std::string& name) {
+    const auto fail = [&](const std::string& message) { throw InputError({name, 0, 0}, message); };
+    Header header{};
+    if (head.size() < sizeof header)
+        fail(fmt::format("expected a .mesh file, whose header has {} bytes; found {} bytes", sizeof header, size));
+    std::memcpy(&header, head.data(), sizeof header);
+    if (std::memcmp(header.magic, "crescent", 8) != 0 || header.kind != mesh_kind)
+        fail("expected a .mesh file (it begins with \"crescentmesh\"); `crescent import` makes one of a model");
+    if (header.version != mesh_version)
+        fail(fmt::format("byte 12: expected version {} of the .mesh format, found {}", mesh_version, header.version));
+    if (header.flags > (with_normals | with_uv))
+        fail(fmt::format("byte 24: expected flags from 0 to {}, found {}", with_normals | with_uv, header.flags));
+    if (header.reserved != 0) fail(fmt::format("byte 28: expected 0, found {}", header.reserved));
+    if (header.vertices == 0 || header.triangles == 0)
+        fail(fmt::format("byte 16: expected at least a triangle, found {} vertices and {} triangles", header.vertices,
+            header.triangles));
+    const std::uint64_t of_vertex = 12u + (header.flags & with_normals ? 12u : 0u) + (header.flags & with_uv ? 8u : 0u);
+    const std::uint64_t expected = sizeof header + header.vertices * of_vertex + std::uint64_t{12} * header.triangles;
+    if (expected != size)
+        fail(fmt::format("expected {} bytes for {} vertices and {} triangles, found {}{}", expected, header.vertices,
+            header.triangles, size, size < expected ? ": the file is truncated" : ""));
+    if (header.triangles >= std::uint32_t{1} << 30)
+        fail(fmt::format("byte 20: expected fewer than 2^30 triangles, found {}", header.triangles));
+    return header;
+}
+
+class Reader {
+public:
+    Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+    Mesh operator()(std::uint64_t& hash) {
+        const Header header = with_content();
+        hash = header.hash;
+        Mesh mesh;
+        take(mesh.positions, header.vertices);
+        if (header.flags & with_normals) take(mesh.normals, header.vertices);
+        if (header.flags & with_uv) take(mesh.uv, header.vertices);
+        take(mesh.triangles, header.triangles);
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) position(i, mesh.positions[i]);
+        for (std::size_t i = 0; i < mesh.normals.size(); ++i) normal(i, mesh.normals[i]);
+        for (std::size_t i = 0; i < mesh.uv.size(); ++i)
+            if (!std::isfinite(mesh.uv[i].x) || !std::isfinite(mesh.uv[i].y))
+                fail(fmt::format(
+                    "vertex {}: expected finite texture coordinates, found ({}, {})", i, mesh.uv[i].x, mesh.uv[i].y));
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+            for (const std::uint32_t k : mesh.triangles[i])
+                if (k >= header.vertices)
+                    fail(
+                        fmt::format("triangle {}: expected indices from 0 to {}, found {}", i, header.vertices - 1, k));
+        return mesh;
+    }
+
+    [[noreturn]] void fail(const std::string& message) const { throw InputError({name_, 0, 0}, message); }
+
+private:
+    Header with_content() {
+        Header header = checked_header(bytes_, bytes_.size(), name_);
+        const std::uint64_t hash = XXH3_64bits(bytes_.data() + sizeof header, bytes_.size() - sizeof header);
+        if (header.hash != 0 && hash != header.hash)
+            fail(fmt::format("byte 32: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
+                hash, header.hash));
+        header.hash = hash;
+        at_ = sizeof header;
+        return header;
+    }
+
+    template <class T> void take(std::vector<T>& to, std::size_t count) {
+        to.resize(count);
+        std::memcpy(to.data(), bytes_.data() + at_, count * sizeof(T));
+        at_ += count * sizeof(T);
+    }
+
+    void position(std::size_t i, Vec3f p) const {
+        const auto good = [](float x) { return std::fabs(x) <= farthest; };
+        if (!good(p.x) || !good(p.y) || !good(p.z))
+            fail(fmt::format(
+                "vertex {}: expected coordinates from -1e30 to 1e30, found ({}, {}, {})", i, p.x, p.y, p.z));
+    }
+
+    void normal(std::size_t i, Vec3f n) const {
+        const double length = std::sqrt(dot(widen(n), widen(n)));
+        if (!(std::fabs(length - 1) <= 1e-3))
+            fail(fmt::format(
+                "vertex {}: expected a unit normal, found ({}, {}, {}) of length {:.4g}", i, n.x, n.y, n.z, length));
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace
+
+namespace {
+
+std::string content_of(const Mesh& mesh) {
+    std::string content;
+    append(content, mesh.positions);
+    append(content, mesh.normals);
+    append(content, mesh.uv);
+    append(content, mesh.triangles);
+    return content;
+}
+
+}  // namespace
+
+std::uint64_t hash_of(const Mesh& mesh) {
+    const std::string content = content_of(mesh);
+    return XXH3_64bits(content.data(), content.size());
+}
+
+std::string mesh_file(const Mesh& mesh) {
+    const std::string content = content_of(mesh);
+    Header header{{}, mesh_kind, mesh_version, static_cast<std::uint32_t>(mesh.positions.size()),
+        static_cast<std::uint32_t>(mesh.triangles.size()),
+        (mesh.normals.empty() ? 0 : with_normals) | (mesh.uv.empty() ? 0 : with_uv), 0,
+        XXH3_64bits(content.data(), content.size())};
+    std::memcpy(header.magic, "crescent", 8);
+    std::string out(sizeof header, '\0');
+    std::memcpy(out.data(), &header, sizeof header);
+    return out += content;
+}
+
+std::uint32_t read_triangle_count(std::string_view head, std::uint64_t size, const std::string& name) {
+    return checked_header(head, size, name).triangles;
+}
+
+std::shared_ptr<const MeshPack> read_mesh(std::string_view bytes, const std::string& name) {
+    Reader reader(bytes, name);
+    std::uint64_t hash = 0;
+    Mesh mesh = reader(hash);
+    const std::size_t all = mesh.triangles.size();
+    const std::shared_ptr<MeshPack> pack = make_pack(std::move(mesh));
+    if (pack->mesh.triangles.empty())
+        reader.fail(fmt::format("expected a triangle with an area, found {} without", all));
+    pack->hash = hash;
+    return pack;
+}
+
+// ---- Bounds and the removal of useless triangles. A triangle without area is one whose corners repeat or lie on a
+// line: the cross product of two edges, in double precision, is 0.
 
 namespace {
 

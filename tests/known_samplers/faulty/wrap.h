@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "check/sources/builtin.h"
+#include "check/sources/cases.h"
 
 namespace crescent {
 

@@ -1,7 +1,6 @@
 // Faults in a small part of the draws, and correct samplers that look like them.
 #include <cmath>
 
-#include "check/sources/builtin.h"
 #include "check/sources/cases.h"
 #include "tests/known_samplers/reported/known.h"
 

@@ -11,9 +11,9 @@
 #include <iostream>
 
 #include "check/check.h"
-#include "check/print.h"
+#include "check/report/print.h"
 #include "check/sources/cases.h"
-#include "check/verdict_names.h"
+#include "check/verdict.h"
 #include "metrics/metrics.h"
 #include "output/formula.h"
 #include "render/estimator.h"

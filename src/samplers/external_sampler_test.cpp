@@ -1,10 +1,10 @@
 // The columns that describe a surface point and its lights to a program.
-#include "check/sources/context_columns.h"
+#include "samplers/external_sampler.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace crescent::inline sources {
+namespace crescent::inline samplers {
 namespace {
 
 using ::testing::ElementsAre;
@@ -49,4 +49,4 @@ TEST(ContextColumns, OfTheExampleShineOnThePoint) {
 }
 
 }  // namespace
-}  // namespace crescent::inline sources
+}  // namespace crescent::inline samplers

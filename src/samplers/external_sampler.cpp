@@ -1,5 +1,5 @@
 // One table: each quantity with its number of columns and their values.
-#include "check/sources/context_columns.h"
+#include "samplers/external_sampler.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "scene/lights/all.h"
 
-namespace crescent::inline sources {
+namespace crescent::inline samplers {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<double> example_context(std::span<const std::string> uses) {
     return out;
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent::inline samplers

@@ -1,4 +1,5 @@
-// The sentence of a finding: what was found, how large with its 95 % interval, and where.
+// Results of a check as verdicts: the sentence of a finding (what was found, how large with its 95 % interval, and
+// where), the evidence, and the pictures of the HTML page.
 #pragma once
 
 #include <span>
@@ -35,5 +36,17 @@ void note_implied_density(const CheckAt& c, Verdict& v);
 /// The verdicts of one sampler, for each of its w_o in the order of the verdict list.
 std::vector<Verdict> verdicts_of(
     std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const std::optional<Cause>& cause);
+
+// ---- The pictures of the HTML page for one w_o: draws by bin with the expectation of p, the weights, and p and f L
+// cos in the plane of incidence.
+
+/// Draws of one technique by bins of theta and phi about n, from the leaves of its tree, finer where most draws are.
+/// Both sides are sums of h = q / (p + q), in units of draws. Without a density: the density that the draws imply, in
+/// 1/sr. None if there are no draws.
+std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& c);
+/// Histogram of the weights with the fitted tail. x: weights of all techniques.
+WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail);
+/// Adds p and f L cos along the plane of incidence, which costs evaluations of both at 179 directions.
+void add_rose(const CheckCase& check_case, WeightHistogram& to);
 
 }  // namespace crescent::check

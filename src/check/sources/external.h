@@ -1,13 +1,11 @@
-// A sampler in another process, over its stdin and stdout. The handshake starts with `hello 2`, and the program answers
-// with its declaration. A program that answers `hello 1 NAME` uses protocol 1, which is protocol 2 without keys; one
-// that answers `hello 3` may declare the quantities of the surface point and the lights that it uses. Requests are text
-// lines, or blocks of doubles if the program declares them; docs/samplers.md has the grammar. Local frame, n = +z; the
-// program ends at the end of its input.
+// A sampler in another process: a program or a Python file over its stdin and stdout, or a shared library. Local frame,
+// n = +z.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +14,11 @@
 #include "samplers/external_sampler.h"
 
 namespace crescent::inline sources {
+
+// ---- A program. The handshake starts with `hello 2`, and the program answers with its declaration. A program that
+// answers `hello 1 NAME` uses protocol 1, which is protocol 2 without keys; one that answers `hello 3` may declare the
+// quantities of the surface point and the lights that it uses. Requests are text lines, or blocks of doubles if the
+// program declares them; docs/samplers.md has the grammar. The program ends at the end of its input.
 
 /// Time limits of a program behind a pipe or of a plugin.
 struct PipeLimits {
@@ -65,5 +68,31 @@ struct HandshakeError {
 };
 /// Reads the first line of a program.
 HandshakeError read_handshake(std::string_view answer, Handshake& out);
+
+// ---- Samplers in Python files: `crescent check mine.py:sampler`, and the key `python` of an arm.
+
+/// Whether the word is FILE.py, FILE.py:NAME or module:NAME.
+bool names_python_sampler(const std::string& word);
+
+/// Starts the Python interpreter with crescent.serve, which answers for this sampler over a pipe. The interpreter is
+/// CRESCENT_PYTHON, which the installed command sets to its own, or else python3. Throws InputError if the sampler
+/// cannot be loaded, OutputError if the interpreter or the package is missing.
+std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits);
+
+// ---- A sampler in a shared library with the C interface of sampler_plugin.h: checked by itself, or an arm of an
+// experiment. A separate process (plugin_host.h), one for each calling thread, loads the library, so that changes to
+// the process stay there.
+
+/// As an arm it takes any surface point; a check uses one surface.
+class PluginSampler : public ExternalSampler, public InProcessAdapter {
+public:
+    std::string name() const override = 0;
+};
+
+/// Opens the library at `path`; as a SamplerAdapter it is called on `surface`. Throws OutputError if the file is not
+/// such a library, with what is missing, and SamplerError if it ends its process, throws or takes longer than
+/// limits.call_seconds, here or in a later call.
+std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
+    const ExternalSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
 
 }  // namespace crescent::inline sources
