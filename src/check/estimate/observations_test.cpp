@@ -86,6 +86,17 @@ TEST(CheckDraws, WithoutADirectionAreNothingAndWeightZero) {
     EXPECT_NEAR(*std::ranges::max_element(o.weights), 1, 1e-9);  // f L cos / p = 0.5 x 2
 }
 
+TEST(CheckDraws, BelowTheSurfaceWithoutADensityAreNothing) {
+    FunctionSampler s;
+    s.p = [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / two_pi : 0; };
+    s.draw = [](Vec3d, const PrimarySample& u) { return from_chart({1.25 * u.x, two_pi * u.y}); };
+    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 1 / two_pi; };
+    const DrawChecks c = observed(s).checks;
+    EXPECT_NEAR(static_cast<double>(c.nothing), 4096 * 0.2, 4 * 26);
+    EXPECT_EQ(c.nothing + c.directions, 4096u);
+    EXPECT_EQ(c.zero.times, 0u);
+}
+
 TEST(CheckDraws, RingsAndLeavesCountThem) {
     const Observations o = observed(power_sampler(1));
     double leaves = 0;

@@ -90,7 +90,9 @@ TEST(CasesOfUsers, FollowTheDomainOfWo) {
     using Domain = Traits::WoDomain;
     EXPECT_EQ(cases(Domain::none, false).size(), 1u);
     EXPECT_EQ(cases(Domain::upper, false).size(), 8u);
-    EXPECT_EQ(cases(Domain::both, false).size(), 12u);
+    const auto both = cases(Domain::both, false);
+    EXPECT_EQ(both.size(), 12u);
+    EXPECT_EQ(std::ranges::count_if(both, [](const CheckCase& t) { return t.wo.z < 0; }), 4);
     EXPECT_EQ(cases(Domain::both, false, true).size(), 32u);
     const auto ranked = cases(Domain::upper, true);
     EXPECT_EQ(ranked.size(), 24u);  // with uniform and cosine
