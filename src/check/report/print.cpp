@@ -24,6 +24,9 @@ State worst(State a, State b) {
 /// The worst state of each verdict of one arm.
 using Row = std::map<std::string, State>;
 
+/// Ends a line without the blanks of its last column.
+void end_line(std::string& text) { text.erase(text.find_last_not_of(' ') + 1) += "\n"; }
+
 std::string rows_of(const CheckResult& result) {
     std::vector<std::string> order;
     std::map<std::string, Row> rows;
@@ -34,14 +37,14 @@ std::string rows_of(const CheckResult& result) {
     }
     std::string out = fmt::format("{:<18}", "arm");
     for (std::string_view name : verdict_names) out += fmt::format(" {:<12}", name);
-    out += "\n";
+    end_line(out);
     for (const std::string& arm : order) {
         out += fmt::format("{:<18}", arm);
         for (std::string_view name : verdict_names) {
             const auto at = rows[arm].find(std::string(name));
             out += fmt::format(" {:<12}", at == rows[arm].end() ? "-" : word(at->second));
         }
-        out += "\n";
+        end_line(out);
     }
     return out;
 }
