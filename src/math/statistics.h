@@ -66,6 +66,7 @@ double normal_two_sided(double z);
 /// P(|T| > |t|), Student's T with this many degrees of freedom, and the t > 0 that is exceeded with probability p.
 double student_two_sided(double degrees, double t);
 double student_two_sided_quantile(double degrees, double p);
+
 /// An interval of a probability.
 struct ShareInterval {
     double low, high;

@@ -1,4 +1,5 @@
-// Reads and writes the .mesh file, and removes useless triangles.
+// Reads and writes the .mesh file, and removes useless triangles. The counts of the file are compared with its size
+// before anything is allocated, so that memory is bounded by that size.
 #include "scene/mesh/mesh.h"
 
 #include <algorithm>
@@ -7,9 +8,6 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <utility>
-
-// ---- The counts are compared with the size of the file before anything is allocated, so that memory is bounded by
-// that size.
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
