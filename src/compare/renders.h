@@ -185,7 +185,7 @@ struct RenderSource {
 
 /// The statistics of all renders of a comparison.
 struct RenderStats {
-    RenderSource source;  // its renders fit each other, see view.h
+    RenderSource source;  // its renders fit each other, see passes.h
     Chromaticities primaries;
     int width = 0, height = 0;
     std::size_t quantities = 1;  // that are tested: 1 if every render is grey, else 4

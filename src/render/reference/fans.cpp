@@ -1,4 +1,4 @@
-// Gauss-Kronrod over the fans' azimuth, 7 points, one rule for each span between two cuts; along each fan lobe_along.h.
+// Gauss-Kronrod over the fans' azimuth, 7 points, one rule for each span between two cuts; along each fan lobe_along().
 // Spans whose rules differ are halved, first at kinks, which are found by bisection. Lambert's tolerance is 4e-5 of the
 // whole.
 #include "render/reference/fans.h"
