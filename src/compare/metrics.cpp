@@ -171,9 +171,9 @@ bool RegionResult::mean_heavy() const { return (tail && tail->k >= 1) || largest
 
 bool RegionResult::heavy() const { return (tail && tail->k >= 0.5) || largest_share > heavy_share; }
 
-const RegionResult& ArmResult::region(const std::string& name) const {
+const RegionResult& ArmResult::region(const std::string& wanted) const {
     const auto it =
-        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == name; });
+        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == wanted; });
     ensure(it != regions.end(), "a region that was measured");
     return *it;
 }

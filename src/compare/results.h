@@ -50,7 +50,7 @@ struct ArmResult {
     std::size_t renders = 0;
     std::optional<double> spp, seconds;
     std::vector<RegionResult> regions;
-    const RegionResult& region(const std::string& name) const;
+    const RegionResult& region(const std::string& wanted) const;
 };
 
 /// One test of equal means in a region: of Y, and of each channel if renders are in colour.
