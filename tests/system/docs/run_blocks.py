@@ -75,7 +75,7 @@ def check_covered(source: Path, page: Path, script: Path, blocks: list[Block]) -
     lines = page.read_text(encoding="utf-8").split("\n")
     for block in blocks:
         title = next((at[3:] for at in reversed(lines[: block.line]) if at.startswith("## ")), "")
-        if title not in titles or not re.fullmatch(r"<!-- file .+ -->", block.above):
+        if title not in titles or not re.fullmatch(r"<!-- (file|in) .+ -->", block.above):
             raise Mistake(f"{block.place}: {script.name} does not build this block")
 
 
