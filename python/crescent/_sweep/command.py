@@ -199,10 +199,21 @@ def _dispatch(words: list[str]) -> int:
 
 def main(words: Sequence[str] | None = None) -> int:
     """Runs the command and returns its exit code."""
-    from .engines import EngineError
+    from .engines import EngineError, interrupted
 
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    def stop(*_: object) -> None:
+        interrupted.set()
+        raise KeyboardInterrupt
+
+    def report(lost: sys.UnraisableHookArgs) -> None:
+        if not isinstance(lost.exc_value, KeyboardInterrupt):  # which `interrupted` keeps
+            sys.__unraisablehook__(lost)
+
+    interrupted.clear()
+    if words is None:
+        sys.unraisablehook = report
+    signal.signal(signal.SIGINT, stop)
+    signal.signal(signal.SIGTERM, stop)
     code: Any
     try:
         require()

@@ -28,6 +28,8 @@ from .grid import UsageError, hint
 from .runner import Runner, TaskStopped
 from .tasks import Result, Task, host
 
+#: Set by Ctrl-C: a KeyboardInterrupt that is raised while Python finalizes an object is lost.
+interrupted = threading.Event()
 _threads = threading.local()
 _LOST_TRIES = 3  # submissions of a task whose reference was lost with its worker
 _BATCH = 64  # results in one request
@@ -268,6 +270,8 @@ class DaskEngine:
         return self._lost.is_set() or self.client.status != "running" or comm is None or bool(comm.comm.closed())
 
     def _check(self) -> None:
+        if interrupted.is_set():
+            raise KeyboardInterrupt
         if self._lost.is_set():
             raise EngineError(f"the Dask scheduler of {self._engine} does not answer")
 
@@ -313,6 +317,7 @@ class DaskEngine:
 
         try:
             while True:
+                self._check()
                 most = max(2 * _BATCH, 4 * self.slots) if length < 0.5 else 3 * self.slots + 1
                 while len(running) < most and not (exhausted and not waiting and not deferred):
                     job = waiting.pop() if waiting else deferred.pop() if deferred else next(jobs, None)
@@ -362,8 +367,9 @@ class DaskEngine:
             if isinstance(error, Exception) and not isinstance(error, EngineError) and self._disconnected():
                 self._lost.set()
                 raise EngineError(f"the Dask scheduler of {self._engine} does not answer") from None
+            ends = self._engine == "local" and isinstance(error, KeyboardInterrupt)  # the workers, with the cluster
             with contextlib.suppress(Exception):
-                if not self._lost.is_set():
+                if not self._lost.is_set() and not ends:
                     self.client.cancel([future for future, _ in running.values()], force=True)
             raise
 
