@@ -344,7 +344,8 @@ Ladder ladder(
         paired = run.region(region)->is_paired();
         if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
     }
-    out.rmse = by_seed[seed];
+    std::erase_if(by_seed, [&](const auto& of) { return of.second.size() < arm.n.size(); });
+    out.rmse = by_seed.at(seed);
     const Line own = fit_known(out.n, out.rmse, paired);
     std::vector<double> slopes;
     for (const auto& [_, values] : by_seed) slopes.push_back(fit_known(out.n, values, paired).slope);
@@ -361,11 +362,12 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     std::vector<Ladder> out;
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.n.size() < 2) continue;
-        // Of a part of a run, some arms have no rows.
+        // Of a part of a run, some arms lack rows.
         const auto rows = std::ranges::count_if(runs, [&](const RunMetrics& run) {
-            return run.key.arm == arm.name && run.key.s == experiment.s() && run.key.seed == experiment.seed;
+            return run.key.arm == arm.name && run.key.s == experiment.s() && run.key.seed == experiment.seed &&
+                std::ranges::find(arm.n, run.key.n) != arm.n.end();
         });
-        if (rows == 0) continue;
+        if (static_cast<std::size_t>(rows) < arm.n.size()) continue;
         for (const Region& region : experiment.regions)
             out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
     }
