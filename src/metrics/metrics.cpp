@@ -331,7 +331,8 @@ Line fit_known(const std::vector<std::uint64_t>& n, const std::vector<double>& r
     return known.size() < 2 ? Line{std::nan(""), std::nan("")} : fit_power(known_n, known);
 }
 
-Ladder ladder(
+/// Empty if the first seed lacks a sample count, as in a part of a run.
+std::optional<Ladder> ladder(
     const std::vector<RunMetrics>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
     Ladder out{arm.name, region, s, arm.n, {}, 0, 0, 0, false};
     std::map<std::uint32_t, std::vector<double>> by_seed;
@@ -345,6 +346,7 @@ Ladder ladder(
         if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
     }
     std::erase_if(by_seed, [&](const auto& of) { return of.second.size() < arm.n.size(); });
+    if (!by_seed.contains(seed)) return {};
     out.rmse = by_seed.at(seed);
     const Line own = fit_known(out.n, out.rmse, paired);
     std::vector<double> slopes;
@@ -362,14 +364,9 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     std::vector<Ladder> out;
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.n.size() < 2) continue;
-        // Of a part of a run, some arms lack rows.
-        const auto rows = std::ranges::count_if(runs, [&](const RunMetrics& run) {
-            return run.key.arm == arm.name && run.key.s == experiment.s() && run.key.seed == experiment.seed &&
-                std::ranges::find(arm.n, run.key.n) != arm.n.end();
-        });
-        if (static_cast<std::size_t>(rows) < arm.n.size()) continue;
         for (const Region& region : experiment.regions)
-            out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
+            if (auto of = ladder(runs, arm, region.name, experiment.s(), experiment.seed))
+                out.push_back(std::move(*of));
     }
     return out;
 }

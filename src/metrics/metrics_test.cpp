@@ -212,7 +212,7 @@ TEST(Ladders, SlopeIsOfTheFirstSeedAndBandOfAll) {
     EXPECT_NEAR(ladder.high, -0.23, 1e-12);
 }
 
-TEST(Ladders, OfTwoRungsAndOneSeedHaveNoInterval) {
+TEST(Ladders, OfTwoCountsAndOneSeedHaveNoInterval) {
     const Ladder ladder = ladders_falling_as({-0.5}, {4, 16})[0];
     EXPECT_NEAR(ladder.slope, -0.5, 1e-12);
     EXPECT_TRUE(std::isnan(ladder.low) && std::isnan(ladder.high));

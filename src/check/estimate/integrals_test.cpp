@@ -6,7 +6,7 @@
 #include <functional>
 #include <type_traits>
 
-#include "tests/support/function_sampler.h"
+#include "tests/support/power_plan.h"
 
 namespace crescent::check {
 namespace {
@@ -41,14 +41,7 @@ template <class F> struct HalfVector : SamplerAdapter {
     }
 };
 
-class CheckIntegralsOfPower : public testing::Test {
-protected:
-    FunctionSampler sampler = power_sampler(40);
-    CaseLighting light;
-    Source source{sampler, 0, {0, 0, 1}, light};
-    CheckBudget budget = CheckBudget::limited();
-    Plan plan = make_plan(source, budget, {});
-};
+class CheckIntegralsOfPower : public PowerPlan {};
 
 TEST_F(CheckIntegralsOfPower, IntegralsAreThoseOfTheClosedForm) {
     Integrals all;

@@ -5,19 +5,12 @@
 #include <limits>
 
 #include "check/constants.h"
-#include "tests/support/function_sampler.h"
+#include "tests/support/power_plan.h"
 
 namespace crescent::check {
 namespace {
 
-class CheckObservationsOfPower : public testing::Test {
-protected:
-    FunctionSampler sampler = power_sampler(40);
-    CaseLighting light;
-    Source source{sampler, 0, {0, 0, 1}, light};
-    CheckBudget budget = CheckBudget::limited();
-    Plan plan = make_plan(source, budget, {});
-};
+class CheckObservationsOfPower : public PowerPlan {};
 
 TEST_F(CheckObservationsOfPower, BothSidesAgreeForEveryTestFunction) {
     Integrals claimed;

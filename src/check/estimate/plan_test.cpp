@@ -4,21 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "check/constants.h"
-#include "tests/support/function_sampler.h"
+#include "tests/support/power_plan.h"
 
 namespace crescent::check {
 
 // ---- The tree of a power of the cosine: a partition of the sphere whose leaves have the mass of p.
 namespace {
 
-class CheckTree : public testing::Test {
-protected:
-    FunctionSampler sampler = power_sampler(40);
-    CaseLighting light;
-    Source source{sampler, 0, {0, 0, 1}, light};
-    CheckBudget budget = CheckBudget::limited();
-    Plan plan = make_plan(source, budget, {});
-};
+class CheckTree : public PowerPlan {};
 
 TEST_F(CheckTree, LeavesPartitionTheSphere) {
     double area = 0;
