@@ -16,7 +16,7 @@
 #include "tests/support/explainer_data.h"
 
 namespace crescent::explainer {
-namespace {
+namespace film_test {
 
 constexpr int small_height = 360;
 
@@ -216,5 +216,5 @@ TEST(Film, MissingPartsOfAnExperimentAreReported) {
     }
 }
 
-}  // namespace
+}  // namespace film_test
 }  // namespace crescent::explainer

@@ -13,7 +13,7 @@
 #include "base/errors.h"
 
 namespace crescent::inline base {
-namespace {
+namespace files_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -283,5 +283,5 @@ TEST_F(Publishing, NamesTheFileThatCannotBeWritten) {
     EXPECT_EQ(text_of(top_ / ".out.crescent/new/theirs"), "theirs");
 }
 
-}  // namespace
+}  // namespace files_test
 }  // namespace crescent::inline base

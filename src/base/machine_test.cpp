@@ -9,7 +9,7 @@
 #include <fstream>
 
 namespace crescent::inline base {
-namespace {
+namespace machine_test {
 
 namespace fs = std::filesystem;
 
@@ -61,5 +61,5 @@ TEST_F(Machines, BoundToOneProcessorUseOneThread) {
     EXPECT_GT(available_memory(), 0u);
 }
 
-}  // namespace
+}  // namespace machine_test
 }  // namespace crescent::inline base

@@ -14,7 +14,7 @@
 #include "base/errors.h"
 
 namespace crescent {
-namespace {
+namespace process_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -123,5 +123,5 @@ TEST(Processes, LongLinesAreSplitBetweenCharacters) {
     EXPECT_THAT(all, Not(HasSubstr("\\x")));
 }
 
-}  // namespace
+}  // namespace process_test
 }  // namespace crescent

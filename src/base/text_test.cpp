@@ -10,7 +10,7 @@
 #include "base/errors.h"
 
 namespace crescent::inline base {
-namespace {
+namespace text_test {
 
 TEST(Text, NothingThatMovesACursorIsPrinted) {
     EXPECT_EQ(printable("a\x1b[31mb\a\n\x7f"), "a\\x1b[31mb\\x07\\x0a\\x7f");
@@ -70,5 +70,5 @@ TEST(Hints, ListTheExpectedWordsAndTheNearest) {
     EXPECT_EQ(did_you_mean(std::string(65, 'e'), {std::string(64, 'e')}), "") << "a word of any length is no word";
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace crescent::inline base

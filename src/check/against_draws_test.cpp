@@ -8,7 +8,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace against_draws_test {
 
 /// Both samplers at w_o = n with draws of one look.
 struct Two {
@@ -74,5 +74,5 @@ TEST(DrawsOfTwo, StatedSizesFallWithTheDraws) {
     EXPECT_LT(*sizes.part, *sizes_against(*two.common, two.of_first, two.of_second, 1e-12).part);
 }
 
-}  // namespace
+}  // namespace against_draws_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace against_test {
 
 /// Draws by a power of the cosine, of a Lambert surface.
 std::shared_ptr<const SamplerAdapter> power(double s, double albedo = 0.5) {
@@ -66,5 +66,5 @@ TEST(TwoSamplers, OfAWrongOneAreNotRanked) {
     EXPECT_NE(named(r, "variance").state, State::right);
 }
 
-}  // namespace
+}  // namespace against_test
 }  // namespace crescent::check

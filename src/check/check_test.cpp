@@ -10,7 +10,7 @@
 #include "check/verdict.h"
 
 namespace crescent {
-namespace {
+namespace check_test {
 
 /// Lambert by the cosine, p times `factor`; a program that gives `rate` answers per second and has `allowed` seconds.
 class Program : public SamplerAdapter {
@@ -148,5 +148,5 @@ TEST(RunChecks, SharesAlphaBetweenTheStages) {
     EXPECT_NEAR(check::levels_of(1e-3, 1).second, check::alpha2, 1e-12);
 }
 
-}  // namespace
+}  // namespace check_test
 }  // namespace crescent

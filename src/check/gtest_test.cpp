@@ -8,7 +8,7 @@
 #include <sstream>
 
 namespace crescent {
-namespace {
+namespace gtest_test {
 
 std::atomic<int> calls = 0;
 
@@ -105,5 +105,5 @@ TEST(SharedAlpha, DefaultsToTheAlphaOfTheSettings) {
     EXPECT_EQ(shared_settings().alpha, TestSettings::quick().alpha);
 }
 
-}  // namespace
+}  // namespace gtest_test
 }  // namespace crescent

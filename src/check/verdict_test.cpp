@@ -6,7 +6,7 @@
 #include <set>
 
 namespace crescent::inline results {
-namespace {
+namespace verdict_test {
 
 CheckResult of(const std::vector<State>& states) {
     CheckResult out;
@@ -55,5 +55,5 @@ TEST(VerdictNames, AreDifferentAndHaveAQuestion) {
     EXPECT_EQ(word(State::inconclusive), "inconclusive");
 }
 
-}  // namespace
+}  // namespace verdict_test
 }  // namespace crescent::inline results

@@ -8,7 +8,7 @@
 #include "check/verdict.h"
 
 namespace crescent {
-namespace {
+namespace waivers_test {
 
 CheckResult of(std::initializer_list<std::tuple<const char*, const char*, State>> verdicts) {
     CheckResult j;
@@ -92,5 +92,5 @@ TEST(Waivers, SayWhatIsKnownWhereAWordIsNot) {
     } catch (const InputError& e) { EXPECT_NE(std::string(e.what()).find("did you mean 'phong'?"), std::string::npos); }
 }
 
-}  // namespace
+}  // namespace waivers_test
 }  // namespace crescent

@@ -10,7 +10,7 @@
 #include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace bias_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -278,5 +278,5 @@ TEST(Identical, OneFilePerSideIsDescribedAndInconclusive) {
     EXPECT_EQ(r.bias[0].single->at.y0, 2);
 }
 
-}  // namespace
+}  // namespace bias_test
 }  // namespace crescent::inline comparison

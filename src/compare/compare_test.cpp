@@ -12,7 +12,7 @@
 #include "tests/support/written_exr.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace compare_test {
 
 using ::testing::HasSubstr;
 using State = CompareResult::State;
@@ -98,5 +98,5 @@ TEST_F(CompareFiles, AllOutputsAppearAtOnce) {
     EXPECT_THAT(summary, HasSubstr("frame (273 pixels)"));
 }
 
-}  // namespace
+}  // namespace compare_test
 }  // namespace crescent::inline comparison

@@ -22,7 +22,7 @@
 
 namespace crescent::inline comparison {
 
-namespace {
+namespace exr_file_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -262,11 +262,11 @@ TEST_F(ExrFiles, TruncatedFilesAreRefused) {
     }
 }
 
-}  // namespace
+}  // namespace exr_file_test
 
 // ---- Primaries: published matrices, white is preserved, XYZ keeps its luminance.
 
-namespace {
+namespace exr_file_test {
 
 constexpr Chromaticities ap1{{0.713, 0.293}, {0.165, 0.83}, {0.128, 0.044}, {0.32168, 0.33767}};  // ACEScg
 constexpr Chromaticities rec2020{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, {0.3127, 0.3290}};
@@ -318,6 +318,6 @@ TEST(Primaries, DegeneratePrimariesAreNotValid) {
     EXPECT_FALSE(is_valid({{0, 0}, {0, 0}, {0, 0}, {0, 0}}));
 }
 
-}  // namespace
+}  // namespace exr_file_test
 
 }  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 #include <limits>
 
 namespace crescent::inline comparison {
-namespace {
+namespace exr_layers_test {
 
 using ::testing::ElementsAre;
 using Kind = ExrExtra::Kind;
@@ -89,5 +89,5 @@ TEST(ExrAttributes, AreNumbersOrTimesOfAnyRenderer) {
     EXPECT_THROW((void)seconds({"renderTime", -1.0, ""}), InputError);
 }
 
-}  // namespace
+}  // namespace exr_layers_test
 }  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 #include <limits>
 
 namespace crescent::inline comparison {
-namespace {
+namespace file_warnings_test {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -98,5 +98,5 @@ TEST(NonFiniteCounts, OfGroupsShowScatteredFailures) {
     EXPECT_FALSE(compare_non_finite(image({}), side(8, {}), side(8, {}), 0.01).any());
 }
 
-}  // namespace
+}  // namespace file_warnings_test
 }  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 #include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace metrics_test {
 
 Render grey(std::vector<float> values) {
     Render out("r", static_cast<int>(values.size()), 1);
@@ -110,5 +110,5 @@ TEST(RegionMetrics, TailsDecideWhichMeansHaveIntervals) {
     EXPECT_EQ(heavy(0.1, 0.6), std::pair(true, true));
 }
 
-}  // namespace
+}  // namespace metrics_test
 }  // namespace crescent::inline comparison

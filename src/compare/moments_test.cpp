@@ -8,7 +8,7 @@
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace moments_test {
 
 class MomentFiles : public ScratchFolder {
 protected:
@@ -84,5 +84,5 @@ TEST_F(MomentFiles, HaveOnlyTheRegionsOfTheirPlan) {
     EXPECT_THROW((void)read(renders.plan({other})), InputError);
 }
 
-}  // namespace
+}  // namespace moments_test
 }  // namespace crescent::inline comparison

@@ -11,7 +11,7 @@
 #include "compare/synthetic.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace noise_test {
 
 using Pairs = std::vector<RenderPair>;
 
@@ -190,5 +190,5 @@ TEST(Spectrum, BlueNoiseHasItsPowerAtHighFrequencies) {
     EXPECT_EQ(noise_colour(std::vector<double>(spectrum_bins)), NoiseColour::unknown);
 }
 
-}  // namespace
+}  // namespace noise_test
 }  // namespace crescent::inline comparison

@@ -9,7 +9,7 @@
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace open_file_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -69,5 +69,5 @@ TEST(HeaderText, IsSplitAndParsedAsAWhole) {
     for (const char* bad : {"", "1x", " 1", "1.5"}) EXPECT_FALSE(parse_number(bad, n)) << bad;
 }
 
-}  // namespace
+}  // namespace open_file_test
 }  // namespace crescent::inline comparison

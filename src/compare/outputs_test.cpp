@@ -10,7 +10,7 @@
 #include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace outputs_test {
 
 using ::testing::HasSubstr;
 
@@ -75,5 +75,5 @@ TEST(CompareJunit, HasACaseForEachClaim) {
     EXPECT_THAT(junit({bright, check("dark", "y_mean.frame(b) < 1"), same}), HasSubstr("tests=\"3\" failures=\"2\""));
 }
 
-}  // namespace
+}  // namespace outputs_test
 }  // namespace crescent::inline comparison

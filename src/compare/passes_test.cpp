@@ -10,7 +10,7 @@
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace passes_test {
 
 using ::testing::ElementsAre;
 
@@ -99,5 +99,5 @@ TEST_F(Patterns, MatchFilesByDigitsAndWildcards) {
     EXPECT_THROW((void)expand({path("seed2"), path("seed?")}, {}), InputError);  // named twice
 }
 
-}  // namespace
+}  // namespace passes_test
 }  // namespace crescent::inline comparison

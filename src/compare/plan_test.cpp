@@ -7,7 +7,7 @@
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace plan_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -87,5 +87,5 @@ TEST_F(ComparePlans, KeysThatContradictEachOtherAreRefused) {
     EXPECT_THAT(mistake({a, box, mask}), HasSubstr("'lamp' is a region already"));
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace crescent::inline comparison

@@ -9,7 +9,7 @@
 #include "tests/support/wellformed.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace plates_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -76,5 +76,5 @@ TEST(ComparePages, EscapeNamesAndListFiles) {
     EXPECT_THAT(page, Not(HasSubstr("<script src")));
 }
 
-}  // namespace
+}  // namespace plates_test
 }  // namespace crescent::inline comparison

@@ -20,7 +20,7 @@
 
 namespace crescent::inline comparison {
 
-namespace {
+namespace renders_test {
 
 using ::testing::HasSubstr;
 
@@ -284,11 +284,11 @@ TEST_F(Renders, DamagedFilesAreReadOrRefused) {
     }
 }
 
-}  // namespace
+}  // namespace renders_test
 
 // ---- Whether renders fit each other: renders in memory.
 
-namespace {
+namespace renders_test {
 
 using ::testing::HasSubstr;
 
@@ -342,6 +342,6 @@ TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
     EXPECT_THAT(all.warnings, ::testing::ElementsAre(HasSubstr("b0: Variance.R is the variance of one sample")));
 }
 
-}  // namespace
+}  // namespace renders_test
 
 }  // namespace crescent::inline comparison

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace crescent::inline comparison {
-namespace {
+namespace synthetic_test {
 
 using Kind = SyntheticNoise::Kind;
 constexpr int side = 128;
@@ -79,5 +79,5 @@ TEST(SyntheticScenes, EqualSeedsGiveEqualResults) {
     EXPECT_NE(mean(1), mean(2));
 }
 
-}  // namespace
+}  // namespace synthetic_test
 }  // namespace crescent::inline comparison

@@ -11,7 +11,7 @@
 #include "tests/support/written_exr.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace view_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -200,5 +200,5 @@ TEST_F(Views, MasksApplyToTheImageRegardlessOfTheirOrigin) {
     EXPECT_THAT(refusal([&] { return read({small}); }), HasSubstr("expected 21 x 13 pixels as the renders have"));
 }
 
-}  // namespace
+}  // namespace view_test
 }  // namespace crescent::inline comparison

@@ -7,7 +7,7 @@
 #include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace wording_test {
 
 TEST(MeanAndError, OfOneValueHasNoError) {
     const std::vector<double> four{1, 2, 3, 4};
@@ -104,5 +104,5 @@ TEST(Roughness, IsTheErrorOfAReferenceOfOneFile) {
     EXPECT_DOUBLE_EQ(roughness(all, arm, set), 0);
 }
 
-}  // namespace
+}  // namespace wording_test
 }  // namespace crescent::inline comparison

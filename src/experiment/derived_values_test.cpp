@@ -5,7 +5,7 @@
 #include "experiment/experiment.h"
 
 namespace crescent::inline experiment {
-namespace {
+namespace derived_values_test {
 
 using testing::ElementsAre;
 
@@ -48,7 +48,7 @@ TEST(LightTables, AreThoseOfDisksAndThenThoseOfLights) {
     EXPECT_THAT(paths, ElementsAre("disks.key", "lights.ball", "lights.window"));
 }
 
-}  // namespace
+}  // namespace derived_values_test
 TEST(SourceOfAnArm, IsNamed) {
     ArmPlan arm;
     EXPECT_EQ(source_of(arm), "");

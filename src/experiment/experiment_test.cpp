@@ -9,7 +9,7 @@
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
-namespace {
+namespace experiment_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -280,5 +280,5 @@ TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
     EXPECT_EQ(message("{}"), "");
 }
 
-}  // namespace
+}  // namespace experiment_test
 }  // namespace crescent::inline experiment

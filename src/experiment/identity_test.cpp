@@ -9,7 +9,7 @@
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
-namespace {
+namespace identity_test {
 
 const std::string folder = std::string(CRESCENT_SOURCE_DIR) + "/experiments/";
 
@@ -233,5 +233,5 @@ TEST(Identity, HoldsWhatWasPublishedNotWhere) {
     std::filesystem::remove_all(here);
 }
 
-}  // namespace
+}  // namespace identity_test
 }  // namespace crescent::inline experiment

@@ -9,7 +9,7 @@
 #include "tests/support/meshes.h"
 
 namespace crescent::inline experiment {
-namespace {
+namespace input_files_test {
 
 class MeshFiles : public testing::Test {
 protected:
@@ -76,5 +76,5 @@ TEST_F(MeshFiles, HaveAContentThatStandsForThem) {
     }
 }
 
-}  // namespace
+}  // namespace input_files_test
 }  // namespace crescent::inline experiment

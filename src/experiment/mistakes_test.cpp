@@ -6,7 +6,7 @@
 #include "experiment/experiment.h"
 
 namespace crescent::inline experiment {
-namespace {
+namespace mistakes_test {
 
 using testing::HasSubstr;
 
@@ -324,5 +324,5 @@ TEST(Mistakes, JunkIsRefusedAndDoesNotCrash) {
         EXPECT_THROW((void)parse(text, "junk"), InputError);
 }
 
-}  // namespace
+}  // namespace mistakes_test
 }  // namespace crescent::inline experiment

@@ -6,7 +6,7 @@
 #include "experiment/experiment.h"
 
 namespace crescent {
-namespace {
+namespace model_experiment_test {
 
 std::shared_ptr<const MeshPack> tetrahedron() {
     Mesh mesh;
@@ -33,5 +33,5 @@ TEST(ModelExperiment, NamesTablesAfterFiles) {
     EXPECT_EQ(table_name_of(std::string(100, 'a') + ".mesh").size(), 64u);
 }
 
-}  // namespace
+}  // namespace model_experiment_test
 }  // namespace crescent

@@ -7,7 +7,7 @@
 #include "tests/support/gl_test_scene.h"
 
 namespace crescent::gl {
-namespace {
+namespace context_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -129,5 +129,5 @@ TEST(Rectangles, CoverTheImageOnceAndStaySmall) {
     EXPECT_EQ(rectangles_of(960, 540, {1}, 16384).size(), 1u) << "the beauty is one film framebuffer";
 }
 
-}  // namespace
+}  // namespace context_test
 }  // namespace crescent::gl

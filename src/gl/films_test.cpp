@@ -7,7 +7,7 @@
 #include "tests/support/gl_test_scene.h"
 
 namespace crescent::gl {
-namespace {
+namespace films_test {
 
 using test::Difference;
 
@@ -261,5 +261,5 @@ TEST(Films, StopWhenAsked) {
     EXPECT_THROW(gl.films(scene, "cosine", {1u << 24}, 1, monitor), Interrupted);
 }
 
-}  // namespace
+}  // namespace films_test
 }  // namespace crescent::gl

@@ -7,7 +7,7 @@
 #include "tests/support/gl_test_scene.h"
 
 namespace crescent::gl {
-namespace {
+namespace integers_test {
 
 /// Returns pairs of samples from the first to the last for an N of 2^32, both dimensions' blocks and one that no
 /// sampler uses, seeds with few bits and with many: 512 x 512 pixels each, 20 million integers.
@@ -35,5 +35,5 @@ TEST(Integers, AFlippedBitAndAnotherSeedAreCounted) {
     EXPECT_EQ(unlike_integers({16, 16, 3, 1, 8}, integers), 4u * 256u);
 }
 
-}  // namespace
+}  // namespace integers_test
 }  // namespace crescent::gl

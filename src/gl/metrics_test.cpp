@@ -6,7 +6,7 @@
 #include "tests/support/gl_test_scene.h"
 
 namespace crescent::gl {
-namespace {
+namespace metrics_test {
 
 Experiment metered_scene() {
     return parse(std::string(test::scene_text) + R"(
@@ -43,5 +43,5 @@ TEST(MetricsAgreement, EveryMetricMatchesTheCpu) {
     EXPECT_TRUE(cpu.provenance.backend_details.empty());
 }
 
-}  // namespace
+}  // namespace metrics_test
 }  // namespace crescent::gl

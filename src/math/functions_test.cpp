@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace crescent::math {
-namespace {
+namespace functions_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -214,5 +214,5 @@ TEST(Functions, AMeasureOfErrorSeesAnUlp) {
     EXPECT_GT(worst_of(exp_row, [](double x) { return std::nextafter(exp(x), 1e300); }, 100, where), 0.9);
 }
 
-}  // namespace
+}  // namespace functions_test
 }  // namespace crescent::math

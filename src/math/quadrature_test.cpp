@@ -4,7 +4,7 @@
 #include "math/quadrature.h"
 
 namespace crescent::math {
-namespace {
+namespace quadrature_test {
 
 template <unsigned n> void is_exact() {
     for (unsigned degree = 0; degree < 2 * n; ++degree) {
@@ -24,5 +24,5 @@ TEST(Gauss, IsExactForPolynomialsOfTwiceItsPoints) {
     EXPECT_GT(std::fabs(Gauss<2>::integrate([](double x) { return x * x * x * x; }, -1, 1) - 0.4), 1e-3);
 }
 
-}  // namespace
+}  // namespace quadrature_test
 }  // namespace crescent::math

@@ -6,7 +6,7 @@
 #include <set>
 
 namespace crescent::math {
-namespace {
+namespace sobol_test {
 
 TEST(Sobol, HasTheFirstPointsOfJoeAndKuo) {
     const double second[] = {0, 0.5, 0.75, 0.25, 0.625, 0.125, 0.375, 0.875};
@@ -54,5 +54,5 @@ TEST(Sobol, IsUniformOverSeeds) {
     }
 }
 
-}  // namespace
+}  // namespace sobol_test
 }  // namespace crescent::math

@@ -12,7 +12,7 @@
 #include "math/statistics.h"
 
 namespace crescent::inline statistics {
-namespace {
+namespace statistics_test {
 
 constexpr double bound = 1e-12;
 
@@ -54,11 +54,11 @@ TEST(Distributions, QuantilesAndIntervalsAreThoseOfBoost) {
         }
 }
 
-}  // namespace
+}  // namespace statistics_test
 
 // ---- Values by integer arithmetic.
 
-namespace {
+namespace statistics_test {
 
 TEST(ExactTests, FisherSumsNoLikelierSplits) {
     EXPECT_NEAR(fisher_exact(4, 4, 0, 4), 2.0 / 70, 1e-15);
@@ -79,11 +79,11 @@ TEST(ExactTests, BinomialIsTwiceTheSmallerTail) {
     EXPECT_EQ(binomial_exact(0, 0, 0.5), 1);
 }
 
-}  // namespace
+}  // namespace statistics_test
 
 // ---- Quantiles of sets with an obvious answer.
 
-namespace {
+namespace statistics_test {
 
 TEST(Quantiles, InterpolateBetweenOrderStatistics) {
     EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
@@ -102,11 +102,11 @@ TEST(Quantiles, AnOrderStatisticCountsFromTheSmallest) {
     EXPECT_EQ(order_statistic({4, 1, 3, 2}, 2), 3);
 }
 
-}  // namespace
+}  // namespace statistics_test
 
 // ---- Tests and corrections against tables and published examples.
 
-namespace {
+namespace statistics_test {
 
 TEST(Hypotheses, KnowStudentsT) {
     EXPECT_NEAR(two_sided_p(2.228139, 10), 0.05, 1e-6);  // tables of Student's t
@@ -184,6 +184,6 @@ TEST(Hypotheses, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
     EXPECT_EQ(lone_share(2), 0);
 }
 
-}  // namespace
+}  // namespace statistics_test
 
 }  // namespace crescent::inline statistics

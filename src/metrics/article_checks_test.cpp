@@ -6,7 +6,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline metrics {
-namespace {
+namespace article_checks_test {
 
 /// A furnace's median is below the expected value by about the part of the diffuse tail that n samples do not reach,
 /// rho_d n^-(1-k) with k = (s-1)/(s+1); returns 4 times that.
@@ -42,5 +42,5 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
     }
 }
 
-}  // namespace
+}  // namespace article_checks_test
 }  // namespace crescent::inline metrics

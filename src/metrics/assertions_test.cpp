@@ -6,7 +6,7 @@
 #include "metrics/metrics.h"
 
 namespace crescent::inline metrics {
-namespace {
+namespace assertions_test {
 
 Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
     Experiment e;
@@ -125,5 +125,5 @@ TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
     EXPECT_TRUE(verdict("tail.H(a, n=4) < 1", false, m));
 }
 
-}  // namespace
+}  // namespace assertions_test
 }  // namespace crescent::inline metrics

@@ -7,7 +7,7 @@
 #include "metrics/flip.h"
 
 namespace crescent::inline metrics {
-namespace {
+namespace flip_test {
 
 /// A test picture by formula, so that another program can compute the same one.
 std::vector<float> plane(int c, bool changed, double lift) {
@@ -63,5 +63,5 @@ TEST(Flip, IsZeroForEqualPictures) {
     for (const float v : ldr_flip({90, 60, p, p, p}, {90, 60, p, p, p}, 67)) EXPECT_EQ(v, 0);
 }
 
-}  // namespace
+}  // namespace flip_test
 }  // namespace crescent::inline metrics

@@ -9,7 +9,7 @@
 #include "render/estimator.h"
 
 namespace crescent::inline metrics {
-namespace {
+namespace furnace_test {
 
 TEST(BadSamples, PlantedNaNIsCountedAndReachesTheFilm) {
     Surface surface{{0.5, 0.5, 0.5}, 0.1, lobe_named("phong"), std::numeric_limits<double>::quiet_NaN(), 0};
@@ -40,5 +40,5 @@ TEST(Furnace, CosineOnLambertHasNoVariance) {
     EXPECT_EQ(m.horizon[0], 0u);
 }
 
-}  // namespace
+}  // namespace furnace_test
 }  // namespace crescent::inline metrics

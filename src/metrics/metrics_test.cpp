@@ -12,7 +12,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline metrics {
-namespace {
+namespace metrics_test {
 
 /// Returns the tail of n Pareto samples u^-k.
 std::optional<Tail> pareto_tail(double k, std::uint32_t seed, std::uint64_t n = 20000) {
@@ -243,5 +243,5 @@ TEST(RunIndex, TellsSeedsInTheOrderOfTheRuns) {
     EXPECT_TRUE(RunIndex({}).seeds().empty());
 }
 
-}  // namespace
+}  // namespace metrics_test
 }  // namespace crescent::inline metrics

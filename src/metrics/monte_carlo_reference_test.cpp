@@ -11,7 +11,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline metrics {
-namespace {
+namespace monte_carlo_reference_test {
 
 /// Returns the standard errors between the two references, over the whole image.
 double references_apart(const Experiment& experiment) {
@@ -74,5 +74,5 @@ TEST(Estimator, ArticleReferenceSharesNoRandomStream) {
         for (std::uint32_t a = 0; a < 4; ++a) EXPECT_NE(reference_seed(experiment, k), seed_of(experiment.seed, a));
 }
 
-}  // namespace
+}  // namespace monte_carlo_reference_test
 }  // namespace crescent::inline metrics

@@ -6,7 +6,7 @@
 #include "base/errors.h"
 
 namespace crescent::formula {
-namespace {
+namespace formula_test {
 
 TEST(Formulas, AreSetAsMathMl) {
     EXPECT_EQ(mathml("u_1<q"), "<mrow><msub><mi>u</mi><mn>1</mn></msub><mo>&lt;</mo><mi>q</mi></mrow>");
@@ -42,5 +42,5 @@ TEST(Formulas, OfWordsThatAreNotKnownAreABug) {
     EXPECT_THROW(html("$(a$"), Bug);
 }
 
-}  // namespace
+}  // namespace formula_test
 }  // namespace crescent::formula

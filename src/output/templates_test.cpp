@@ -6,7 +6,7 @@
 #include "base/errors.h"
 
 namespace crescent::testing {
-namespace {
+namespace templates_test {
 
 std::string rendered(std::string_view text, const Json& model) {
     const Template all[] = {{"page.html", text}, {"part.html", "<{{name}}>"}};
@@ -51,5 +51,5 @@ TEST(Templates, RefuseTextThatIsNoTemplate) {
     EXPECT_THROW(rendered("{{x", {{"x", 1}}), Bug);
 }
 
-}  // namespace
+}  // namespace templates_test
 }  // namespace crescent::testing

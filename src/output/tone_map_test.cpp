@@ -8,7 +8,7 @@
 
 namespace crescent::inline output {
 
-namespace {
+namespace tone_map_test {
 
 TEST(Srgb, EncodesTheValuesOfTheStandard) {
     EXPECT_NEAR(srgb_encode(0.5), 0.735356983, 1e-9);
@@ -90,11 +90,11 @@ TEST(Photograph, NaNIsMagentaAndNegativeLightIsZero) {
     EXPECT_EQ(photograph({-1, -1, -1}, 1), (Srgb8{0, 0, 0}));
 }
 
-}  // namespace
+}  // namespace tone_map_test
 
 // ---- Eleven published entries; all 256 by their second differences, at most 2; small steps between, both ends, NaN.
 
-namespace {
+namespace tone_map_test {
 
 TEST(Turbo, HasThePublishedEntries) {
     struct {
@@ -124,6 +124,6 @@ TEST(Turbo, GoesInSmallStepsAndClamps) {
     EXPECT_EQ(turbo(std::nan("")), not_a_number_colour);
 }
 
-}  // namespace
+}  // namespace tone_map_test
 
 }  // namespace crescent::inline output

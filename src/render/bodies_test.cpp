@@ -13,7 +13,7 @@
 #include "render/disk_hit.h"
 
 namespace crescent::inline render {
-namespace {
+namespace bodies_test {
 
 using Long = long double;
 
@@ -190,5 +190,5 @@ TEST(BodiesInKernels, ThatAreSmallAndFarHideWhatTheyHide) {
         }
 }
 
-}  // namespace
+}  // namespace bodies_test
 }  // namespace crescent::inline render

@@ -13,7 +13,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline render {
-namespace {
+namespace combination_test {
 
 /// A square that emits above the ball, and one below it that reflects alone.
 void add_meshes(Experiment& e) {
@@ -147,5 +147,5 @@ TEST(CombinationsInKernels, AreThoseOfBuiltInSamplers) {
     EXPECT_FALSE(Combination("tested", plan, std::move(of), nullptr, {}, {}).runs_in_kernels());
 }
 
-}  // namespace
+}  // namespace combination_test
 }  // namespace crescent::inline render

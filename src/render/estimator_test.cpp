@@ -14,7 +14,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline render {
-namespace {
+namespace estimator_test {
 
 using test::all_arms;
 
@@ -179,5 +179,5 @@ TEST(InstructionSets, UnknownNameSuggestsTheNearest) {
     }
 }
 
-}  // namespace
+}  // namespace estimator_test
 }  // namespace crescent::inline render

@@ -9,7 +9,7 @@
 #include "render/disk_hit.h"
 
 namespace crescent::inline render {
-namespace {
+namespace every_body_test {
 
 class Drawn {
 public:
@@ -124,5 +124,5 @@ TEST(EveryBody, PointsAreWithinExtentAndAzimuths) {
     });
 }
 
-}  // namespace
+}  // namespace every_body_test
 }  // namespace crescent::inline render

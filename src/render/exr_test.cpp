@@ -16,7 +16,7 @@
 #include <set>
 
 namespace crescent::inline render {
-namespace {
+namespace exr_test {
 
 constexpr int width = 5, height = 3;
 
@@ -108,5 +108,5 @@ TEST_F(Exr, AReferenceReadBackIsTheReference) {
     expect_plane(film.g, channel<float>(path, 0, "G", Imf::FLOAT), "G");
 }
 
-}  // namespace
+}  // namespace exr_test
 }  // namespace crescent::inline render

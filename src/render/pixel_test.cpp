@@ -12,7 +12,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline render {
-namespace {
+namespace pixel_test {
 
 constexpr std::uint64_t n = 48;
 
@@ -126,5 +126,5 @@ TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
     }
 }
 
-}  // namespace
+}  // namespace pixel_test
 }  // namespace crescent::inline render

@@ -17,7 +17,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline render {
-namespace {
+namespace surroundings_test {
 
 Experiment under_sky(int height = 16) {
     Experiment e = test::small_scene();
@@ -269,5 +269,5 @@ TEST(PairedReference, EstimatesSquaredErrorsWithoutBias) {
     EXPECT_GT(with_bias, truth + 10 * error);  // what the pair removes is far larger
 }
 
-}  // namespace
+}  // namespace surroundings_test
 }  // namespace crescent::inline render

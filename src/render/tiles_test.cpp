@@ -6,7 +6,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent {
-namespace {
+namespace tiles_test {
 
 /// Returns a scene with a recessed panel, whose sides have no lobe and whose back follows the exponent of the scene.
 Scene scene_of_three_surfaces() {
@@ -64,5 +64,5 @@ TEST(TiledScene, GivesFilmsTheBitsThatTheyHaveWithoutIt) {
                 hash(estimate_films(scene.with_s(s), arm, {16}, 3, "", monitor)[0]));
 }
 
-}  // namespace
+}  // namespace tiles_test
 }  // namespace crescent

@@ -8,7 +8,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline render {
-namespace {
+namespace variance_test {
 
 /// Returns the test scene with area lights of another size and the same radiance.
 Scene scene_with_area_lights(double radius) {
@@ -71,5 +71,5 @@ TEST(VarianceConformance, SamplesThatAreAllAlikeHaveNone) {
     for (const float v : film.var) EXPECT_EQ(v, 0);
 }
 
-}  // namespace
+}  // namespace variance_test
 }  // namespace crescent::inline render

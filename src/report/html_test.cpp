@@ -11,7 +11,7 @@
 #include "tests/support/wellformed.h"
 
 namespace crescent::testing {
-namespace {
+namespace html_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -308,5 +308,5 @@ TEST(Charts, PointsThatALogAxisCannotShowAreLeftOut) {
     EXPECT_EQ(xml_error(svg), "");
 }
 
-}  // namespace
+}  // namespace html_test
 }  // namespace crescent::testing

@@ -12,7 +12,7 @@
 #include "tests/support/wellformed.h"
 
 namespace crescent::testing {
-namespace {
+namespace metrics_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
 
@@ -207,5 +207,5 @@ TEST(JunitXml, CountsFailuresWithMeasuredAndBound) {
     EXPECT_NE(xml.find("measured 3, must be == 0"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace metrics_test
 }  // namespace crescent::testing

@@ -7,7 +7,7 @@
 #include "tests/support/sample_report.h"
 
 namespace crescent::testing {
-namespace {
+namespace summary_test {
 
 std::string summary(const Sample& s, const std::string& dir = "out", bool colour = false) {
     return terminal_summary(s.inputs(), s.timing, dir, {}, colour);
@@ -100,5 +100,5 @@ TEST(PrimarySample, AreClippedByCodePointsInTheMiddle) {
     EXPECT_EQ(clip("short", 5), "short");
 }
 
-}  // namespace
+}  // namespace summary_test
 }  // namespace crescent::testing

@@ -11,7 +11,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline runs {
-namespace {
+namespace arm_cases_test {
 
 using ::testing::HasSubstr;
 
@@ -103,5 +103,5 @@ TEST(ArmCases, KeepTheArmsThatAnArmCombines) {
     EXPECT_EQ(with_arms_of(e, {"uniform"}).arms.size(), 1u);
 }
 
-}  // namespace
+}  // namespace arm_cases_test
 }  // namespace crescent::inline runs

@@ -12,7 +12,7 @@
 #include "run/plan.h"
 
 namespace crescent {
-namespace {
+namespace checkpoint_test {
 
 namespace fs = std::filesystem;
 
@@ -132,5 +132,5 @@ TEST(SeedSeries, HaveNoSeedTwice) {
     EXPECT_EQ(std::set<std::uint32_t>(series.begin(), series.end()).size(), 16u);
 }
 
-}  // namespace
+}  // namespace checkpoint_test
 }  // namespace crescent

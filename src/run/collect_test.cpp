@@ -8,7 +8,7 @@
 #include "tests/support/small_run.h"
 
 namespace crescent::inline runs {
-namespace {
+namespace collect_test {
 
 using ::testing::ElementsAre;
 
@@ -90,5 +90,5 @@ TEST(Collect, TailsAreOfTheSamplesOfARegion) {
     EXPECT_GT(tail->exceedances, 0u);
 }
 
-}  // namespace
+}  // namespace collect_test
 }  // namespace crescent::inline runs

@@ -13,7 +13,7 @@
 #include "tests/support/small_run.h"
 
 namespace crescent::inline runs {
-namespace {
+namespace execute_test {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
@@ -135,5 +135,5 @@ TEST(Execute, DefaultsAreTheCpuAndItsBestInstructions) {
         estimate_films(view_at(seen, job.s), job.sampler, job.n, job.seed, isas().front(), monitor).at(0).y);
 }
 
-}  // namespace
+}  // namespace execute_test
 }  // namespace crescent::inline runs

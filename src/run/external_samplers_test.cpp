@@ -7,7 +7,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline runs {
-namespace {
+namespace external_samplers_test {
 
 using ::testing::HasSubstr;
 
@@ -49,5 +49,5 @@ TEST(ExternalArms, ProgramsMayChangeBetweenRuns) {
     EXPECT_FALSE(may_change(with_arm("plugin='./it.so'")));  // its hash is a part of the experiment's
 }
 
-}  // namespace
+}  // namespace external_samplers_test
 }  // namespace crescent::inline runs

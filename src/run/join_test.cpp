@@ -7,7 +7,7 @@
 #include "tests/support/small_run.h"
 
 namespace crescent::inline runs {
-namespace {
+namespace join_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -69,5 +69,5 @@ TEST_F(Joined, PartsThatContradictEachOtherAreRefused) {
     EXPECT_THAT(mistake_with("/films/quadrature s=24", "0123"), HasSubstr("the hash of a reference differs"));
 }
 
-}  // namespace
+}  // namespace join_test
 }  // namespace crescent::inline runs

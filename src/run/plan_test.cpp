@@ -10,7 +10,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent {
-namespace {
+namespace plan_test {
 
 std::vector<std::string> describe(const Experiment& e) {
     std::vector<std::string> out;
@@ -79,5 +79,5 @@ TEST(Needs, ThatAreNotThereAreToldWithWhatWouldFit) {
     EXPECT_EQ(why_too_large(tiny(width, width), 8'000'000'000), "") << "what it proposes fits";
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace crescent

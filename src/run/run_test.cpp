@@ -15,7 +15,7 @@
 #include "base/progress.h"
 
 namespace crescent {
-namespace {
+namespace run_test {
 
 namespace fs = std::filesystem;
 
@@ -136,5 +136,5 @@ TEST(OutputParts, AreNamedWithTheNearestWord) {
     } catch (const InputError& e) { EXPECT_THAT(e.what(), testing::HasSubstr("did you mean 'plates'?")); }
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace crescent

@@ -10,7 +10,7 @@
 #include "tests/support/small_run.h"
 
 namespace crescent::inline runs {
-namespace {
+namespace write_test {
 
 using ::testing::Contains;
 using ::testing::Pair;
@@ -73,5 +73,5 @@ TEST(OutputWords, SelectParts) {
         (std::vector<std::string>{"timing.json"}));
 }
 
-}  // namespace
+}  // namespace write_test
 }  // namespace crescent::inline runs

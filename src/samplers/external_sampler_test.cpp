@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace crescent::inline samplers {
-namespace {
+namespace external_sampler_test {
 
 using ::testing::ElementsAre;
 using Names = std::vector<std::string>;
@@ -48,5 +48,5 @@ TEST(ContextColumns, OfTheExampleShineOnThePoint) {
     EXPECT_EQ(example_context(Names{"s", "lights"}).size(), context_columns(Names{"s", "lights"}, 1));
 }
 
-}  // namespace
+}  // namespace external_sampler_test
 }  // namespace crescent::inline samplers

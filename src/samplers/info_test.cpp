@@ -10,7 +10,7 @@
 #include "scene/lobes/lobe.h"
 
 namespace crescent::inline samplers {
-namespace {
+namespace info_test {
 
 TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
     std::set<std::string_view> names;
@@ -78,5 +78,5 @@ TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
     EXPECT_EQ(lobe_named(""), LobeKind::none);
 }
 
-}  // namespace
+}  // namespace info_test
 }  // namespace crescent::inline samplers

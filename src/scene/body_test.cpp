@@ -8,7 +8,7 @@
 #include "scene/shapes/quad.h"
 
 namespace crescent::inline scene {
-namespace {
+namespace body_test {
 
 double azimuth_of(Vec3d d, const Frame<double>& frame) { return std::atan2(dot(d, frame.b), dot(d, frame.t)); }
 
@@ -37,5 +37,5 @@ TEST(Azimuths, AreAllOfThemWhereTheAxisMeetsTheMiddle) {
     EXPECT_FALSE((shapes::Quad{{1, -0.25, 2}, {2, 0, 0}, {0, 0.5, 0}}.azimuths({}, up).whole()));
 }
 
-}  // namespace
+}  // namespace body_test
 }  // namespace crescent::inline scene

@@ -10,7 +10,7 @@
 #include "scene/scene_data.h"
 
 namespace crescent::inline scene {
-namespace {
+namespace intersect_test {
 
 /// Numbers in [-1, 1], one after another.
 class PrimarySample {
@@ -219,5 +219,5 @@ TEST(IntersectConformance, PanelsAreEnteredOnlyFromTheFront) {
     EXPECT_GT(reveals, 1000);
 }
 
-}  // namespace
+}  // namespace intersect_test
 }  // namespace crescent::inline scene

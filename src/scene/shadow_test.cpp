@@ -9,7 +9,7 @@
 #include "math/simd/random.h"
 
 namespace crescent::inline scene {
-namespace {
+namespace shadow_test {
 
 /// Numbers in [-1, 1], one after another.
 class PrimarySample {
@@ -118,5 +118,5 @@ TEST(EachOpenPart, IsTheRestOfTheChord) {
     EXPECT_EQ(parts_of({{0, 0.5}, {0.25, 1}}), (std::vector<double>{}));
 }
 
-}  // namespace
+}  // namespace shadow_test
 }  // namespace crescent::inline scene

@@ -12,7 +12,7 @@
 #include "tests/support/skies.h"
 
 namespace crescent::inline scene {
-namespace {
+namespace sky_test {
 
 using testing::HasSubstr;
 
@@ -168,5 +168,5 @@ TEST(Skies, AreRefusedWithTheTexel) {
     EXPECT_THAT(why_no_sky(square, 1), HasSubstr("8 x 8"));
 }
 
-}  // namespace
+}  // namespace sky_test
 }  // namespace crescent::inline scene

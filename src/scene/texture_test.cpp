@@ -10,7 +10,7 @@
 #include "base/errors.h"
 
 namespace crescent::inline scene {
-namespace {
+namespace texture_test {
 
 using testing::HasSubstr;
 
@@ -53,13 +53,13 @@ TEST(Textures, AreRefusedWithTheTexel) {
     EXPECT_THAT(why_no_texture(coloured, TextureOf::alpha), HasSubstr("texel (1, 1)"));
 }
 
-}  // namespace
+}  // namespace texture_test
 }  // namespace crescent::inline scene
 
 namespace crescent {
 
 // ---- A pack gives back the texels and their hash; a damaged one is refused with the place.
-namespace {
+namespace texture_test {
 
 RgbImage image() {
     RgbImage out{2, 3, {}, 0};
@@ -104,5 +104,5 @@ TEST(ImagePack, RefusesADamagedFileWithThePlace) {
     EXPECT_NE(message_of(with(bytes, 40, 1)).find("damaged"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace texture_test
 }  // namespace crescent

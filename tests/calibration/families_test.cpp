@@ -8,7 +8,7 @@
 #include "tests/calibration/measures.h"
 
 namespace crescent::calibration {
-namespace {
+namespace families_test {
 
 /// Every family with one member, in both precisions, at one w_o.
 class EveryFamily : public testing::TestWithParam<std::tuple<std::size_t, int>> {
@@ -66,5 +66,5 @@ TEST(Families, AtLeastTwelveForTuningAndSixHeldOut) {
     EXPECT_GE(static_cast<std::ptrdiff_t>(families().size()) - held_out, 12);
 }
 
-}  // namespace
+}  // namespace families_test
 }  // namespace crescent::calibration

@@ -14,7 +14,7 @@
 #include "tests/calibration/table.h"
 
 namespace crescent::calibration {
-namespace {
+namespace faults_test {
 
 constexpr int draws = 1 << 18;
 const Vec3d wo = unit(Vec3d{0.5, -0.3, 0.6});
@@ -227,5 +227,5 @@ TEST(Table, BoundsAreThoseOfClopperAndPearson) {
     EXPECT_NEAR(upper_bound(1, 10), 0.3942, 1e-4);
 }
 
-}  // namespace
+}  // namespace faults_test
 }  // namespace crescent::calibration

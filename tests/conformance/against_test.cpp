@@ -12,7 +12,7 @@
 #include "tests/support/sanitized.h"
 
 namespace crescent {
-namespace {
+namespace against_test {
 
 std::vector<CheckCase> check_cases(const std::string& arm, const std::string& brdf, double theta) {
     std::vector<CheckCase> all = make_cases(arm, {}, false, {{theta, 40}});
@@ -310,5 +310,5 @@ TEST(Against, DifferentDeltaPowersAreNotRanked) {
     EXPECT_EQ(named(other, "variance").state, State::skipped) << against_text(other);
 }
 
-}  // namespace
+}  // namespace against_test
 }  // namespace crescent

@@ -9,7 +9,7 @@
 #include "tests/support/checked.h"
 
 namespace crescent {
-namespace {
+namespace against_without_pdf_test {
 
 CheckResult against(std::span<const CheckCase> a, std::span<const CheckCase> b, bool expect_same = false) {
     ProgressMonitor monitor;
@@ -105,5 +105,5 @@ TEST(Against, WhatBreaksOffIsNamed) {
     }
 }
 
-}  // namespace
+}  // namespace against_without_pdf_test
 }  // namespace crescent

@@ -9,7 +9,7 @@
 #include "compare/synthetic.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace bias_and_noise_test {
 
 using ::testing::HasSubstr;
 using Kind = SyntheticNoise::Kind;
@@ -202,5 +202,5 @@ TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
     EXPECT_EQ(std::count(equal.noise[0].distinguished.begin(), equal.noise[0].distinguished.end(), true), 0);
 }
 
-}  // namespace
+}  // namespace bias_and_noise_test
 }  // namespace crescent::inline comparison

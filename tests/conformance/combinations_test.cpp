@@ -16,7 +16,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent {
-namespace {
+namespace combinations_test {
 
 const std::string room = R"toml(
 seed = 3
@@ -210,5 +210,5 @@ TEST(ArmCases, FailABiasedCombination) {
     EXPECT_EQ(result.state, State::wrong);
 }
 
-}  // namespace
+}  // namespace combinations_test
 }  // namespace crescent

@@ -6,7 +6,7 @@
 #include "tests/support/checked.h"
 
 namespace crescent {
-namespace {
+namespace empty_draws_test {
 
 SyntheticSampler draws_nothing(Traits::WoDomain wo, bool has_pdf, int channels) {
     SyntheticSampler r{"nothing", "", {}, {}, {}};
@@ -39,5 +39,5 @@ TEST(Nothing, DrawnWhereFIsNotZeroIsNotRight) {
                 }
 }
 
-}  // namespace
+}  // namespace empty_draws_test
 }  // namespace crescent

@@ -10,7 +10,7 @@
 #include "tests/support/checked.h"
 
 namespace crescent {
-namespace {
+namespace estimates_test {
 
 enum class Walk { own, hashed };
 
@@ -157,5 +157,5 @@ TEST(Estimates, OfADensityThatIsNotDrawnAreFound) {
     EXPECT_EQ(named(j, "density").state, State::wrong) << all_messages(j);
 }
 
-}  // namespace
+}  // namespace estimates_test
 }  // namespace crescent

@@ -18,7 +18,7 @@
 #include "tests/support/sanitized.h"
 
 namespace crescent {
-namespace {
+namespace evaluation_counts_test {
 
 /// A sampler with the restrictions of a program behind a pipe: a single thread queries it, and its queries are counted.
 class Counted : public SamplerAdapter {
@@ -302,5 +302,5 @@ TEST(WoDomain, PicturesTakeNoQuestionsOfTheirOwn) {
     EXPECT_EQ(answers(true), answers(false));
 }
 
-}  // namespace
+}  // namespace evaluation_counts_test
 }  // namespace crescent

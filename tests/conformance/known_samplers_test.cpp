@@ -9,7 +9,7 @@
 #include "tests/support/sanitized.h"
 
 namespace crescent {
-namespace {
+namespace known_samplers_test {
 
 /// Each list is checked in this many parts, of a few seconds each.
 constexpr std::size_t parts = 8;
@@ -79,5 +79,5 @@ TEST(KnownLists, AreMany) {
     EXPECT_GE(held_out_faults().size() + held_out_lobe_faults().size(), 40u);
 }
 
-}  // namespace
+}  // namespace known_samplers_test
 }  // namespace crescent

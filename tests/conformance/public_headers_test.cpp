@@ -12,7 +12,7 @@
 #include "check/verdict.h"
 
 namespace crescent {
-namespace {
+namespace public_headers_test {
 
 struct V2 {
     float x, y;
@@ -182,5 +182,5 @@ TEST(Doors, JudgingStopsWhenItsMonitorSaysSo) {
     EXPECT_THROW(check_sampler("own", Own{}, few(), &monitor), Interrupted);
 }
 
-}  // namespace
+}  // namespace public_headers_test
 }  // namespace crescent

@@ -14,7 +14,7 @@
 #include "tests/support/sanitized.h"
 
 namespace crescent::inline reference {
-namespace {
+namespace reference_test {
 
 constexpr std::uint32_t scenes_a_shard = test::sanitized ? 5 : 15;
 constexpr std::uint32_t shards = 8, brighter_scenes = test::sanitized ? 8 : 20;
@@ -138,5 +138,5 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     }
 }
 
-}  // namespace
+}  // namespace reference_test
 }  // namespace crescent::inline reference

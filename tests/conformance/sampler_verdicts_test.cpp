@@ -12,7 +12,7 @@
 #include "tests/support/sanitized.h"
 
 namespace crescent {
-namespace {
+namespace sampler_verdicts_test {
 
 CheckResult check_quickly(
     const std::vector<CheckCase>& check_cases, const TestSettings& settings = TestSettings::quick()) {
@@ -110,5 +110,5 @@ TEST(LightsOfACase, BallHidesTheRectangleBehindIt) {
     EXPECT_GT(hidden, 50);
 }
 
-}  // namespace
+}  // namespace sampler_verdicts_test
 }  // namespace crescent

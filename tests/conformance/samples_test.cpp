@@ -12,7 +12,7 @@
 #include "tests/known_samplers/correct/right.h"
 
 namespace crescent {
-namespace {
+namespace samples_test {
 
 /// A von Mises-Fisher lobe of kappa 20 about `axis`, its draws and p at the centres of 128 x 64 cells.
 std::shared_ptr<const SamplerAdapter> lobe_in_files(Vec3d axis) {
@@ -51,5 +51,5 @@ TEST(SamplesOfFiles, CoarseTableNearAPoleIsNotWrong) {
     }
 }
 
-}  // namespace
+}  // namespace samples_test
 }  // namespace crescent

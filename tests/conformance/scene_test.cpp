@@ -8,7 +8,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent {
-namespace {
+namespace scene_test {
 
 /// A camera before a wall at z = 0, looking along -z from 4 m.
 Experiment wall(const std::vector<std::string>& overrides = {}) {
@@ -153,5 +153,5 @@ TEST(Origin, LiesWhereTheCameraSees) {
     EXPECT_EQ(empty.origin().z, 4);  // nothing is visible: the eye
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace crescent

@@ -7,7 +7,7 @@
 #include "check/verdict.h"
 
 namespace crescent {
-namespace {
+namespace verdict_list_test {
 
 TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
     TestSettings few;
@@ -39,5 +39,5 @@ TEST(VerdictList, ManualListsVerdictsInOrder) {
     EXPECT_EQ(row, rows.end()) << "no verdict of the list comes here with this question: " << *row;
 }
 
-}  // namespace
+}  // namespace verdict_list_test
 }  // namespace crescent

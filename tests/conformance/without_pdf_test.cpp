@@ -12,7 +12,7 @@
 #include "tests/support/wellformed.h"
 
 namespace crescent {
-namespace {
+namespace without_pdf_test {
 
 TestSettings limited() {
     TestSettings settings;
@@ -185,5 +185,5 @@ TEST(WithoutAPdf, ReportHasOneMapAndATable) {
     EXPECT_NE(text.find("0 to 15"), std::string::npos) << text;
 }
 
-}  // namespace
+}  // namespace without_pdf_test
 }  // namespace crescent

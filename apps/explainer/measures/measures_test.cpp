@@ -9,7 +9,7 @@
 #include "tests/support/explainer_data.h"
 
 namespace crescent::explainer {
-namespace {
+namespace measures_test {
 
 std::size_t at(const Film& film, const OpenPixel& pixel) {
     return std::size_t(pixel.j()) * std::size_t(film.width) + std::size_t(pixel.i());
@@ -86,5 +86,5 @@ TEST(Measures, LostSupportOfPhongMatchesTheory) {
     EXPECT_GT(lost.theory, 20 * lost.se);
 }
 
-}  // namespace
+}  // namespace measures_test
 }  // namespace crescent::explainer

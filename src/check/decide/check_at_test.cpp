@@ -6,7 +6,7 @@
 #include "check/constants.h"
 
 namespace crescent::check {
-namespace {
+namespace check_at_test {
 
 /// A cosine sampler with one fault.
 struct Cosine : SamplerAdapter {
@@ -171,5 +171,5 @@ TEST(CheckAtOneWo, FindsNaNAtACornerOfU) {
     EXPECT_TRUE(has(check_sampler_at(AtZero{}, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1), "valid"));
 }
 
-}  // namespace
+}  // namespace check_at_test
 }  // namespace crescent::check

@@ -8,7 +8,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace check_sampler_test {
 
 CheckCase case_of(const std::shared_ptr<const SamplerAdapter>& adapter, double theta) {
     CheckCase t = make_user_case(adapter, theta, 30);
@@ -81,5 +81,5 @@ TEST(CheckedSamplers, KeepTheResultsBeforeAFailure) {
     EXPECT_TRUE(found[0].at[1].empty());
 }
 
-}  // namespace
+}  // namespace check_sampler_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "check/decide/check_at.h"
 
 namespace crescent::check {
-namespace {
+namespace delta_directions_test {
 
 /// A specular coat that is chosen with probability q, over Lambert of albedo `base`.
 struct Coat : SamplerAdapter {
@@ -131,5 +131,5 @@ TEST(DeltaPartsOfASampler, AreRefractedByTheStatedIndex) {
     EXPECT_TRUE(names(checked_delta(other, tilt(30)), "physics"));
 }
 
-}  // namespace
+}  // namespace delta_directions_test
 }  // namespace crescent::check

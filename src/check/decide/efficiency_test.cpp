@@ -6,7 +6,7 @@
 #include "check/sources/cases.h"
 
 namespace crescent::check {
-namespace {
+namespace efficiency_test {
 
 /// Lambert of albedo 0.5 under a uniform light: X of a uniform draw is cos, of variance 1 / 12; X of a cosine draw is
 /// always 0.5.
@@ -48,5 +48,5 @@ TEST(EfficiencyOfSamplers, MeasuresTheTimeOfASample) {
     EXPECT_LT(all[0].nanoseconds, 1e5);
 }
 
-}  // namespace
+}  // namespace efficiency_test
 }  // namespace crescent::check

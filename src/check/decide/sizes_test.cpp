@@ -8,7 +8,7 @@
 #include "tests/support/sampled_evidence.h"
 
 namespace crescent::check {
-namespace {
+namespace sizes_test {
 
 Sizes sizes_at(const FunctionSampler& s, std::uint32_t draws, double level = 1e-5) {
     SampledEvidence e(s, {0, 0, 1}, draws);
@@ -50,5 +50,5 @@ TEST(SizesOfFaults, OfARotationFollowTheWidthOfTheLobe) {
     EXPECT_LT(wide.by_leak, sharp.by_leak);
 }
 
-}  // namespace
+}  // namespace sizes_test
 }  // namespace crescent::check

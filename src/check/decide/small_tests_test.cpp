@@ -9,7 +9,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace small_tests_test {
 
 const CaseLighting uniform_light;
 constexpr StreamKey key{3, 0, 0, 1, Purpose::corners};
@@ -142,5 +142,5 @@ TEST(MapOfU, ADensityBelowThatOfTheMapIsFound) {
     EXPECT_FALSE(tested(high, map));  // other u may map to the same direction
 }
 
-}  // namespace
+}  // namespace small_tests_test
 }  // namespace crescent::check

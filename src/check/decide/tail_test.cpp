@@ -7,7 +7,7 @@
 #include "check/report/verdicts.h"
 
 namespace crescent::check {
-namespace {
+namespace tail_test {
 
 /// p ~ cos^s about n, mixed with a share of cosine; f is Lambert of albedo 1. Without the cosine the weights are u^-k,
 /// k = (s - 1) / (s + 1).
@@ -107,5 +107,5 @@ TEST(TailOfWeights, IsAbsentForAFrequentStep) {
     EXPECT_EQ(tail_at(lobe).tail.state, State::right);
 }
 
-}  // namespace
+}  // namespace tail_test
 }  // namespace crescent::check

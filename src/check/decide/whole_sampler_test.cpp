@@ -8,7 +8,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace whole_sampler_test {
 
 constexpr StreamKey key{3, 0, 0, 1, Purpose::light};
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -94,5 +94,5 @@ TEST(WeightsOfTechniques, SumToOne) {
     EXPECT_FALSE(mis_weights(FunctionSampler(), {0, 0, 1}, key));
 }
 
-}  // namespace
+}  // namespace whole_sampler_test
 }  // namespace crescent::check

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace crescent::check {
-namespace {
+namespace budget_test {
 
 TEST(CheckBudgets, ALookCostsNoMoreThanItMay) {
     for (const double evaluations : {-5.0, 0.0, 100.0, 5e3, 2e5, 1.2e6, 6.4e6}) {
@@ -37,5 +37,5 @@ TEST(CheckBudgets, PartsAreFixedShares) {
     EXPECT_EQ(CheckBudget::limited(12e5).points(), 250000u);
 }
 
-}  // namespace
+}  // namespace budget_test
 }  // namespace crescent::check

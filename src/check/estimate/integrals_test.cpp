@@ -9,7 +9,7 @@
 #include "tests/support/power_plan.h"
 
 namespace crescent::check {
-namespace {
+namespace integrals_test {
 
 /// Half vectors by GGX in arithmetic of type F, for one roughness; p = D m.z / (4 w_o.m).
 template <class F> struct HalfVector : SamplerAdapter {
@@ -166,5 +166,5 @@ TEST(CheckLight, BridgesKeepWeightsBelowTheUsualOne) {
     }
 }
 
-}  // namespace
+}  // namespace integrals_test
 }  // namespace crescent::check

@@ -8,7 +8,7 @@
 #include "tests/support/power_plan.h"
 
 namespace crescent::check {
-namespace {
+namespace observations_test {
 
 class CheckObservationsOfPower : public PowerPlan {};
 
@@ -152,5 +152,5 @@ TEST(DeltaFlux, IsScaledByTheIndexAcrossTheSurface) {
     EXPECT_NEAR(flux(wo, {{-wo, 0.5, {0.4, 0, 0}, 1, 0}}), 0.2, 1e-12);  // a hole is not scaled
 }
 
-}  // namespace
+}  // namespace observations_test
 }  // namespace crescent::check

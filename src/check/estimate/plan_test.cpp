@@ -9,7 +9,7 @@
 namespace crescent::check {
 
 // ---- The tree of a power of the cosine: a partition of the sphere whose leaves have the mass of p.
-namespace {
+namespace plan_test {
 
 class CheckTree : public PowerPlan {};
 
@@ -66,8 +66,8 @@ TEST(CheckTreeEdges, AreLeavesBesideAnEmptyOne) {
     EXPECT_GT(edges, 8);
 }
 
-}  // namespace
-namespace {
+}  // namespace plan_test
+namespace plan_test {
 
 TEST(CheckPlan, FindsTheStepOfALattice) {
     Stream stream({1, 0, 0, 1, Purpose::pairs});
@@ -127,5 +127,5 @@ TEST(CheckPlan, TestFunctionsAreBridgedWithTheLeaf) {
     EXPECT_DOUBLE_EQ(plan.values(leaf, {0, 0, 1}, 0.9)[bridge], 0.5);
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace crescent::check

@@ -11,7 +11,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace source_test {
 
 const CaseLighting uniform_light;
 
@@ -171,5 +171,5 @@ TEST(LocalSteps, AreThoseOfSinglePrecision) {
     EXPECT_LT(steps(true), typical * 3);
 }
 
-}  // namespace
+}  // namespace source_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace crescent::check {
-namespace {
+namespace stream_test {
 
 TEST(CheckStreams, KeysThatDifferInAnyFieldShareNoBlock) {
     const StreamKey base{7, 3, 0, 1, Purpose::draws, 2};
@@ -73,5 +73,5 @@ TEST(CheckChart, AreaIsSolidAngle) {
     EXPECT_NEAR(cap.theta_width(), 0.3, 1e-14);
 }
 
-}  // namespace
+}  // namespace stream_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace causes_test {
 
 TEST(CheckCauses, NamesAConstantWithItsMeaning) {
     const Explained r = explained(made(cosine_draw, [](Vec3d o, Vec3d w) { return pi * cosine_pdf(o, w); }));
@@ -54,5 +54,5 @@ TEST(CheckText, PrintsTheSignificantDigits) {
     EXPECT_EQ(percent_with_error(0.1234, 0.004), "12.3 % +- 0.4 %");
 }
 
-}  // namespace
+}  // namespace causes_test
 }  // namespace crescent::check

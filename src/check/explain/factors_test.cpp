@@ -9,7 +9,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace factors_test {
 
 double value_of(const std::vector<Factor>& all, std::string_view name, Vec3d wo, Vec3d wi) {
     return std::ranges::find(all, name, &Factor::name)->value(wo, wi);
@@ -104,5 +104,5 @@ TEST(FactorsOfLeaves, HaveTheExponentOfTheDraws) {
     EXPECT_LT(by_power->error, 0.01);  // cos^24 = (cos^20)^1.2
 }
 
-}  // namespace
+}  // namespace factors_test
 }  // namespace crescent::check

@@ -5,7 +5,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace frames_test {
 
 TEST(FramesOfDraws, AMirroredOneIsNamed) {
     const auto mirrored = [](Vec3d o, const PrimarySample& u) {
@@ -48,5 +48,5 @@ TEST(FramesOfDraws, AnAzimuthIsFoundFromAnyAngle) {
     EXPECT_EQ(named[0].name, "the azimuth turned by -90 deg for w_i");  // p at (y, -x, z)
 }
 
-}  // namespace
+}  // namespace frames_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace hypothesis_test {
 
 TEST(MassRatios, AreOfPOverTheDraws) {
     CheckAt c;
@@ -80,5 +80,5 @@ TEST_F(WrongDensity, EqualDensitiesAreEquivalent) {
     EXPECT_FALSE(are_equivalent(one, same, places));
 }
 
-}  // namespace
+}  // namespace hypothesis_test
 }  // namespace crescent::check

@@ -5,7 +5,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace lobes_test {
 
 std::optional<LobeChooser> chooser(const FunctionSampler& s) {
     const CaseLighting light;
@@ -61,5 +61,5 @@ TEST(LobesOfASampler, AreDrawnWithOtherProbabilities) {
     EXPECT_NE(r.text().find("0.3, 0.7"), std::string::npos) << r.text();
 }
 
-}  // namespace
+}  // namespace lobes_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "math/functions.h"
 
 namespace crescent::check {
-namespace {
+namespace regression_test {
 
 /// 2 groups of 500 cells and two factors; a normal distribution replaces the Poisson distribution at these counts.
 std::vector<Row> counts(double b0, double b1, double c0, double c1) {
@@ -45,5 +45,5 @@ TEST(CheckRegression, SelectsTheFactorsThatMatterAndNoOthers) {
     EXPECT_EQ(select(counts(1, -1, 1, 1), 2, 3, 3).factors.size(), 2u);
 }
 
-}  // namespace
+}  // namespace regression_test
 }  // namespace crescent::check

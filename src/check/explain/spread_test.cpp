@@ -5,7 +5,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace spread_test {
 
 TEST(PlacesOfDraws, ALeakIsMeasured) {
     const auto draw = [](Vec3d, const PrimarySample& u) {
@@ -49,5 +49,5 @@ TEST(PlacesOfDraws, ALeakOverTheSphereIsDistinguished) {
     }
 }
 
-}  // namespace
+}  // namespace spread_test
 }  // namespace crescent::check

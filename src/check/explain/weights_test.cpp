@@ -5,7 +5,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace weights_test {
 
 TEST(RatiosOfWeights, NameAFactorOrAConstant) {
     FunctionSampler m = made(cosine_draw, cosine_pdf);
@@ -57,5 +57,5 @@ TEST(RatiosOfWeights, AreNotExplainedIfTheyAreRight) {
     EXPECT_FALSE(weight_cause(r.check_cases, r.outcomes.at(0)));
 }
 
-}  // namespace
+}  // namespace weights_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "check/estimate/chart.h"
 
 namespace crescent::check {
-namespace {
+namespace describe_test {
 
 /// Uniform over a cone of half angle `angle` about `axis`; a share of the draws is a delta part, another returns no
 /// sample.
@@ -94,5 +94,5 @@ TEST(DescriptionOfDraws, CountsEachKindOfDraw) {
     EXPECT_NEAR(json[0]["share_below"]["value"].get<double>(), d.below.value, 1e-12);
 }
 
-}  // namespace
+}  // namespace describe_test
 }  // namespace crescent::check

@@ -7,7 +7,7 @@
 #include "check/sources/cases.h"
 
 namespace crescent::check {
-namespace {
+namespace pictures_test {
 
 struct MappedCase {
     CheckCase check_case;
@@ -58,5 +58,5 @@ TEST(PicturesOfACheck, ShowTheWeightsAndTheTail) {
     EXPECT_NEAR(static_cast<double>(top), -30, 3);
 }
 
-}  // namespace
+}  // namespace pictures_test
 }  // namespace crescent::check

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace crescent::inline results {
-namespace {
+namespace print_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -89,5 +89,5 @@ TEST(NextSteps, NameTheFlagOrTheCall) {
     EXPECT_THAT(one_wo_text({60, 250}, FrontEnd::cpp), HasSubstr("{{60, 250}}"));
 }
 
-}  // namespace
+}  // namespace print_test
 }  // namespace crescent::inline results

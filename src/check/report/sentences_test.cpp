@@ -7,7 +7,7 @@
 #include "tests/support/explained.h"
 
 namespace crescent::check {
-namespace {
+namespace sentences_test {
 
 using ::testing::HasSubstr;
 
@@ -76,5 +76,5 @@ TEST(SentencesOfFindings, HaveTheSizeOfTheFault) {
     EXPECT_THAT(sentence_of(at, *mass_finding), HasSubstr("1.25"));
 }
 
-}  // namespace
+}  // namespace sentences_test
 }  // namespace crescent::check

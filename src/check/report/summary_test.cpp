@@ -6,7 +6,7 @@
 #include <sstream>
 
 namespace crescent {
-namespace {
+namespace summary_test {
 
 CheckResult of_verdicts(std::initializer_list<std::tuple<const char*, State, double, const char*>> verdicts) {
     CheckResult j;
@@ -65,5 +65,5 @@ TEST(NextStep, HasTheTermsOfEachFrontEnd) {
     EXPECT_NE(next_step_text(j.verdicts[0], FrontEnd::python).find("full=True"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace summary_test
 }  // namespace crescent

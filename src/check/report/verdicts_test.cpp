@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace crescent::check {
-namespace {
+namespace verdicts_test {
 
 struct Uniform : SamplerAdapter {
     double factor = 1;
@@ -47,5 +47,5 @@ TEST(CheckReport, ConstantFactorIsWrongNormalisationWithItsCause) {
     EXPECT_EQ(named(all, "identity").state, State::right);
 }
 
-}  // namespace
+}  // namespace verdicts_test
 }  // namespace crescent::check

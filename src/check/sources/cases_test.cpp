@@ -9,7 +9,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::inline sources {
-namespace {
+namespace cases_test {
 
 using check::FunctionSampler;
 
@@ -99,5 +99,5 @@ TEST(CasesOfUsers, FollowTheDomainOfWo) {
     EXPECT_EQ(std::ranges::count_if(ranked, [](const CheckCase& t) { return t.baseline; }), 16);
 }
 
-}  // namespace
+}  // namespace cases_test
 }  // namespace crescent::inline sources

@@ -11,7 +11,7 @@
 #include "samplers/external_sampler.h"
 
 namespace crescent {
-namespace {
+namespace pipe_test {
 
 /// Returns the error for a program with this time limit and number of draws.
 std::string fault_of(const std::string& command, double seconds = 30, std::size_t draws = 100) {
@@ -174,5 +174,5 @@ TEST(PythonSamplers, AreNamedByAFileOrAModule) {
     for (const char* name : {"cosine", "a.toml", "./a.so"}) EXPECT_FALSE(names_python_sampler(name)) << name;
 }
 
-}  // namespace
+}  // namespace pipe_test
 }  // namespace crescent

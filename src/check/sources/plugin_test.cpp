@@ -16,7 +16,7 @@
 #include "check/sources/sampler_adapter.h"
 
 namespace crescent {
-namespace {
+namespace plugin_test {
 
 using ::testing::HasSubstr;
 
@@ -100,5 +100,5 @@ TEST_F(Plugins, MissingFunctionsAreReported) {
     EXPECT_THROW(open_plugin(CRESCENT_SOURCE_DIR "/README.md"), OutputError);
 }
 
-}  // namespace
+}  // namespace plugin_test
 }  // namespace crescent

@@ -8,7 +8,7 @@
 #include "check/sources/sample_file.h"
 
 namespace crescent::inline sources {
-namespace {
+namespace sample_file_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -110,5 +110,5 @@ TEST(TableFiles, NpyHeadersMayHaveLongGaps) {
     EXPECT_THAT(read(file_of("g.npy", npy(dictionary, bytes_of<double>({7, 8})))).values, ElementsAre(7, 8));
 }
 
-}  // namespace
+}  // namespace sample_file_test
 }  // namespace crescent::inline sources

@@ -10,7 +10,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::inline sources {
-namespace {
+namespace sampler_adapter_test {
 
 constexpr CaseDiskLight overhead{20, {0, 0, 2}, {0, 0, -1}, 1};
 
@@ -191,5 +191,5 @@ TEST(SidesOfAComparison, AreNamedInErrors) {
     EXPECT_EQ(named_side(plain, "A"), plain);
 }
 
-}  // namespace
+}  // namespace sampler_adapter_test
 }  // namespace crescent::inline sources

@@ -11,7 +11,7 @@
 #include "check/user.h"
 
 namespace crescent {
-namespace {
+namespace user_sampler_test {
 
 using Float3 = std::array<float, 3>;
 
@@ -145,5 +145,5 @@ TEST(UserSamplers, MayBeLambdas) {
     static_assert(!user::Checkable<NoSample>);
 }
 
-}  // namespace
+}  // namespace user_sampler_test
 }  // namespace crescent

@@ -9,7 +9,7 @@
 #include "tests/support/sampled_evidence.h"
 
 namespace crescent::check {
-namespace {
+namespace counts_test {
 
 TEST(TestsOfCounts, ARightSamplerPassesAll) {
     const SampledEvidence e({});
@@ -88,5 +88,5 @@ TEST(TestsOfDeltaParts, SeveralWeightsOrManyDirectionsAreFound) {
     EXPECT_EQ(SampledEvidence(scattered).least(test_deltas, Family::delta_scatter)->p(), 0);
 }
 
-}  // namespace
+}  // namespace counts_test
 }  // namespace crescent::check

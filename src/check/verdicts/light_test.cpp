@@ -8,7 +8,7 @@
 #include "tests/support/sampled_evidence.h"
 
 namespace crescent::check {
-namespace {
+namespace light_test {
 
 /// A cosine sampler of a Lambert surface, whose weight is the albedo.
 FunctionSampler of_lambert(double albedo) {
@@ -87,5 +87,5 @@ TEST(TailsOfWeights, MayBeHeavyFromIndexOneHalfOn) {
     EXPECT_FALSE(tail_may_be_heavy(std::vector<double>{1, 2, 3.9, 1}));  // at most four means
 }
 
-}  // namespace
+}  // namespace light_test
 }  // namespace crescent::check

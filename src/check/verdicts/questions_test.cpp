@@ -8,7 +8,7 @@
 #include "tests/support/sampled_evidence.h"
 
 namespace crescent::check {
-namespace {
+namespace questions_test {
 
 void test_density(const Evidence& e, const Visit& visit) {
     test_sums(e, visit), test_nodes(e, visit), test_bands(e, visit);
@@ -100,5 +100,5 @@ TEST(SplitsOfNodes, TolerateWhatRoundingMoves) {
         detection_floor * 0.25 + 1e-4 / node.rect.theta_width() + 0.25 * 1e-4 / node.rect.phi_width(), 1e-15);
 }
 
-}  // namespace
+}  // namespace questions_test
 }  // namespace crescent::check

@@ -8,7 +8,7 @@
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
-namespace {
+namespace statistics_test {
 
 /// P(N >= k) and P(N <= k) of a binomial.
 double above(double n, double p, double k) { return k <= 0 ? 1 : statistics::beta_i(k, n - k + 1, p, 1 - p); }
@@ -101,5 +101,5 @@ TEST(VerdictKinds, AreSkippedWithoutWhatTheyNeed) {
     EXPECT_EQ(applied(with_delta), "valid normalised density identity physics ");
 }
 
-}  // namespace
+}  // namespace statistics_test
 }  // namespace crescent::check

@@ -18,7 +18,7 @@
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace accept_test {
 
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
@@ -176,5 +176,5 @@ TEST_F(Accepting, ThePlanStatesRendersThatAreEnough) {
     EXPECT_NEAR(plans[0].deviation, sd, 0.6 * sd);  // of 12 renders: standard error 21 %
 }
 
-}  // namespace
+}  // namespace accept_test
 }  // namespace crescent::inline comparison

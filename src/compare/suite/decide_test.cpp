@@ -5,7 +5,7 @@
 #include "compare/suite/suite.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace decide_test {
 
 using ::testing::ElementsAre;
 
@@ -92,5 +92,5 @@ TEST(SuiteDecisions, TheFirstExitCodeThatAppliesIsTaken) {
     EXPECT_EQ(code({ViewState::too_few, ViewState::added}, true), 1);
 }
 
-}  // namespace
+}  // namespace decide_test
 }  // namespace crescent::inline comparison

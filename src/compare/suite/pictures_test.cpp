@@ -5,7 +5,7 @@
 #include "tests/support/memory_renders.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace pictures_test {
 
 /// A grey ramp of 64 x 4 pixels from 0 on, times a factor.
 std::vector<float> ramp(float factor) {
@@ -68,5 +68,5 @@ TEST(SuitePictures, OfManyViewsAreSmaller) {
     EXPECT_LT(width(300), 400);
 }
 
-}  // namespace
+}  // namespace pictures_test
 }  // namespace crescent::inline comparison

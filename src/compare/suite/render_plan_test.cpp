@@ -6,7 +6,7 @@
 #include "compare/suite/suite.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace render_plan_test {
 
 constexpr double z90 = 1.2815515655446004;
 
@@ -50,5 +50,5 @@ TEST(RenderPower, RareEventsFallAsOneOverTheRenders) {
     EXPECT_FALSE(renders_needed({0, 1, 1, 1e9, false, 0}, 0.05, 0.01));  // relative to a mean of 0
 }
 
-}  // namespace
+}  // namespace render_plan_test
 }  // namespace crescent::inline comparison

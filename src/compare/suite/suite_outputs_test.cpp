@@ -6,7 +6,7 @@
 #include "compare/suite/suite.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace suite_outputs_test {
 
 using ::testing::HasSubstr;
 
@@ -76,5 +76,5 @@ TEST(SuiteOutputs, MarkdownLeavesEqualViewsOut) {
     EXPECT_EQ(suite_markdown({}, same, {}).find("crown"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace suite_outputs_test
 }  // namespace crescent::inline comparison

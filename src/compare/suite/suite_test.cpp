@@ -13,7 +13,7 @@
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {
-namespace {
+namespace suite_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -220,5 +220,5 @@ TEST(Hypotheses, SimesPIsTheLevelOfTheFirstDiscovery) {
     EXPECT_EQ(simes_p({}, 10, false), 1);
 }
 
-}  // namespace
+}  // namespace suite_test
 }  // namespace crescent::inline comparison

@@ -15,7 +15,7 @@ namespace crescent::test {
 
 MathTable scalar_math() { return math_table<float>(); }
 
-namespace {
+namespace math_isa_test {
 
 constexpr std::size_t n = 1 << 16;
 using Floats = std::vector<float>;
@@ -194,5 +194,5 @@ TEST(MathConformance, Normalize) {
         [&](std::size_t k, float v) { return ulps(v, static_cast<long double>(a[k]) / norm(k)) - 3; });
 }
 
-}  // namespace
+}  // namespace math_isa_test
 }  // namespace crescent::test

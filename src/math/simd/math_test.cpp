@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace crescent::inline simd {
-namespace {
+namespace math_test {
 
 double ulps(float got, long double want) {
     const float near = static_cast<float>(want);
@@ -58,5 +58,5 @@ TEST(ElementaryFunctions, PowClampsAtZeroAndKeepsTheEnds) {
     EXPECT_EQ(pow(0.1f, 128.0f), 0.0f);
 }
 
-}  // namespace
+}  // namespace math_test
 }  // namespace crescent::inline simd

@@ -8,7 +8,7 @@
 #include <set>
 
 namespace crescent::inline simd {
-namespace {
+namespace random_test {
 
 TEST(RandomStreams, Pcg4dGivesThePublishedFunction) {  // values from a separate implementation of the paper's listing
     const auto v = pcg4d(Vec4u<std::uint32_t>{1, 2, 3, 4});
@@ -66,5 +66,5 @@ TEST(RandomStreams, SeedSeriesBeginsAsGivenWithoutRepeats) {
     EXPECT_EQ(seen.size(), 1000u);
 }
 
-}  // namespace
+}  // namespace random_test
 }  // namespace crescent::inline simd

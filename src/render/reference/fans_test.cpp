@@ -10,7 +10,7 @@
 #include "render/reference/disk_quadrature.h"
 
 namespace crescent::inline reference {
-namespace {
+namespace fans_test {
 
 constexpr double far_away = 40;
 
@@ -63,5 +63,5 @@ TEST(Fans, FourQuartersOfALightAreTheWhole) {
     }
 }
 
-}  // namespace
+}  // namespace fans_test
 }  // namespace crescent::inline reference

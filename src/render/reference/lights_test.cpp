@@ -10,7 +10,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline reference {
-namespace {
+namespace lights_test {
 
 /// Returns a light as the point x sees it, n = +z.
 template <class Kind> LocalLight<double> local(const Kind& kind, Vec3d x) {
@@ -132,12 +132,12 @@ TEST(LightKinds, StandBeforeOneAnother) {
     expect_the_reference(e, {"light-area", "light-solid-angle"}, 256);
 }
 
-}  // namespace
+}  // namespace lights_test
 
 // ---- Lights down to the smallest size, and scenes as far from (0, 0, 0), as the schema permits: the mean of every
 // unbiased sampler there agrees with the reference within both uncertainties.
 
-namespace {
+namespace lights_test {
 
 /// Returns the test scene without fill, with area lights of another size, moved by an offset.
 Experiment area_lights(double radius, double offset, const std::vector<std::string>& overrides = {}) {
@@ -229,12 +229,12 @@ TEST(AreaLights, ShadowsDoNotDependOnThePlace) {
     EXPECT_LE(other, here.size() / 50);
 }
 
-}  // namespace
+}  // namespace lights_test
 
 // ---- Spherical lights that bodies and other lights reach into: the reference finds what is hidden and does not merely
 // widen its error; and spheres of up to 1e6 m, whose nearest point is 1 m away, in single precision.
 
-namespace {
+namespace lights_test {
 
 /// Returns a floor under a spherical light of radius 0.5 m, 1 m above it.
 Experiment under_a_ball() {
@@ -313,5 +313,5 @@ TEST(BallLights, OfAnySizeShineAlikeOnEveryArm) {
     }
 }
 
-}  // namespace
+}  // namespace lights_test
 }  // namespace crescent::inline reference

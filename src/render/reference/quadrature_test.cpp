@@ -11,7 +11,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline reference {
-namespace {
+namespace quadrature_test {
 
 bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
     const Vec3d d = y - hit.x;
@@ -168,5 +168,5 @@ TEST(LobeAlbedo, NeverReflectsMoreThanArrives) {
     }
 }
 
-}  // namespace
+}  // namespace quadrature_test
 }  // namespace crescent::inline reference

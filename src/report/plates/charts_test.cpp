@@ -7,7 +7,7 @@
 #include "tests/support/test_scene.h"
 
 namespace crescent::plates {
-namespace {
+namespace charts_test {
 
 /// Returns the integral of a density over the hemisphere, by the midpoint rule in cos and phi.
 double integral(const Density& density) {
@@ -72,5 +72,5 @@ TEST(Density, UsesTheFirstLobeOfASceneWithoutAnExponent) {
     EXPECT_GT(smooth.in_plane(0), 5 * Density(e, "ggx-d", e.s(), 0).in_plane(0));
 }
 
-}  // namespace
+}  // namespace charts_test
 }  // namespace crescent::plates

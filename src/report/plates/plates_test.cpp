@@ -17,7 +17,7 @@
 #include "tests/support/test_world.h"
 
 namespace crescent::plates {
-namespace {
+namespace plates_test {
 
 using plates::Rect;
 using plates::Setting;
@@ -322,5 +322,5 @@ TEST(Png, HasPixelsAndProvenanceButNoDate) {
     EXPECT_FALSE(d.dated);
 }
 
-}  // namespace
+}  // namespace plates_test
 }  // namespace crescent::plates

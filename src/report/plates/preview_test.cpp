@@ -8,7 +8,7 @@
 #include "tests/support/test_world.h"
 
 namespace crescent::plates {
-namespace {
+namespace preview_test {
 
 struct Drawn {
     std::vector<Setting> settings;
@@ -84,5 +84,5 @@ TEST(Preview, MarksARegionWhereItLies) {
     EXPECT_NEAR(right, picture_left + 61 * 9, 6) << "of region H";
 }
 
-}  // namespace
+}  // namespace preview_test
 }  // namespace crescent::plates

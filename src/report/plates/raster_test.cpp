@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace crescent::plates {
-namespace {
+namespace raster_test {
 
 Film ramp(int w, int h) {
     Film f(w, h, 1);
@@ -88,5 +88,5 @@ TEST(Inside, CutsABoxToTheImage) {
     EXPECT_EQ(b.y1, 5);
 }
 
-}  // namespace
+}  // namespace raster_test
 }  // namespace crescent::plates

@@ -7,7 +7,7 @@
 #include "tests/support/test_world.h"
 
 namespace crescent::plates {
-namespace {
+namespace rose_test {
 
 using plates::World;
 
@@ -55,5 +55,5 @@ TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
     EXPECT_TRUE(says("density cannot be evaluated"));
 }
 
-}  // namespace
+}  // namespace rose_test
 }  // namespace crescent::plates

@@ -7,7 +7,7 @@
 #include "tests/support/test_world.h"
 
 namespace crescent::plates {
-namespace {
+namespace sheet_test {
 
 TEST(Words, ALabelSaysOnceWhatTheRunsShare) {
     World world(8, 8);
@@ -41,5 +41,5 @@ TEST(Words, RenamedArmKeepsItsNameAndFormula) {
     EXPECT_EQ(density_formula("uniform", world.e), "p(ω) = 1/(2π)");
 }
 
-}  // namespace
+}  // namespace sheet_test
 }  // namespace crescent::plates

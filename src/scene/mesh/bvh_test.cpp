@@ -15,7 +15,7 @@
 #include "tests/support/meshes.h"
 
 namespace crescent {
-namespace {
+namespace bvh_test {
 
 using test::sphere_mesh;
 using test::unit_vector;
@@ -225,5 +225,5 @@ TEST(Rays, AConvexSurfaceDoesNotShadowItself) {
         }
 }
 
-}  // namespace
+}  // namespace bvh_test
 }  // namespace crescent

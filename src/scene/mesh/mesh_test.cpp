@@ -16,7 +16,7 @@
 #include "tests/support/meshes.h"
 
 namespace crescent {
-namespace {
+namespace mesh_test {
 
 using testing::HasSubstr;
 
@@ -114,5 +114,5 @@ TEST(MeshFile, RefusesDamageWithThePlace) {
     }
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace crescent
