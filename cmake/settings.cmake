@@ -18,12 +18,16 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
+# The files of a folder are compiled as one, which parses each header and instantiates each template once: a build from
+# nothing takes two thirds of the time. Whoever changes one file often sets it OFF and recompiles that file alone.
+option(CRESCENT_UNITY "compile the files of a folder together" ON)
+
 add_library(crescent_compile_options INTERFACE)
 # No contraction into fused multiply-add anywhere: films are the same bits from every compiler and instruction set.
 target_compile_options(crescent_compile_options INTERFACE -ffp-contract=off)
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(crescent_compile_options INTERFACE -Wall -Wextra -Wpedantic
-    $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)  # with unity builds, names of other files would count as shadowed
+    $<$<NOT:$<BOOL:${CRESCENT_UNITY}>>:-Wshadow>)  # names of other files of the folder would count as shadowed
 else()
   # Part of another project, which sets the warnings. Unoptimised code of a check takes several times as long to run,
   # and more than -O1 takes longer to compile than it saves.
@@ -45,7 +49,7 @@ if(CRESCENT_FUZZ)
   if(NOT CRESCENT_SANITIZE OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
     message(FATAL_ERROR "CRESCENT_FUZZ needs clang and CRESCENT_SANITIZE: cmake --preset sanitize has both")
   endif()
-  set(crescent_fuzzed base scene experiment)  # counts what it covers; where no fuzzer listens, ASan's runtime ignores it
+  set(crescent_fuzzed base scene experiment compare run)  # counts what it covers; where no fuzzer listens, ASan's runtime ignores it
 endif()
 
 # Headers used by nearly every file: parsing them takes two thirds of the compile time. Libraries with equal lists and
@@ -74,6 +78,20 @@ function(crescent_use_pch target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
   # CMake gives its list of headers the time of older files: their hash shows ninja that they changed.
   target_compile_definitions(${target} PRIVATE CRESCENT_HEADERS=0x${headers})
+endfunction()
+
+# crescent_unity(TARGET source...): compiles the files of each folder as one.
+function(crescent_unity target)
+  if(NOT CRESCENT_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS ARGN)
+    get_filename_component(folder ${source} DIRECTORY)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+    string(MAKE_C_IDENTIFIER ${folder} group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
 endfunction()
 
 # Files that run once and take long to optimise, mostly JSON. Without optimisation they cannot use the precompiled

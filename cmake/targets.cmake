@@ -1,15 +1,21 @@
 # crescent_library: one folder of src/ is one static library, and includes only itself and the folders it depends on.
 
 set(crescent_targets "")        # all libraries, those that depend on others first
-set(crescent_test_sources "")   # *_test.cpp next to their sources, for tests/CMakeLists.txt
+set(crescent_test_folders "")   # those with *_test.cpp next to their sources: crescent_tests_of_FOLDER, for tests/
 set(crescent_sources "")        # of crescent::check built alone, where all folders are one target
 set(crescent_libraries "")
 
+include(cmake/public_headers.cmake)
+set(crescent_include ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)  # of programs that link our libraries
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set(crescent_include ${PROJECT_BINARY_DIR}/include)
+  crescent_public_headers(${PROJECT_SOURCE_DIR} ${crescent_include})
+endif()
+
 function(crescent_add_static_library target)
   add_library(${target} STATIC ${ARGN})
-  target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include
+    INTERFACE "$<BUILD_INTERFACE:${crescent_include}>" $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:crescent_compile_options>)
   if(NOT PROJECT_IS_TOP_LEVEL)  # another project builds only what it links
@@ -42,7 +48,10 @@ function(crescent_library name)
     list(FILTER sources EXCLUDE REGEX "${of_EXCLUDE}")
     list(FILTER tests EXCLUDE REGEX "${of_EXCLUDE}")
   endif()
-  set(crescent_test_sources ${crescent_test_sources} ${tests} PARENT_SCOPE)
+  if(tests)
+    set(crescent_tests_of_${name} ${tests} PARENT_SCOPE)
+    set(crescent_test_folders ${crescent_test_folders} ${name} PARENT_SCOPE)
+  endif()
   if(NOT CRESCENT_RUN)
     set(crescent_sources ${crescent_sources} ${sources} PARENT_SCOPE)
     set(crescent_libraries ${crescent_libraries} ${of_LIBS} PARENT_SCOPE)
@@ -56,6 +65,7 @@ function(crescent_library name)
     target_compile_options(crescent_${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
   crescent_use_pch(crescent_${name} ${of_PCH})
+  crescent_unity(crescent_${name} ${sources})
   crescent_check_includes(${name} ${of_DEPENDS})
   crescent_templates(${name})
   set(crescent_targets crescent_${name} ${crescent_targets} PARENT_SCOPE)
@@ -64,22 +74,13 @@ function(crescent_library name)
   endif()
 endfunction()
 
-# crescent::check alone: what crescent/check.h and crescent/gtest.h need, as one target that is compiled a few files at
-# a time. Sources that match `exclude` serve the program only.
+# crescent::check alone: what crescent/check.h and crescent/gtest.h need, as one target. Sources that match `exclude` serve the program only.
 function(crescent_check_alone exclude)
   list(FILTER crescent_sources EXCLUDE REGEX "${exclude}")
   crescent_add_static_library(crescent_check ${crescent_sources})
   add_library(crescent::check ALIAS crescent_check)
   target_link_libraries(crescent_check PUBLIC ${crescent_libraries})
-  if(NOT DEFINED CMAKE_UNITY_BUILD)
-    set_target_properties(crescent_check PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    foreach(source IN LISTS crescent_sources)
-      string(REGEX MATCH "src/(check/(sources|report|explain)|check|output|[a-z]+)/" group ${source})
-      string(REGEX REPLACE "src/(base|math|scene|samplers)/" "scene" group ${group})
-      string(MAKE_C_IDENTIFIER ${group} group)
-      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
-    endforeach()
-  endif()
+  crescent_unity(crescent_check ${crescent_sources})
   crescent_use_pch(crescent_check <nlohmann/json.hpp>)
   # The compiler's own garbage collection takes 10 % of the time with the default of 128 MB.
   # Sources that are included by another one have unnamed namespaces, which g++ warns of.

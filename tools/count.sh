@@ -40,6 +40,18 @@ longest() {
         awk '{ printf "%s%s %d s", (NR > 1 ? ", " : ""), $2, $1 }'
 }
 
+# follow_tests NAME: copies ctest's lines to stdout (the log) and its count to the terminal.
+follow_tests() {
+    local line
+    progress_shown=$SECONDS
+    while IFS= read -r line; do
+        printf '%s\n' "$line"
+        [[ $line =~ ^\ *([0-9]+)/([0-9]+)\ +Test ]] &&
+            progress "testing $1" "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]} tests and programs"
+    done
+    end_progress
+}
+
 # check PRESET [OPTION...]: runs ctest on its build. A test program counts as its test cases, a script as one.
 check() {
     local dir log xml start=$SECONDS before=$passed broken=$failures
@@ -48,7 +60,7 @@ check() {
     rm -rf "$dir/results"
     mkdir -p "$dir/results"
     say "testing $1 (log: ${log#"$root"/})"
-    ctest --test-dir "$dir" -j "$(nproc)" --output-on-failure "${@:2}" >"$log" 2>&1
+    ctest --test-dir "$dir" -j "$(nproc)" --output-on-failure "${@:2}" 2>&1 | follow_tests "$1" >"$log"
     # Lines such as " 3/12 Test  #5: unit-1 .......   Passed    0.41 sec".
     while read -r name outcome; do
         xml="$dir/results/$name.xml"
@@ -71,18 +83,19 @@ check() {
     [ "$failures" -eq "$broken" ] || failed_tests "$log" >&2
 }
 
-# fuzz PRESET TARGET SECONDS CORPUS...: no finding in that time counts as one test. Corpora are folders of the repository.
+# fuzz PRESET TARGET SECONDS [CORPUS]: no finding in that time counts as one test. The corpus of NAME_fuzz is
+# tests/fuzz/NAME; CORPUS is a second one.
 fuzz() {
-    local target log found
+    local target log found corpus
     target="$(binary_dir "$1")/tests/fuzz/$2"
     log="$log_dir/$2.log"
+    corpus="$root/tests/fuzz/${2%_fuzz}"
     [ -x "$target" ] || { skipped=$((skipped + 1)) && say "  skipped: $2"; return; }
     found="$(binary_dir "$1")/tests/fuzz/found-$2"
     mkdir -p "$found"
     say "fuzzing $2 for $3 s"
     if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" \
-        -dict="$root/tests/fuzz/experiment.dict" \
-        "$found" "${@:4}" >"$log" 2>&1; then
+        -dict="$root/tests/fuzz/experiment.dict" "$found" "$corpus" "${@:4}" >"$log" 2>&1; then
         add 1 0
     else
         add 0 1

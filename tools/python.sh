@@ -58,6 +58,7 @@ add_python_module() {
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
         grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return
+    configure release
     (cd "$root" && cmake --preset release -DCRESCENT_PYTHON=ON -DPython_EXECUTABLE="$1/bin/python") \
         >"$log_dir/python.log" 2>&1 ||
         say "going on without the Python package (log: $log_dir/python.log)"

@@ -325,7 +325,6 @@ int check(const CheckFlags& given) {
     StopOnSignal stop(monitor);
     check_limits(flags);
     try_files(flags);
-    if (flags.right > 0) return check_right(flags, monitor);
     if (flags.planted) return check_planted(flags, monitor);
     CheckResult j;
     std::vector<std::string> expected = flags.expect;

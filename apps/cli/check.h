@@ -23,7 +23,5 @@ int check_against(
 
 /// Reports which verdict detects which fault. Exit 0 if every fault is detected.
 int check_planted(const CheckFlags& flags, Progress& monitor);
-/// Exit 0 if no correct sampler is reported as wrong more often than stated.
-int check_right(const CheckFlags& flags, ProgressMonitor& monitor);
 
 }  // namespace crescent::cli

@@ -76,7 +76,6 @@ struct CheckFlags {
     double alpha = 1e-3, patience = 0;      // patience: s for a program; 0: two minutes, with --full an hour
     double timeout = 0;                     // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
-    unsigned right = 0, first = 0;  // right: number of correct samplers; 0: not requested
     int pixels = 0;                 // of an experiment; 0: the grid of w_o
     bool no_code = false;
     bool light = false;  // f is the radiance of a light

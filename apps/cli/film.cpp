@@ -22,7 +22,7 @@ int film(const FilmFlags& flags) {
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
     const Experiment experiment = load(experiment_file(flags.file), overrides);
     if (flags.no_code) refuse_code(experiment);
-    if (!film_maker()) throw OutputError("this build has no film: it was configured without CRESCENT_EXPLAINER");
+    if (!film_maker()) throw not_built("crescent film");
 
     ExplainerOptions options = flags.options;
     options.height = std::stoi(flags.size);

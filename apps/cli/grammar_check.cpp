@@ -126,13 +126,11 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
     limits(*c, *f);
-    auto* right = c->add_option("--right", f->right, "check this many correct samplers at random parameters")
-                      ->type_name("N")
-                      ->check(whole_number(1, 1000000));
-    for (auto* other : {arm, set, planted}) right->excludes(other);
-    c->add_option("--first", f->first, "of --right: the number of the first")->type_name("K")->needs(right);
-    for (auto* other : {arm, set, planted, right}) exec->excludes(other), samples->excludes(other);
-    for (auto* other : {arm, set, planted, right, exec, samples}) plugin->excludes(other);
+    for (auto* other : {arm, set, planted}) {
+        exec->excludes(other);
+        samples->excludes(other);
+    }
+    for (auto* other : {arm, set, planted, exec, samples}) plugin->excludes(other);
     exec->excludes(samples);
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
         ->type_name("FILE")
@@ -143,10 +141,9 @@ void add_check(CLI::App& app, Work& work) {
     auto* against = comparison(*c, *f);
     auto* describe = c->add_flag("--describe", f->describe,
         "print what distribution the draws have, with intervals, and no verdict; --json writes it");
-    for (auto* other : {planted, right, against}) describe->excludes(other);
+    for (auto* other : {planted, against}) describe->excludes(other);
     auto* expect = waivers(*c, *f);
-    for (auto* other : {planted, right}) expect->excludes(other);
-    for (auto* other : {planted, right}) against->excludes(other), wo->excludes(other);
+    for (auto* option : {expect, against, wo}) option->excludes(planted);
     outputs(*c, *f);
     c->add_flag("--quiet", f->quiet, "no progress; the table stays");
     c->add_flag("--verbose", f->verbose, "time, memory and evaluations, after the table");

@@ -39,9 +39,7 @@ std::string importer() {
         if (std::filesystem::exists(file, unknown)) return file.string();
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }
-    throw OutputError(
-        "this build cannot import models: it was made without assimp (Debian: libassimp-dev); `crescent run` needs "
-        "none");
+    throw not_built("crescent import");
 }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message) {

@@ -92,9 +92,7 @@ std::shared_ptr<Backend> backend(const RunFlags& flags) {
         return nullptr;
     }
     const std::shared_ptr<const BackendKind> kind = find_backend(flags.backend);
-    if (!kind)
-        throw OutputError("this build has no back end '" + flags.backend +
-            "': it was made without it, or without the headers of EGL");
+    if (!kind) throw not_built("--instrument " + flags.backend);
     return kind->open({flags.gl_context, flags.gl_device});
 }
 

@@ -1,12 +1,12 @@
 /* The cosine-weighted sampler as a shared library:
  *
- *     cc -O2 -shared -fPIC -I PREFIX/include/crescent cosine.c -o libcosine.so -lm
+ *     cc -O2 -shared -fPIC -I PREFIX/include cosine.c -o libcosine.so -lm
  *
  * and in an experiment: [arms.mine] plugin = "libcosine.so". p = cos / pi; Malley's method: a point uniform on the
  * disk, lifted to the hemisphere. */
 #include <math.h>
 
-#include "check/sampler_plugin.h"
+#include "crescent/plugin.h"
 
 static const double pi = 3.14159265358979323846;
 

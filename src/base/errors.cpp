@@ -51,6 +51,10 @@ std::string to_string(const SourceLocation& at) {
 
 InputError::InputError(std::vector<Diagnostic> all) : std::invalid_argument(join(all)), all_(std::move(all)) {}
 
+OutputError not_built(std::string_view part) {
+    return OutputError(fmt::format("{} is not built yet: ./build-all in the folder of the sources builds it", part));
+}
+
 Bug::Bug(const std::source_location& at, std::string_view claim)
     : std::logic_error(fmt::format("{}:{}: internal check failed: {}", at.file_name(), at.line(), claim)) {}
 

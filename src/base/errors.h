@@ -45,6 +45,9 @@ struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Returns the error of a part that this build leaves out; `part` starts the sentence: "crescent film".
+OutputError not_built(std::string_view part);
+
 /// An invariant of the program does not hold; what() contains file and line of the source.
 class Bug : public std::logic_error {
 public:

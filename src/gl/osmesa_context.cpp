@@ -62,7 +62,7 @@ namespace crescent::gl {
 
 std::unique_ptr<Context> open_osmesa() {
     throw OutputError(
-        "--gl-context osmesa: libOSMesa.so.8 cannot be opened: this build was made without its header GL/osmesa.h");
+        "--gl-context osmesa: this build was made without the header GL/osmesa.h (libosmesa6-dev)");
 }
 
 }  // namespace crescent::gl

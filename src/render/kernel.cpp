@@ -7,7 +7,8 @@
 #include "samplers/all.h"
 
 // The list of instruction sets with kernels. kernels.cmake reads it too: it makes kernel_NAME.cpp for each set of the
-// target processor, with -mFEATURE for every feature that is named here.
+// target processor, with -mFEATURE for every feature that is named here, or an empty table for a set that the build
+// leaves out.
 //
 // isa(name, what a machine must have), in rising order of speed; scalar, which needs nothing, comes before all of them.
 // clang-format off: one a line
@@ -64,7 +65,7 @@ struct Isa {
     KernelTable (*kernels)();  // compiled for this set: called only if the machine has it
 };
 
-const std::vector<Isa>& built() {
+const std::vector<Isa>& family() {
     static const std::vector<Isa> all = [] {
         std::vector<Isa> list = {{"scalar", true, scalar_kernels}};
 #define has CRESCENT_MACHINE_HAS
@@ -79,39 +80,46 @@ const std::vector<Isa>& built() {
 
 std::vector<KernelTable> tables_here() {
     std::vector<KernelTable> tables;
-    for (const Isa& isa : built())
-        if (isa.here) tables.push_back(isa.kernels());
+    for (const Isa& isa : family()) {
+        if (!isa.here) continue;
+        const KernelTable table = isa.kernels();
+        if (!table.isa.empty()) tables.push_back(table);
+    }
     return tables;
+}
+
+const std::vector<KernelTable>& tables() {
+    static const std::vector<KernelTable> usable = tables_here();
+    return usable;
 }
 
 }  // namespace
 
 std::vector<std::string> isas() {
     std::vector<std::string> out;
-    for (const Isa& isa : built())
-        if (isa.here) out.push_back(isa.name);
+    for (const KernelTable& table : tables()) out.emplace_back(table.isa);
     return out;
 }
 
 std::string all_isas() {
     std::string out;
-    for (const Isa& isa : built()) out += (out.empty() ? "" : ", ") + std::string(isa.name);
+    for (const Isa& isa : family()) out += (out.empty() ? "" : ", ") + std::string(isa.name);
     return out;
 }
 
 const KernelTable& kernels_for(const std::string& isa) {
-    static const std::vector<KernelTable> tables = tables_here();
-    const std::string wanted = isa.empty() ? std::string(tables.back().isa) : isa;
-    for (const KernelTable& table : tables)
+    const std::string_view best = tables().back().isa;
+    const std::string_view wanted = isa.empty() ? best : std::string_view(isa);
+    for (const KernelTable& table : tables())
         if (table.isa == wanted) return table;
     std::vector<std::string> names;
-    for (const Isa& known : built()) {
-        names.push_back(known.name);
-        if (wanted != known.name) continue;
-        throw InputError({"--isa", 0, 0},
-            "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
+    for (const Isa& candidate : family()) {
+        names.emplace_back(candidate.name);
+        if (wanted != candidate.name) continue;
+        if (candidate.here) throw not_built("--isa " + isa);
+        throw InputError({"--isa", 0, 0}, "this machine has no " + isa + "; it has " + std::string(best) + " at best");
     }
-    throw InputError({"--isa", 0, 0}, expected_one_of(names, wanted));
+    throw InputError({"--isa", 0, 0}, expected_one_of(names, isa));
 }
 
 int arm_index(std::string_view sampler) {

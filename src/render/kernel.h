@@ -134,11 +134,12 @@ struct KernelTable {
     }
 };
 
-/// Returns the instruction sets of kernel.cpp that this machine can run, best last.
+/// Returns the instruction sets of kernel.cpp that this build has and this machine can run, best last.
 std::vector<std::string> isas();
-/// Returns all instruction sets of this build, for messages: "scalar, sse4, avx2, avx512".
+/// Returns all instruction sets of this processor family, for messages: "scalar, sse4, avx2, avx512".
 std::string all_isas();
-/// Returns the table for a name of isas(); "" means the best. Throws InputError for an unknown or unsupported name.
+/// Returns the table for a name of isas(); "" means the best. Throws InputError for a name that is unknown or that the
+/// machine lacks, OutputError for one that this build leaves out.
 const KernelTable& kernels_for(const std::string& isa);
 /// Returns the index in the list of samplers, or -1.
 int arm_index(std::string_view sampler);

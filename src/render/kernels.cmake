@@ -1,5 +1,6 @@
 # One source makes the kernels of every instruction set that kernel.cpp lists for this processor, each with its own
-# flags; they are added to ${crescent_kernel_target}.
+# flags; they are added to ${crescent_kernel_target}. With CRESCENT_ISAS=native, the sets that this machine does not use
+# have empty tables.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(family X86)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
@@ -18,15 +19,40 @@ string(REGEX MATCH "define CRESCENT_ISAS_${family}[^#]*" sets "${sets}")
 string(REGEX MATCHALL "isa\\([a-z0-9]+, [^\n\\]*" sets "${sets}")
 foreach(line ${sets})
   string(REGEX REPLACE "isa\\(([a-z0-9]+),.*" "\\1" isa "${line}")
-  string(REGEX MATCHALL "has\\(\"[a-z0-9.]+" flags "${line}")
-  string(REPLACE "has(\"" "-m" flags "${flags}")
+  string(REGEX MATCHALL "has\\(\"[a-z0-9.]+" features "${line}")
+  string(REPLACE "has(\"" "" features_of_${isa} "${features}")
+  list(APPEND isas ${isa})
+endforeach()
+
+# CRESCENT_ISAS=native: the fastest set of the machine that compiles, by the list of features that Linux gives; all of
+# them where there is no such list.
+set(selected_isas ${isas})
+if(CRESCENT_ISAS STREQUAL "native" AND EXISTS /proc/cpuinfo)
+  file(STRINGS /proc/cpuinfo machine REGEX "^flags" LIMIT_COUNT 1)
+  string(REGEX MATCHALL "[a-z0-9_]+" machine "${machine}")
+  foreach(isa ${isas})
+    string(REPLACE "." "_" missing "${features_of_${isa}}")
+    list(REMOVE_ITEM missing ${machine})
+    if(machine AND NOT missing)
+      set(selected_isas ${isa})
+    endif()
+  endforeach()
+endif()
+
+foreach(isa ${isas})
   set(kernel ${PROJECT_BINARY_DIR}/kernels/kernel_${isa}.cpp)
-  configure_file(${CMAKE_CURRENT_LIST_DIR}/kernel_isa.cpp.in ${kernel} @ONLY)
-  # ASan instruments the kernels in the scalar and AVX2 builds, UBSan in the scalar one, where they cost the least to
-  # compile.
-  if(CRESCENT_SANITIZE)
-    list(APPEND flags $<IF:$<STREQUAL:${isa},avx2>,-fno-sanitize=undefined,-fno-sanitize=all>)
+  set(template kernel_isa_absent.cpp.in)
+  set(flags "")
+  if(isa IN_LIST selected_isas)
+    set(template kernel_isa.cpp.in)
+    list(TRANSFORM features_of_${isa} PREPEND -m OUTPUT_VARIABLE flags)
+    # ASan instruments the kernels in the scalar and AVX2 builds, UBSan in the scalar one, where they cost the least to
+    # compile.
+    if(CRESCENT_SANITIZE)
+      list(APPEND flags $<IF:$<STREQUAL:${isa},avx2>,-fno-sanitize=undefined,-fno-sanitize=all>)
+    endif()
   endif()
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/${template} ${kernel} @ONLY)
   set_source_files_properties(${kernel} PROPERTIES COMPILE_OPTIONS "${flags}" SKIP_PRECOMPILE_HEADERS ON)
   target_sources(${crescent_kernel_target} PRIVATE ${kernel})
 endforeach()

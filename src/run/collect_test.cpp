@@ -2,6 +2,7 @@
 #include "run/collect.h"
 
 #include <gmock/gmock.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "run/version.h"

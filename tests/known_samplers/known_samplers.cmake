@@ -1,8 +1,17 @@
-# Samplers with a known verdict: planted faults and correct samplers. `crescent check --planted` and `--right` and tests
-# check them; no installed library contains them.
-file(GLOB known CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*/*.cpp)
-add_library(crescent_known_samplers STATIC EXCLUDE_FROM_ALL ${known})
-target_include_directories(crescent_known_samplers PUBLIC ${PROJECT_SOURCE_DIR})
-target_link_libraries(crescent_known_samplers PUBLIC crescent_check PRIVATE crescent_compile_options)
-crescent_use_pch(crescent_known_samplers <nlohmann/json.hpp>)
-set_target_properties(crescent_known_samplers PROPERTIES UNITY_BUILD OFF)  # many faults have a `Bend` of their own
+# Samplers with a known verdict. crescent_planted has the planted faults, which `crescent check --planted` checks, and
+# the correct samplers that they change; crescent_known_samplers those that only tests check. No installed library
+# contains them.
+function(crescent_samplers target)
+  set(sources "")
+  foreach(folder ${ARGN})
+    file(GLOB of_folder CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/known_samplers/${folder}/*.cpp)
+    list(APPEND sources ${of_folder})
+  endforeach()
+  add_library(${target} STATIC EXCLUDE_FROM_ALL ${sources})
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PUBLIC crescent_check PRIVATE crescent_compile_options)
+  crescent_use_pch(${target} <nlohmann/json.hpp>)
+endfunction()
+crescent_samplers(crescent_planted correct faulty)
+crescent_samplers(crescent_known_samplers held_out reported)
+target_link_libraries(crescent_known_samplers PUBLIC crescent_planted)

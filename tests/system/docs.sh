@@ -2,10 +2,8 @@
 # Every code block of the documentation runs as it is printed (tests/system/docs/run_blocks.py); errors on a page are
 # found.
 . "$(dirname "$0")/common.sh"
-: "${CRESCENT_BUILD:?the build folder}"
-python=$(sed -n 's/^_\?Python_EXECUTABLE:[A-Z]*=//p' "$CRESCENT_BUILD/CMakeCache.txt" | head -n 1)
-ls "$CRESCENT_BUILD"/python/crescent/_crescent.*.so >/dev/null 2>&1 &&
-    "$python" -c 'import numpy, pytest' 2>/dev/null || python=
+. "$here/docs/python.sh"
+python=$(page_python)
 run_blocks() {
     python3 "$here/docs/run_blocks.py" --source "$CRESCENT_SOURCE" --build "$CRESCENT_BUILD" --python "$python" \
         --work "$work/pages" "$@"

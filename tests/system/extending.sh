@@ -64,8 +64,7 @@ mkdir -p "$tree"
 done
 
 expect 0 cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DCMAKE_UNITY_BUILD=ON \
-    -DCRESCENT_SCALAR=ON -DCRESCENT_GL=OFF -DCRESCENT_EXPLAINER=OFF -DCRESCENT_TESTS=ON
+    -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DCRESCENT_SCALAR=ON -DCRESCENT_GL=OFF -DCRESCENT_EXPLAINER=OFF -DCRESCENT_TESTS=ON
 expect 0 cmake --build "$build" --target extending
 expect 0 "$build/tests/extending" tent half-power
 expect 0 "$build/tests/extending" blinn half-power

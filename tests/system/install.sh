@@ -37,7 +37,7 @@ for name in OpenEXR Imath Boost tomlplusplus hwy PNG PkgConfig; do none+=("-DCMA
 cat >plugin.cpp <<'END'
 #include <cstdio>
 
-#include <check/sources/external.h>
+#include <crescent/check/sources/external.h>
 
 int main(int, char** words) {
     std::puts("main");
@@ -69,7 +69,7 @@ for components in '' 'COMPONENTS check' 'COMPONENTS run'; do
 done
 grep -q OpenEXR said || die "what is missing is not said: $(cat said)"
 
-expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$work/prefix/include/crescent" -o libcosine.so \
+expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$work/prefix/include" -o libcosine.so \
     "$CRESCENT_SOURCE/examples/plugin/cosine.c" -lm
 expect 0 readme/build/plugin ./libcosine.so
 [ "$(cat printed)" = "main

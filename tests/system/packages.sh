@@ -35,21 +35,27 @@ done
 cp compilers/g++ compilers/clang++-19
 [ -z "$(PATH=$work/compilers other_compiler release)" ] || die "another compiler than clang++-19 is taken"
 
-# ./run also installs what the configuration requires, because it configures the tests with the rest.
+# ./run installs what the configuration of the program requires, ./test what that of the tests does.
 key() { tr '[:upper:]' '[:lower:]' <<<"$1" | sed -E 's/^lib//; s/-dev$//; s/[^a-z]//g'; }
 cd "$CRESCENT_SOURCE" || exit 1
 calls='(find_package|pkg_check_modules)\(\w+ (REQUIRED|QUIET)( IMPORTED_TARGET [^)]+)?'
-needs=$(cat CMakeLists.txt {cmake,src/*}/*.cmake {apps/cli,apps/explainer,src/gl,tests}/CMakeLists.txt |
-    grep -oE "$calls|crescent_need\(\w+ \w+::|find_library\(\w+" |
-    sed -E 's/.*\(//; s/ (REQUIRED|QUIET)$| \w+::$|_LIBRARY$//; s/.*IMPORTED_TARGET //')
-[ "$(wc -w <<<"$needs")" -ge 15 ] || die "too few libraries are found to be needed: $needs"
-for need in $needs; do
-    found=
-    for package in $(packages_of build); do
-        [[ $(key "$need") == "$(key "$package")"* ]] && found=$package
+# needs COUNT GROUPS FILE...: each library that these files search is a package of the groups; there are at least COUNT.
+needs() {
+    local count=$1 groups=$2 found library libraries
+    shift 2
+    libraries=$(cat "$@" | grep -oE "$calls|crescent_need\(\w+ \w+::|find_library\(\w+" |
+        sed -E 's/.*\(//; s/ (REQUIRED|QUIET)$| \w+::$|_LIBRARY$//; s/.*IMPORTED_TARGET //')
+    [ "$(wc -w <<<"$libraries")" -ge "$count" ] || die "too few libraries are found to be needed: $libraries"
+    for library in $libraries; do
+        found=
+        for package in $(packages_of $groups); do
+            [[ $(key "$library") == "$(key "$package")"* ]] && found=$package
+        done
+        [ -n "$found" ] || die "$library is needed to configure, and no package of '$groups' is it"
     done
-    [ -n "$found" ] || die "$need is needed to configure, and no package of the group 'build' is it"
-done
+}
+needs 12 "build" CMakeLists.txt {cmake,src/*}/*.cmake apps/cli/CMakeLists.txt
+needs 3 "build test" tests/CMakeLists.txt apps/explainer/CMakeLists.txt src/gl/CMakeLists.txt
 
 # Every file that has to state the version states that of VERSION.
 version=$(cat VERSION)

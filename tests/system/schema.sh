@@ -50,7 +50,7 @@ END
 # The samples of the tests of metrics.json: names, infinities, nothing measured, heavy tails; and three that must not
 # fit.
 mkdir samples
-expect 0 env -u GTEST_TOTAL_SHARDS CRESCENT_METRICS_SAMPLES=samples "${CRESCENT_TESTS:?the tests}" --gtest_brief=1 \
+expect 0 env -u GTEST_TOTAL_SHARDS CRESCENT_METRICS_SAMPLES=samples "${CRESCENT_REPORT_TESTS:?the tests of src/report}" --gtest_brief=1 \
     --gtest_filter='MetricsJson.*'
 expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
 import glob, json, sys

@@ -8,7 +8,14 @@ others="OpenEXR Imath Boost tomlplusplus hwy PNG PkgConfig"
 disabled=()
 for name in $others; do disabled+=("-DCMAKE_DISABLE_FIND_PACKAGE_$name=ON"); done
 
-mkdir outer && ln -s "$CRESCENT_SOURCE" outer/crescent
+# Below a folder src, as trees are fetched, and in a project whose own folders have the names of ours.
+mkdir -p outer/src && ln -s "$CRESCENT_SOURCE" outer/src/crescent
+for folder in "$CRESCENT_SOURCE"/src/*/; do
+    mkdir "outer/$(basename "$folder")"
+    for header in "$folder"*.h; do
+        printf '#error "a header of this project, not of crescent"\n' >"outer/$(basename "$folder")/${header##*/}"
+    done
+done
 cat >outer/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(outer LANGUAGES CXX)
@@ -18,18 +25,18 @@ foreach(name IN LISTS before)
   set(value_of_${name} "${${name}}")
 endforeach()
 set(seen "before;name;seen;changed")
-add_subdirectory(crescent)
+add_subdirectory(src/crescent)
 foreach(name IN LISTS before)
   if(name MATCHES "^CMAKE_(CXX|BUILD|POSITION|INTERPROCEDURAL|MESSAGE|UNITY)" AND
      NOT "${${name}}" STREQUAL "${value_of_${name}}")
     message(FATAL_ERROR "crescent changed ${name} to ${${name}}")
   endif()
 endforeach()
-get_property(tests DIRECTORY crescent PROPERTY TESTS)
-if(tests OR TARGET crescent_tests OR TARGET crescent_cli OR TARGET crescent_explainer)
+get_property(tests DIRECTORY src/crescent PROPERTY TESTS)
+if(tests OR TARGET crescent_check_tests OR TARGET crescent_cli OR TARGET crescent_explainer)
   message(FATAL_ERROR "crescent builds more than its libraries: ${tests}")
 endif()
-get_property(targets DIRECTORY crescent PROPERTY BUILDSYSTEM_TARGETS)
+get_property(targets DIRECTORY src/crescent PROPERTY BUILDSYSTEM_TARGETS)
 foreach(target IN LISTS targets)
   get_target_property(sources ${target} SOURCES)
   if(sources MATCHES "crescent/tests/")
@@ -38,6 +45,7 @@ foreach(target IN LISTS targets)
 endforeach()
 find_package(GTest REQUIRED)
 add_executable(mine mine.cpp)
+target_include_directories(mine BEFORE PRIVATE .)
 target_link_libraries(mine PRIVATE GTest::gmock GTest::gtest_main)
 if(CRESCENT_RUN)
   target_link_libraries(mine PRIVATE crescent::check crescent::crescent)
@@ -100,7 +108,7 @@ configure build "${disabled[@]}" -DCMAKE_CXX_COMPILER=g++ -DCMAKE_CXX_FLAGS='-Wa
     -DCMAKE_CXX_FLAGS_RELEASE=-O1
 grep -q '^CMAKE_BUILD_TYPE:STRING=$' outer/build/CMakeCache.txt ||
     die "crescent chose a build type: $(grep BUILD_TYPE outer/build/CMakeCache.txt)"
-installs=outer/build/crescent/cmake_install.cmake
+installs=outer/build/src/crescent/cmake_install.cmake
 [ ! -s $installs ] || ! grep -q 'INSTALL.*FILES "' $installs || die "crescent installs itself with its parent"
 library='openexr|imath|boost|toml|hwy|highway|libpng|pango|cairo'
 ! grep -iE "^($library)[^=]*=" outer/build/CMakeCache.txt || die "other libraries are searched for"

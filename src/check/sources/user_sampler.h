@@ -42,11 +42,10 @@ concept HasSignature = requires { typename Signature<M>::Parameters; };
 
 /// The sampler itself, for one that is passed by a pointer: T*, unique_ptr, shared_ptr.
 template <class S>
-concept Pointing = std::is_pointer_v<S> || requires(const S s) {
+concept Pointing = requires(const S s) { *s; } && (std::is_pointer_v<S> || requires(const S s) {
     typename S::element_type;
     s.get();
-    *s;
-};
+});
 template <class S> struct Sampler {
     using Type = S;
     static S& of(S& s) { return s; }

@@ -288,7 +288,7 @@ def run_cpp(page: Page, block: Block) -> str:
     c = block.language == "c"
     flags = ["-Wall", "-Wextra", "-Werror", "-O1", *(["-std=c11"] if c else ["-std=c++20"])]
     tree = [f"-isystem{page.folder / at}" for at in ("src", "include", "apps/explainer")] if '#include "' in block.text else []
-    includes = [*tree, *(f"-isystem{install(page) / at}" for at in ("include/crescent", "include"))]
+    includes = [*tree, *(f"-isystem{install(page) / at}" for at in ("include",))]
     compiler = os.environ.get("CC", "cc") if c else page.setting.compiler
     if not re.search(r"\bmain\(", block.text):
         return page.must(compiler, *flags, *includes, "-fsyntax-only", file)

@@ -1,6 +1,6 @@
 # Prepares for plugins.md: crescent in ~/crescent, and samplers: a program, a library and a Python file next to an experiment.
 cmake --install build --prefix ~/crescent >/dev/null
-cc -O2 -shared -fPIC -I ~/crescent/include/crescent examples/plugin/cosine.c -o libmine.so -lm
+cc -O2 -shared -fPIC -I ~/crescent/include examples/plugin/cosine.c -o libmine.so -lm
 cp examples/pipe_samplers/cosine.py theirs.py
 cat >mine.py <<'PY'
 import crescent

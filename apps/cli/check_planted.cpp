@@ -1,9 +1,8 @@
-// `crescent check --planted` and `--right`: the check itself, on samplers whose faults are known.
+// `crescent check --planted`: the check itself, on samplers whose faults are known.
 #include <algorithm>
 #include <cstdio>
 
 #include "check.h"
-#include "tests/known_samplers/correct/false_alarms.h"
 #include "tests/known_samplers/faulty/planted.h"
 
 namespace crescent::cli {
@@ -53,22 +52,6 @@ int check_planted(const CheckFlags& flags, Progress& monitor) {
     print(text);
     write_files(flags, j);
     return exit_of(j.state);
-}
-
-namespace {
-
-bool keeps_promise(const FalseAlarmStudy& study) {
-    return rate_interval(study.false_alarms, study.checked).first <= study.alpha;
-}
-
-}  // namespace
-
-int check_right(const CheckFlags& flags, ProgressMonitor& monitor) {
-    const FalseAlarmStudy study = measure_false_alarms(flags.first, flags.right, test_settings_of(flags), monitor);
-    std::string text;
-    for (const std::string& line : study.message) text += line;
-    print(text + false_alarm_text(study));
-    return keeps_promise(study) ? passed : failed;
 }
 
 }  // namespace crescent::cli
