@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scene/scene_data.h"
@@ -20,15 +21,18 @@ struct FlipImage {
 /// Of a viewer 0.7 m from a 0.7 m wide display of 3840 pixels.
 inline constexpr double flip_pixels_per_degree = 67.0206;
 
-/// Channels in [0, 1] (clamped). `pixels_per_degree` of the viewer.
-std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, double pixels_per_degree);
+/// Channels in [0, 1] (clamped). `pixels_per_degree` of the viewer. `isa`, here and below: a name of isas(), which all
+/// return the same bits; "": the best of this machine.
+std::vector<float> ldr_flip(
+    const FlipImage& reference, const FlipImage& test, double pixels_per_degree, const std::string& isa = "");
 /// Radiance of any range: the largest LDR-FLIP over the exposures of flip_exposures(), tone-mapped by ACES.
-std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, double pixels_per_degree);
+std::vector<float> hdr_flip(
+    const FlipImage& reference, const FlipImage& test, double pixels_per_degree, const std::string& isa = "");
 
 /// Returns the mean of hdr_flip() over each box, for each test picture: out[test][box]. Only the pixels of a box and
 /// those that its filters reach are evaluated.
-std::vector<std::vector<double>> mean_hdr_flips(
-    const FlipImage& reference, std::span<const FlipImage> tests, std::span<const Box> boxes, double pixels_per_degree);
+std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, std::span<const FlipImage> tests,
+    std::span<const Box> boxes, double pixels_per_degree, const std::string& isa = "");
 
 /// The exposures of HDR-FLIP: 2^start .. 2^stop in `count` equal steps.
 struct FlipExposures {

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "math/simd/random.h"
 #include "metrics/flip.h"
+#include "render/kernel.h"
 
 namespace crescent::inline metrics {
 namespace flip_test {
@@ -35,7 +38,8 @@ TEST(Flip, AgreesWithThePublishedProgram) {
         std::vector<float> a[3], b[3];
         for (int c = 0; c < 3; ++c) a[c] = plane(c, false, lift), b[c] = plane(c, true, lift);
         const auto flip = lift > 0 ? hdr_flip : ldr_flip;
-        EXPECT_NEAR(mean(flip({90, 60, a[0], a[1], a[2]}, {90, 60, b[0], b[1], b[2]}, 67.0206)), oracle, 1e-4) << lift;
+        EXPECT_NEAR(mean(flip({90, 60, a[0], a[1], a[2]}, {90, 60, b[0], b[1], b[2]}, 67.0206, "")), oracle, 1e-4)
+            << lift;
     }
 }
 
@@ -55,6 +59,29 @@ TEST(Flip, OfABoxIsThatOfTheWholePictureThere) {
                 sum += static_cast<double>(map[static_cast<std::size_t>(90 * y + x)]);
         EXPECT_EQ(means[1][k], sum / (boxes[k].width() * boxes[k].height())) << k;
         EXPECT_EQ(means[0][k], 0) << k;
+    }
+}
+
+/// Over several tiles, with radiances that no tone map can show.
+TEST(Flip, ReturnsTheSameBitsOnEveryInstructionSet) {
+    constexpr int width = 150, height = 70;
+    std::vector<float> a[3], b[3];
+    for (std::uint32_t c = 0; c < 3; ++c)
+        for (std::uint32_t i = 0; i < width * height; ++i) {
+            const Vec2<float> u = simd::draw(c, i, 0);
+            a[c].push_back(u.x * 100);
+            b[c].push_back(u.y < 0.5f ? u.x * 100 : u.y);
+        }
+    const float odd[] = {
+        0, -1, 1e-38f, 1e30f, 3e38f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()};
+    for (std::size_t k = 0; k < std::size(odd); ++k) b[k % 3][100 * k] = odd[k];
+    const FlipImage reference{width, height, a[0], a[1], a[2]}, test{width, height, b[0], b[1], b[2]};
+    const std::vector<float> hdr = hdr_flip(reference, test, 67, "scalar"),
+                             ldr = ldr_flip(reference, test, 67, "scalar");
+    for (const float v : hdr) EXPECT_TRUE(v >= 0 && v <= 1) << v;
+    for (const std::string& isa : isas()) {
+        EXPECT_EQ(hdr_flip(reference, test, 67, isa), hdr) << isa;
+        EXPECT_EQ(ldr_flip(reference, test, 67, isa), ldr) << isa;
     }
 }
 

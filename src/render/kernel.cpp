@@ -4,6 +4,7 @@
 
 #include "base/errors.h"
 #include "base/text.h"
+#include "render/flip_kernel.h"
 #include "samplers/all.h"
 
 // The list of instruction sets with kernels. kernels.cmake reads it too: it makes kernel_NAME.cpp for each set of the
@@ -39,7 +40,10 @@
 namespace crescent::inline render {
 
 KernelTable scalar_kernels();
-#define CRESCENT_DECLARE(name, needs) KernelTable name##_kernels();
+FlipKernel scalar_flip();
+#define CRESCENT_DECLARE(name, needs) \
+    KernelTable name##_kernels();     \
+    FlipKernel name##_flip();
 CRESCENT_ISAS(CRESCENT_DECLARE)
 #undef CRESCENT_DECLARE
 
@@ -120,6 +124,15 @@ const KernelTable& kernels_for(const std::string& isa) {
         throw InputError({"--isa", 0, 0}, "this machine has no " + isa + "; it has " + std::string(best) + " at best");
     }
     throw InputError({"--isa", 0, 0}, expected_one_of(names, isa));
+}
+
+FlipKernel flip_kernel_for(const std::string& isa) {
+    const std::string_view found = kernels_for(isa).isa;
+#define CRESCENT_FIND(name, needs) \
+    if (found == #name) return name##_flip();
+    CRESCENT_ISAS(CRESCENT_FIND)
+#undef CRESCENT_FIND
+    return scalar_flip();
 }
 
 int arm_index(std::string_view sampler) {

@@ -25,7 +25,7 @@ namespace {
 /// Adds FLIP, which costs more than all other metrics, for the first seeds of the series at one sample count: the
 /// experiment's own, at which arms are compared, or the highest.
 void add_flips(const RunPlan& plan, const Job& job, const std::vector<Film>& films, const ReferenceFilm& reference,
-    std::vector<RunMetrics>& out) {
+    const std::string& isa, std::vector<RunMetrics>& out) {
     const Experiment& experiment = plan.experiment;
     const std::vector<std::uint32_t> series = seeds_of(plan.whole);
     const auto place = static_cast<std::size_t>(std::ranges::find(series, job.seed) - series.begin());
@@ -38,12 +38,12 @@ void add_flips(const RunPlan& plan, const Job& job, const std::vector<Film>& fil
     const FlipImage test[] = {image(films[f])};
     std::vector<Box> boxes;
     for (const Region& region : experiment.regions) boxes.push_back(region.box);
-    const auto flips = mean_hdr_flips(image(reference), test, boxes, flip_pixels_per_degree);
+    const auto flips = mean_hdr_flips(image(reference), test, boxes, flip_pixels_per_degree, isa);
     for (std::size_t r = 0; r < boxes.size(); ++r) out[f].regions[r].flip = flips[0][r];
 }
 
-std::vector<RunMetrics> metrics_of(
-    const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
+std::vector<RunMetrics> metrics_of(const RunPlan& plan, const Prepared& prepared, const Job& job,
+    const std::vector<Film>& films, const std::string& isa) {
     const ReferenceFilm* reference = reference_of(plan.experiment, prepared, job.s);
     ensure(reference != nullptr, "references are made before the jobs that are measured against them");
     std::vector<RunMetrics> out(films.size());
@@ -51,7 +51,7 @@ std::vector<RunMetrics> metrics_of(
         out[r] =
             measure(plan.experiment, {job.arm, films[r].n, job.s, job.seed}, films[r], *reference, prepared.shapes);
     });
-    add_flips(plan, job, films, *reference, out);
+    add_flips(plan, job, films, *reference, isa, out);
     return out;
 }
 
@@ -63,7 +63,7 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     const Stopwatch start;
     std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor);
     out.samples = samples, out.seconds = start.seconds();
-    out.metrics = metrics_of(plan, prepared, out.job, films);
+    out.metrics = metrics_of(plan, prepared, out.job, films, engine.isa);
     if (keep_films) out.films = std::move(films);
     else if (checkpoint) checkpoint->add(out.metrics);
 }

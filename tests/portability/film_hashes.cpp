@@ -1,6 +1,6 @@
 // The bits of crescent's results: functions of math/, and, for every experiment, each film at its own seed on each
-// instruction set of this machine, and its references. Two builds agree if this prints the same; it needs no folder
-// that draws or reports, so that a second compiler has little to build.
+// instruction set of this machine, its references, and FLIP. Two builds agree if this prints the same; it needs no
+// folder that draws or reports, so that a second compiler has little to build.
 //
 //
 //   film_hashes FILE.toml...            the hashes
@@ -16,6 +16,7 @@
 #include "experiment/experiment.h"
 #include "math/functions.h"
 #include "math/simd/random.h"
+#include "metrics/flip.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
 #include "render/reference/reference.h"
@@ -79,6 +80,19 @@ void print_under_a_sky(Experiment e) {
         std::cout << e.file << " paired " << hash(film) << '\n';
 }
 
+/// FLIP of the first arm's film.
+void print_flip(const Experiment& experiment, const Scene& scene, const ReferenceFilm& reference) {
+    ProgressMonitor monitor;
+    const ArmPlan& arm = experiment.arms.front();
+    const Film film = estimate_films(scene, arm.sampler, {arm.n.front()}, experiment.seed, "scalar", monitor).front();
+    const auto image = [](const auto& of) { return FlipImage{of.width, of.height, of.r, of.g, of.b}; };
+    for (const std::string& isa : isas()) {
+        const std::vector<float> map = hdr_flip(image(reference), image(film), flip_pixels_per_degree, isa);
+        std::cout << experiment.file << ' ' << isa << " flip " << arm.name << ' ' << std::hex
+                  << XXH3_64bits(map.data(), map.size() * sizeof(float)) << std::dec << '\n';
+    }
+}
+
 void print(const Experiment& experiment) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
@@ -90,8 +104,10 @@ void print(const Experiment& experiment) {
     for (const std::string& isa : isas())
         for (const ReferenceFilm& film : monte_carlo_reference({scene}, experiment, isa, monitor))
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
-    for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, monitor))
+    for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, monitor)) {
         std::cout << experiment.file << " quadrature " << hash(film) << '\n';
+        print_flip(experiment, scene, film);
+    }
     print_under_a_sky(experiment);
 }
 
