@@ -2,6 +2,7 @@
 // larger commands are in grammar_*.cpp.
 #include "arguments.h"
 
+#include <span>
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -181,6 +182,16 @@ Work print_text(std::FILE* to, const std::string& text, int code) {
     };
 }
 
+/// Returns whether a flag that may have no value has an empty one: CLI11 does not tell them apart.
+bool has_empty_value(std::span<char*> arguments, std::string_view flag) {
+    bool inside = false;
+    for (const std::string_view argument : arguments) {
+        if (argument == std::string(flag) + "=" || (inside && argument.empty())) return true;
+        if (argument.starts_with('-')) inside = argument == flag;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::function<int()> parse(int argc, char** argv) {
@@ -200,6 +211,8 @@ std::function<int()> parse(int argc, char** argv) {
     app.add_subcommand("sweep", "Run an experiment over a grid, on one machine or many (Python package).");
     add_version(app, work);
     if (argc > 1 && std::string_view(argv[1]) == "sweep") return [argv] { return sweep(argv); };
+    if (has_empty_value({argv, static_cast<std::size_t>(argc)}, "--accept"))
+        return print_text(stderr, "--accept: expected the name of a view, found an empty one\n", misused);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

@@ -97,11 +97,13 @@ struct CompareFlags {
     std::string json, junit, markdown;  // files to write
     std::string because, store;         // of accept
     std::vector<std::string> views;     // to accept; empty: all
-    bool strict = false, plan = false, accept = false;
+    bool new_baseline = false, plan = false, accept = false;
 };
 int compare(const CompareFlags& flags);
 /// `crescent compare SUITE.toml`, and --baseline DIR --candidate DIR.
 int compare_suite(const CompareFlags& flags);
+/// Writes a JUnit file that says that the call failed, in place of that of an earlier call.
+void report_failure(const std::string& path, const std::string& file, const std::string& message);
 
 struct ImportFlags {
     std::string file, out, material;  // "": all materials

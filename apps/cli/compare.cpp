@@ -1,4 +1,5 @@
 // crescent compare: metrics, bias tests, plates and a report for renders of other programs.
+#include <filesystem>
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -127,7 +128,7 @@ std::string command_of(const CompareFlags& f) {
 void forbid_suite_flags(const CompareFlags& f) {
     const std::pair<const char*, bool> only[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
         {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
-        {"--strict", f.strict}, {"--plan", f.plan}, {"--accept", f.accept}};
+        {"--new-baseline", f.new_baseline}, {"--plan", f.plan}, {"--accept", f.accept}};
     for (const auto& [flag, given] : only)
         if (given)
             throw InputError(
@@ -148,6 +149,22 @@ int error_rates(const CompareFlags& flags) {
     return passed;
 }
 
+int compare_arms(const CompareFlags& flags, const std::string& out) {
+    const ComparePlan plan = plan_of(flags_of(flags), flags.file);
+    Provenance provenance;
+    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
+    provenance.command = command_of(flags);
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    std::string summary;
+    const CompareResult result = crescent::compare_renders(plan, {out}, provenance, progress, summary);
+    progress.clear();
+    print(summary);
+    return result.state == CompareResult::State::holds ? passed
+        : result.state == CompareResult::State::fails  ? failed
+                                                       : inconclusive;
+}
+
 }  // namespace
 
 int compare(const CompareFlags& flags) {
@@ -160,20 +177,14 @@ int compare(const CompareFlags& flags) {
     forbid_suite_flags(flags);
     if (flags.file.empty() && flags.arms.empty())
         throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
-    const ComparePlan plan = plan_of(flags_of(flags), flags.file);
-    Provenance provenance;
-    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
-    provenance.command = command_of(flags);
-    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
-    const StopOnSignal stop(progress);
-    std::string summary;
-    const CompareResult result =
-        crescent::compare_renders(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
-    progress.clear();
-    print(summary);
-    return result.state == CompareResult::State::holds ? passed
-        : result.state == CompareResult::State::fails  ? failed
-                                                       : inconclusive;
+    const std::string out = flags.out.empty() ? "out/compare" : flags.out, junit = out + "/junit.xml";
+    try {
+        return compare_arms(flags, out);
+    } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
+        std::error_code ignored;  // that of an earlier call says nothing about this one
+        if (std::filesystem::is_regular_file(junit, ignored)) report_failure(junit, flags.file, e.what());
+        throw;
+    }
 }
 
 }  // namespace crescent::cli

@@ -19,7 +19,8 @@ namespace {
 /// The keys of [suite] that the flags replace.
 SuiteFlags suite_flags(const CompareFlags& f) {
     SuiteFlags out;
-    out.baseline = f.baseline, out.candidate = f.candidate, out.baseline_only = f.plan;
+    out.baseline = f.baseline, out.candidate = f.candidate,
+    out.baseline_only = f.plan || (f.accept && !f.views.empty());
     const auto add = [&](const char* key, const std::string& text, bool toml) {
         if (!text.empty()) out.keys.push_back({{"suite", key}, text, toml, fmt::format("--{} {}", key, text)});
     };
@@ -56,7 +57,7 @@ std::string suite_command(const CompareFlags& f) {
     for (const auto& [flag, value] : all)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     for (const std::string& layer : f.layers) out += " --layer " + shell_word(layer);
-    if (f.strict) out += " --strict";
+    if (f.new_baseline) out += " --new-baseline";
     return out;
 }
 
@@ -79,13 +80,19 @@ std::string now_text() {
     return out;
 }
 
-int accept_suite(const CompareFlags& flags, const Suite& suite, Progress& progress) {
+int accept_suite(const CompareFlags& flags, Progress& progress) {
     const Acceptance acceptance{
         flags.views, flags.because, now_text(), fmt::format("crescent {} ({})", crescent::version(), commit())};
-    const std::vector<std::string> lines = accept_views(suite, acceptance, progress);
+    std::string folder;
+    const auto read = [&] {
+        Suite suite = read_suite(flags.file, suite_flags(flags));
+        folder = baseline_folder(suite);
+        return suite;
+    };
+    const std::vector<std::string> lines = accept_views(read, acceptance, progress);
     progress.clear();
-    print(fmt::format("{}\n{}/baseline.json has the new baseline of {} view{}.\n", fmt::join(lines, "\n"),
-        baseline_folder(suite), lines.size(), lines.size() == 1 ? "" : "s"));
+    print(fmt::format("{}\n{}/baseline.json has the new baseline of {} view{}.\n", fmt::join(lines, "\n"), folder,
+        lines.size(), lines.size() == 1 ? "" : "s"));
     return passed;
 }
 
@@ -98,31 +105,49 @@ int plan_suite(const CompareFlags& flags, const Suite& suite, Progress& progress
     return passed;
 }
 
-}  // namespace
-
-int compare_suite(const CompareFlags& flags) {
-    forbid_other_flags(flags);
-    keep_freed_memory();
+int test_suite(const CompareFlags& flags) {
     const Suite suite = read_suite(flags.file, suite_flags(flags));
     Provenance provenance;
     provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
     provenance.command = suite_command(flags);
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
-    if (flags.accept) return accept_suite(flags, suite, progress);
     if (flags.plan) return plan_suite(flags, suite, progress);
     for (const std::string& path : {flags.json, flags.junit, flags.markdown})
         if (!path.empty()) can_write(path);
     Staging staging(flags.out.empty() ? "out/compare" : flags.out);
     const SuiteResult result = crescent::compare_suite(suite, progress);
-    if (!flags.json.empty()) write_whole(flags.json, suite_json(suite, result, flags.strict, provenance));
-    if (!flags.junit.empty()) write_whole(flags.junit, suite_junit(suite, result, flags.strict));
+    if (!flags.json.empty()) write_whole(flags.json, suite_json(suite, result, flags.new_baseline, provenance));
+    if (!flags.junit.empty()) write_whole(flags.junit, suite_junit(suite, result, flags.new_baseline));
     if (!flags.markdown.empty()) write_whole(flags.markdown, suite_markdown(suite, result, provenance));
     staging.write("report.html", suite_html(suite, result, provenance));
     staging.commit(progress);
     progress.clear();
     print(suite_summary(suite, result));
-    return exit_code(result, flags.strict);
+    return exit_code(result, flags.new_baseline);
+}
+
+}  // namespace
+
+void report_failure(const std::string& path, const std::string& file, const std::string& message) {
+    try {
+        write_whole(path, failure_junit(file.empty() ? "crescent compare" : file, message));
+    } catch (const OutputError&) {  // the failure itself is reported
+    }
+}
+
+int compare_suite(const CompareFlags& flags) {
+    forbid_other_flags(flags);
+    keep_freed_memory();
+    try {
+        if (!flags.accept) return test_suite(flags);
+        Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+        const StopOnSignal stop(progress);
+        return accept_suite(flags, progress);
+    } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
+        if (!flags.junit.empty()) report_failure(flags.junit, flags.file, e.what());
+        throw;
+    }
 }
 
 }  // namespace crescent::cli

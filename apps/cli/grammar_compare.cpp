@@ -16,7 +16,8 @@ Exit codes: 0 no assertion fails; 1 an assertion fails, or with --expect same a
 difference was found; 4 --expect same, and too few renders to find one.
 
 A FILE with a table [suite] compares the views of a baseline and a candidate. Written under
-DIR: report.html. Exit codes: 1 a view changed, is noisier or is missing; 4 too few renders.)";
+DIR: report.html. Exit codes: 1 a view changed, is noisier, is missing or is new; 2 a view cannot
+be read; 4 too few renders.)";
 
 /// The flags of a suite.
 void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
@@ -29,7 +30,7 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
     c.add_option("--candidate", f->candidate, "the same of the renders to be compared")
         ->type_name("DIR")
         ->check(not_empty);
-    c.add_flag("--strict", f->strict, "of a suite: new views fail");
+    c.add_flag("--new-baseline", f->new_baseline, "of a suite: views without a baseline do not fail");
     c.add_flag("--plan", f->plan, "of a suite: how many renders the smallest difference needs, from the baseline");
     c.add_option_function<std::vector<std::string>>(
          "--accept",

@@ -308,6 +308,7 @@ std::string Staging::obstacle(const std::string& name) const {
     struct stat s{};
     if (lstat((out_ / name).c_str(), &s) != 0) return "";
     if (S_ISDIR(s.st_mode)) return std::strerror(EISDIR);
+    if (S_ISLNK(s.st_mode) && contains(adopted_, name)) return "";
     if (!S_ISREG(s.st_mode)) return "a link or a device has that name";
     return is_mounted(out_ / name) ? "something is mounted there" : "";
 }
@@ -338,6 +339,7 @@ void Staging::write(const std::string& name, const std::string& text) {
 }
 
 void Staging::adopt(const Names& names) {
+    adopted_.insert(adopted_.end(), names.begin(), names.end());
     const fs::path list = out_ / list_of(kind_), new_list = work_ / "scratch" / "list";
     if (!is_there(out_)) return;
     Names all = names_in(list);
@@ -363,7 +365,7 @@ void Staging::commit(ProgressMonitor& monitor) {
     link_users_files("", ours);
     std::set<fs::path> synced;
     for (const std::string& name : all) {
-        synced.insert(fresh_outputs / name);
+        if (!fs::is_symlink(fresh_outputs / name)) synced.insert(fresh_outputs / name);
         for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path())
             synced.insert(fresh_outputs / up);
     }

@@ -47,7 +47,7 @@ public:
     void write(const std::string& name, std::span<const unsigned char> bytes);
     void write(const std::string& name, const std::string& text);
     /// Files of the user in the folder that commit() replaces or removes, as if an earlier run had written them. They
-    /// are listed at once; call it last before commit().
+    /// are listed at once; call it last before commit(). One that is a link is replaced, and what it points to stays.
     void adopt(const std::vector<std::string>& names);
     /// Returns a folder for temporary files; it is removed with the stage.
     std::string scratch() const { return (work_ / "scratch").string(); }
@@ -73,7 +73,7 @@ private:
     Path out_, work_;             // absolute, links followed
     std::shared_ptr<void> lock_;  // its destruction removes an empty work folder
     bool moving_ = false;         // outputs are being moved to their places
-    Names names_, messages_;
+    Names names_, messages_, adopted_;
 };
 
 /// For tests: a function called before each change that moves outputs, and missing features of the file system.

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
-#include <glob.h>
 #include <span>
 
 #include "base/parallel.h"
+#include "compare/file_pattern.h"
 #include "compare/file_warnings.h"
 #include "compare/renders.h"
 #include "compare/noise.h"
@@ -30,39 +30,11 @@ Box Tiles::box(std::size_t tile, int width, int height) const {
 
 namespace {
 
-/// Splits a pattern such as "seed%04d.exr", in which %d, %4d or %04d matches any digits. The text before and after is
-/// literal.
-struct Digits {
-    std::string before, after;
-};
-std::optional<Digits> digits_in(const std::string& pattern) {
-    const std::size_t percent = pattern.find('%');
-    if (percent == std::string::npos) return {};
-    const std::size_t end = pattern.find_first_not_of("0123456789", percent + 1);
-    if (end == std::string::npos || pattern[end] != 'd') return {};
-    return Digits{pattern.substr(0, percent), pattern.substr(end + 1)};
-}
-
-std::vector<std::string> globbed(const std::string& pattern) {
+std::vector<std::string> matching(const std::string& pattern, const SourceLocation& at) {
     std::error_code ignored;
     if (std::filesystem::exists(pattern, ignored)) return {pattern};  // "render[1].exr" may be a name
-    glob_t found{};
-    const int failed = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
     std::vector<std::string> paths;
-    for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
-    ::globfree(&found);
-    return paths;
-}
-
-std::vector<std::string> matching(const std::string& pattern) {
-    const std::optional<Digits> digits = digits_in(pattern);
-    if (!digits) return globbed(pattern);
-    std::vector<std::string> paths = globbed(digits->before + "*" + digits->after);
-    if ((digits->before + digits->after).find_first_of("*?[") != std::string::npos) return paths;
-    std::erase_if(paths, [&](const std::string& path) {  // the * matches digits only
-        const std::size_t from = digits->before.size(), to = path.size() - digits->after.size();
-        return to <= from || path.find_first_not_of("0123456789", from) < to;
-    });
+    for (MatchedFile& file : FilePattern(pattern, at, false).find()) paths.push_back(std::move(file.path));
     return paths;
 }
 
@@ -71,7 +43,7 @@ std::vector<std::string> matching(const std::string& pattern) {
 std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& at) {
     std::vector<std::string> out;
     for (const std::string& pattern : patterns) {
-        const std::vector<std::string> paths = matching(pattern);
+        const std::vector<std::string> paths = matching(pattern, at);
         if (paths.empty()) throw InputError(at, fmt::format("expected files that match '{}', found none", pattern));
         out.insert(out.end(), paths.begin(), paths.end());
     }

@@ -1,6 +1,7 @@
 // A ComparePlan from a compare file, flags, or both. Flags are inserted into the file's tree before it is parsed, so
 // that the same checks apply to both.
 #include "compare/plan.h"
+#include "compare/file_pattern.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -68,12 +69,18 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     to.members.push_back({"", at, std::move(value)});
 }
 
-/// Paths in a file are relative to its folder; those of flags to the current folder.
-void from_folder(Node* node, const std::filesystem::path& folder) {
+/// Paths in a file are relative to its folder, whose name is no pattern; those of flags to the current folder.
+void from_folder(Node* node, const std::filesystem::path& folder, bool pattern) {
     if (!node) return;
-    if (node->kind == Node::Kind::text && !node->text.empty()) node->text = (folder / node->text).string();
+    if (node->kind == Node::Kind::text && !node->text.empty()) {
+        const std::filesystem::path path = folder / node->text;
+        std::error_code ignored;
+        const bool exists = pattern && std::filesystem::exists(path, ignored);  // "render[1].exr" may be a name
+        if (!pattern) node->text = path.string();
+        else node->text = exists ? escape_pattern(path.string()) : pattern_in(folder.string(), node->text);
+    }
     for (Member& member : node->members)
-        if (node->kind == Node::Kind::array) from_folder(&member.value, folder);
+        if (node->kind == Node::Kind::array) from_folder(&member.value, folder, pattern);
 }
 void from_folder(Node& root, const std::string& file) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
@@ -82,10 +89,11 @@ void from_folder(Node& root, const std::string& file) {
         Member* found = node.find(key);
         return found ? &found->value : nullptr;
     };
-    from_folder(at(root, "reference"), folder);
+    from_folder(at(root, "reference"), folder, true);
     for (const auto& [table, key] : {std::pair{"arms", "files"}, std::pair{"masks", "file"}})
         if (Node* named = at(root, table))
-            for (Member& member : named->members) from_folder(at(member.value, key), folder);
+            for (Member& member : named->members)
+                from_folder(at(member.value, key), folder, std::string_view(key) == "files");
 }
 
 void check_names(ParseContext& context, ComparePlan& plan) {

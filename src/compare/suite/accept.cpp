@@ -1,16 +1,17 @@
 // The new folder of the baseline is written next to the old one and exchanged with it (base/files.h). Files of views
-// that are not accepted are linked into it.
+// that are not accepted are linked into it. Candidates are copied first, and the copies are measured.
 #include "compare/suite/suite.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <xxhash.h>
 
 #include "base/files.h"
 #include "base/text.h"
 #include "compare/renders.h"
+#include "compare/suite/manifest.h"
 #include "math/statistics.h"
 #include "output/format.h"
 
@@ -20,67 +21,60 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* manifest_name = "baseline.json";
-constexpr const char* manifest_format = "crescent baseline 1";
-
-std::string hash_of_file(const std::string& path) {
-    const OpenFile file(path);
-    XXH3_state_t* state = XXH3_createState();
-    XXH3_128bits_reset(state);
-    std::vector<char> bytes(std::size_t{1} << 20);
-    for (std::uint64_t at = 0; at < file.size();) {
-        const std::size_t n = file.read_some(at, bytes);
-        if (n == 0) break;
-        XXH3_128bits_update(state, bytes.data(), n);
-        at += n;
-    }
-    const XXH128_hash_t hash = XXH3_128bits_digest(state);
-    XXH3_freeState(state);
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
-
-/// A candidate's file and its name in the folder of the baseline.
+/// A candidate's file, its name in the folder of the baseline, and its copy.
 struct Accepted {
-    std::string from, name;
+    std::string from, name, copy;
 };
 
-std::string relative_to(const std::string& path, const std::string& folder) {
-    return fs::path(path).lexically_normal().lexically_relative(fs::path(folder).lexically_normal()).string();
+/// Returns the path in the baseline of a candidate's file, or of the `number`-th file if the wildcards differ.
+std::string path_in_baseline(
+    const FilePattern& target, const FilePattern& candidate, const MatchedFile& file, std::size_t number) {
+    auto path = target.path(file.view, file.wildcards);
+    if (!path) path = target.path(file.view, {fmt::format("{:03}", number)});
+    if (!path)
+        throw InputError(target.at(),
+            fmt::format("no name for {} follows from the pattern '{}': expected as many wildcards as in '{}'",
+                file.path, target.text(), candidate.text()));
+    const auto found = target.match(*path);
+    if (!found || found->view != file.view)
+        throw InputError(target.at(),
+            fmt::format("{} would be stored as {}, which the pattern '{}' does not match: expected a pattern that does",
+                file.path, *path, target.text()));
+    return *path;
 }
 
-std::vector<Accepted> renders_of(const Suite& suite, const SuiteView& view, const std::string& folder) {
+std::vector<Accepted> files_to_accept(const Suite& suite, const SuiteView& view, const std::string& folder) {
     std::vector<Accepted> out;
-    const SuiteOptions& o = suite.options;
-    for (std::size_t p = 0; p < o.candidate.size(); ++p) {
-        const std::string& target = o.baseline[o.baseline.size() == o.candidate.size() ? p : 0];
-        for (const MatchedFile& file : match_views(o.candidate[p])) {
+    for (std::size_t p = 0; p < suite.candidate.size(); ++p) {
+        const FilePattern& target = suite.baseline[suite.baseline.size() == suite.candidate.size() ? p : 0];
+        for (const MatchedFile& file : suite.candidate[p].find()) {
             if (file.view != view.name) continue;
-            auto path = path_from(target, view.name, file.wildcards);
-            if (!path) path = path_from(target, view.name, {fmt::format("{:03}", out.size() + 1)});
-            if (!path)
-                throw InputError({suite.file, 0, 0},
-                    fmt::format("no name for {} follows from the pattern '{}': expected as many wildcards as in '{}'",
-                        file.path, target, o.candidate[p]));
-            out.push_back({file.path, relative_to(*path, folder)});
+            const std::string path = path_in_baseline(target, suite.candidate[p], file, out.size() + 1);
+            out.push_back({file.path, name_in(folder, path), {}});
         }
     }
-    for (std::size_t i = 0; i < out.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (out[i].name == out[j].name)
-                throw InputError({out[i].from, 0, 0},
-                    fmt::format(
-                        "expected a name of its own in the baseline, found that of {}: {}", out[j].from, out[i].name));
+    std::map<std::string, std::string> names;
+    for (const Accepted& file : out) {
+        const auto [before, fresh] = names.emplace(file.name, file.from);
+        if (!fresh)
+            throw InputError({file.from, 0, 0},
+                fmt::format(
+                    "expected a name of its own in the baseline, found that of {}: {}", before->second, file.name));
+    }
     return out;
 }
 
 /// Returns the name of the moments of a view: "moments" in place of the wildcards.
 std::string moments_name(const Suite& suite, const SuiteView& view, const std::string& folder) {
-    for (const std::string& pattern : suite.options.baseline)
-        if (const auto path = path_from(pattern, view.name, {"moments"}); path && path->ends_with(".exr"))
-            return relative_to(*path, folder);
-    throw InputError({suite.file, 0, 0},
+    for (const FilePattern& pattern : suite.baseline) {
+        const auto path = pattern.path(view.name, {"moments"});
+        const auto found = path ? pattern.match(*path) : std::nullopt;
+        if (found && found->view == view.name && path->ends_with(".exr")) return name_in(folder, *path);
+    }
+    throw InputError(suite.baseline.front().at(),
         fmt::format(
-            "store = \"moments\": expected a pattern of the baseline with one * that ends with .exr, found '{}'",
+            "store = \"moments\": expected a pattern of the baseline that ends with .exr and matches 'moments' in "
+            "the place of one *, found '{}'",
             fmt::join(suite.options.baseline, "', '")));
 }
 
@@ -92,19 +86,6 @@ ComparePlan plan_of_candidate(const Suite& suite, const SuiteView& view, const s
     arm.name = "candidate", arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
     plan.regions = view.regions, plan.flip = false;
     return plan;
-}
-
-/// Returns one file for each different render, and whether there were several renders and all were equal.
-std::pair<std::vector<std::string>, bool> different_files(const Suite& suite, const SuiteView& view) {
-    std::vector<std::string> out;
-    std::vector<std::uint64_t> hashes;
-    for (const std::string& path : view.candidate) {
-        const std::uint64_t hash = pixel_hash(read_render(path, suite.options.layer));
-        if (std::find(hashes.begin(), hashes.end(), hash) != hashes.end()) continue;
-        hashes.push_back(hash), out.push_back(path);
-    }
-    const bool constant = out.size() == 1 && view.candidate.size() > 1;
-    return {std::move(out), constant};
 }
 
 Json statistics_of(const RenderStats& all) {
@@ -125,98 +106,237 @@ Json statistics_of(const RenderStats& all) {
     return out;
 }
 
-Json manifest_before(const std::string& folder) {
-    const std::string text = contents_of(folder + "/" + manifest_name);
-    Json out = Json::parse(text, nullptr, false);
-    if (text.empty()) out = {{"format", manifest_format}, {"views", Json::object()}};
-    if (!out.is_object() || out.value("format", "") != manifest_format || !out.value("views", Json()).is_object())
-        throw InputError({folder + "/" + manifest_name, 1, 1},
-            fmt::format("expected a manifest of '{}'; remove the file to begin a new one", manifest_format));
+/// Returns a source that reads the copies of candidates, under their own names.
+RenderSource source_of(const std::vector<Accepted>& files) {
+    std::map<std::string, std::string> copies;
+    for (const Accepted& file : files) copies.emplace(file.from, file.copy);
+    RenderSource out;
+    out.expand = [](const std::vector<std::string>& paths, const SourceLocation&) { return paths; };
+    out.read = [copies](const std::string& path, const std::string& layer) {
+        const std::string& copy = copies.at(path);
+        try {
+            Render render = read_render(copy, layer);
+            render.file = path;
+            return render;
+        } catch (const InputError& e) {
+            std::vector<Diagnostic> mistakes = e.diagnostics();
+            for (Diagnostic& mistake : mistakes)
+                if (mistake.at.file == copy) mistake.at.file = path;
+            throw InputError(std::move(mistakes));
+        }
+    };
     return out;
 }
 
-std::vector<const SuiteView*> wanted_views(const Suite& suite, const std::vector<std::string>& names) {
-    std::vector<const SuiteView*> out;
-    std::vector<std::string> known;
-    for (const SuiteView& view : suite.views) {
-        if (!view.candidate.empty()) known.push_back(view.name);
-        const bool named = names.empty() || std::find(names.begin(), names.end(), view.name) != names.end();
-        if (named && !view.candidate.empty()) out.push_back(&view);
+/// Returns one file for each different render, and whether there were several renders and all were equal.
+std::pair<std::vector<std::string>, bool> different_files(
+    const Suite& suite, const std::vector<Accepted>& files, const RenderSource& source) {
+    std::vector<std::string> out;
+    std::vector<std::uint64_t> hashes;
+    for (const Accepted& file : files) {
+        const std::uint64_t hash = pixel_hash(source.read(file.from, suite.options.layer));
+        if (std::find(hashes.begin(), hashes.end(), hash) != hashes.end()) continue;
+        hashes.push_back(hash);
+        out.push_back(file.from);
     }
-    for (const std::string& name : names)
-        if (std::find(known.begin(), known.end(), name) == known.end())
-            throw InputError({"--accept " + name, 0, 0}, "no candidate of this view: " + expected_one_of(known, name));
+    const bool constant = out.size() == 1 && files.size() > 1;
+    return {std::move(out), constant};
+}
+
+/// Returns the named views, or those that have a candidate if none is named. Throws InputError for a view that is
+/// unknown, or would be removed without a reason.
+std::vector<const SuiteView*> wanted_views(const Suite& suite, const Acceptance& acceptance) {
+    std::vector<const SuiteView*> out;
+    std::vector<std::string> available;
+    for (const SuiteView& view : suite.views) {
+        available.push_back(view.name);
+        const auto& names = acceptance.views;
+        const bool named = std::find(names.begin(), names.end(), view.name) != names.end();
+        if (named || (names.empty() && !view.candidate.empty())) out.push_back(&view);
+        if (named && view.candidate.empty() && acceptance.because.empty())
+            throw InputError({"--accept " + view.name, 0, 0},
+                "the candidate has no render of this view: expected --because TEXT with it, which removes the view "
+                "from the "
+                "baseline");
+    }
+    for (const std::string& name : acceptance.views)
+        if (std::find(available.begin(), available.end(), name) == available.end())
+            throw InputError(
+                {"--accept " + name, 0, 0}, "no candidate of this view: " + expected_one_of(available, name));
     return out;
 }
 
-/// Makes a file of the old folder appear in the new one, by a hard link if the file system supports it.
+/// Makes a file of the old folder appear in the new one, by a hard link if the file system supports it. A link stays a
+/// link.
 void link_or_copy(const std::string& from, const std::string& to) {
     std::error_code error;
-    fs::create_hard_link(from, to, error);
-    if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+    if (fs::is_symlink(fs::symlink_status(from, error))) {
+        fs::copy_symlink(from, to, error);
+    } else {
+        fs::create_hard_link(from, to, error);
+        if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+    }
     if (error) throw OutputError(fmt::format("cannot write {}: {}", to, error.message()));
 }
 
 void copy(const std::string& from, const std::string& to) {
     std::error_code error;
     fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-    if (error) throw OutputError(fmt::format("cannot write {}: {}", to, error.message()));
+    if (error) throw OutputError(fmt::format("cannot copy {} to {}: {}", from, to, error.message()));
+}
+
+/// The renders of the baseline of a view, as the manifest or its moments state it.
+std::size_t former_renders(const Suite& suite, const SuiteView& view) {
+    if (suite.manifest)
+        if (const auto found = suite.manifest->views.find(view.name); found != suite.manifest->views.end())
+            return found->second.renders;
+    return view.baseline.size();
+}
+
+/// Returns what a reader must know about a new baseline: fewer renders than before, pixels that are not finite; "" if
+/// there is nothing. Throws InputError if no reason is given for it.
+std::string check_reason(
+    const Suite& suite, const SuiteView& view, const RenderStats& all, const Acceptance& acceptance) {
+    std::vector<std::string> found;
+    if (const std::size_t before = former_renders(suite, view); view.candidate.size() < before)
+        found.push_back(fmt::format("fewer renders than the {} of the former baseline", before));
+    if (all.bad_pixels > 0) {
+        const std::vector<std::string>& lines = all.warnings;
+        const auto where = std::find_if(lines.begin(), lines.end(),
+            [](const std::string& line) { return line.find("not finite") != std::string::npos; });
+        found.push_back(fmt::format("{} not finite in some render{}", plural(all.bad_pixels, "pixel"),
+            where == lines.end() ? "" : " (" + *where + ")"));
+    }
+    const std::string text = fmt::format("{}", fmt::join(found, "; "));
+    if (!text.empty() && acceptance.because.empty())
+        throw InputError({"--accept " + view.name, 0, 0}, text + ": expected --because TEXT with it");
+    return text;
+}
+
+/// One --accept, under the lock of its staging folder.
+class Accepting {
+public:
+    Accepting(const Suite& suite, const Acceptance& acceptance, const std::string& folder, Staging& staging)
+        : suite_(suite), acceptance_(acceptance), folder_(folder), staging_(staging) {
+        if (suite.manifest) manifest_ = *suite.manifest;
+    }
+
+    void accept(const SuiteView& view) {
+        for (const std::string& path : view.baseline) replaced_.push_back(name_in(folder_, path));
+        if (const auto former = manifest_.views.find(view.name); former != manifest_.views.end())
+            for (const ManifestFile& file : former->second.files) replaced_.push_back(file.name);
+        manifest_.views.erase(view.name);
+        manifest_.removed.erase(view.name);
+        if (view.candidate.empty()) {
+            manifest_.removed[view.name] = {
+                {"accepted", acceptance_.date}, {"because", acceptance_.because}, {"program", acceptance_.program}};
+            lines_.push_back(fmt::format("{}: removed, {}", view.name, plural(view.baseline.size(), "file")));
+            return;
+        }
+        const bool moments = suite_.options.store == BaselineStorage::moments;
+        std::vector<Accepted> files = files_to_accept(suite_, view, folder_);
+        for (std::size_t k = 0; k < files.size(); ++k) {
+            files[k].copy =
+                moments ? fmt::format("{}/candidate-{}", staging_.scratch(), k) : staging_.path(files[k].name);
+            copy(files[k].from, files[k].copy);
+        }
+        const RenderSource source = source_of(files);
+        const auto [different, constant] = different_files(suite_, files, source);
+        ProgressMonitor quiet;
+        const RenderStats all = read_all(plan_of_candidate(suite_, view, different), quiet, source);
+        const std::string note = check_reason(suite_, view, all, acceptance_);
+        std::vector<std::string> names;
+        if (moments) {
+            names.push_back(moments_name(suite_, view, folder_));
+            write_moments(staging_.path(names.back()), all, 0, constant);
+            for (const Accepted& file : files) fs::remove(file.copy);
+        } else
+            for (const Accepted& file : files) names.push_back(file.name);
+        put_entry(view.name, names, files.size(), note, statistics_of(all));
+        lines_.push_back(fmt::format("{}: {} replaced by {} ({}){}", view.name, plural(view.baseline.size(), "file"),
+            plural(names.size(), "file"), plural(files.size(), "render"), note.empty() ? "" : "; " + note));
+    }
+
+    /// Keeps the files of a view that is not accepted. Without a former manifest they are listed in the new one.
+    void keep(const SuiteView& view) {
+        std::vector<std::string> names;
+        for (const std::string& path : view.baseline) {
+            names.push_back(name_in(folder_, path));
+            link_or_copy(path, staging_.path(names.back()));
+            replaced_.push_back(names.back());
+        }
+        if (suite_.manifest || names.empty()) return;
+        ManifestView& to = manifest_.views[view.name];
+        to.entry = {
+            {"because", "in the folder before the manifest"}, {"renders", names.size()}, {"files", Json::array()}};
+        for (std::size_t k = 0; k < names.size(); ++k)
+            to.entry["files"].push_back({{"file", names[k]}, {"xxh3_128", hash_of_file(view.baseline[k])}});
+    }
+
+    std::vector<std::string> publish(ProgressMonitor& monitor) {
+        replaced_.emplace_back(manifest_name);
+        staging_.write(manifest_name, manifest_text(manifest_));
+        staging_.adopt(replaced_);
+        staging_.commit(monitor);
+        return std::move(lines_);
+    }
+
+private:
+    void put_entry(const std::string& view, const std::vector<std::string>& names, std::size_t renders,
+        const std::string& note, Json statistics) {
+        Json entry = {{"accepted", acceptance_.date}, {"because", acceptance_.because},
+            {"program", acceptance_.program},
+            {"storage", suite_.options.store == BaselineStorage::moments ? "moments" : "renders"}, {"renders", renders},
+            {"statistics", std::move(statistics)}, {"files", Json::array()}};
+        if (!note.empty()) entry["note"] = note;
+        for (const std::string& name : names)
+            entry["files"].push_back({{"file", name}, {"xxh3_128", hash_of_file(staging_.path(name))}});
+        manifest_.views[view].entry = std::move(entry);
+    }
+
+    const Suite& suite_;
+    const Acceptance& acceptance_;
+    const std::string& folder_;
+    Staging& staging_;
+    Manifest manifest_;
+    std::vector<std::string> lines_, replaced_;
+};
+
+/// Throws InputError if a view that is not accepted differs from the manifest.
+void check_others(const Suite& suite, const std::vector<const SuiteView*>& accepted) {
+    if (!suite.manifest) return;
+    std::vector<Diagnostic> mistakes;
+    for (const SuiteView& view : suite.views) {
+        if (std::find(accepted.begin(), accepted.end(), &view) != accepted.end()) continue;
+        const std::vector<Diagnostic> found = manifest_differences(*suite.manifest, view.name, view.baseline);
+        mistakes.insert(mistakes.end(), found.begin(), found.end());
+    }
+    throw_if_any(std::move(mistakes));
 }
 
 }  // namespace
 
-std::string baseline_folder(const Suite& suite) {
-    const std::string& pattern = suite.options.baseline.front();
-    const std::size_t first = pattern.find_first_of("*?[{%");
-    const std::size_t slash = pattern.rfind('/', first == std::string::npos ? pattern.size() : first);
-    const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : pattern.substr(0, slash);
-    for (const std::string& other : suite.options.baseline)
-        if (folder != "." && !other.starts_with(folder + "/"))
-            throw InputError({suite.file, 0, 0},
-                fmt::format(
-                    "--accept: expected patterns of the baseline in one folder, found {} and '{}'", folder, other));
-    return folder;
-}
-
-std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acceptance, ProgressMonitor& monitor) {
-    const std::string folder = baseline_folder(suite);
-    const std::vector<const SuiteView*> views = wanted_views(suite, acceptance.views);
-    Json manifest = manifest_before(folder);
+std::vector<std::string> accept_views(
+    const std::function<Suite()>& read, const Acceptance& acceptance, ProgressMonitor& monitor) {
+    const Suite before = read();
+    const std::string folder = baseline_folder(before);
+    wanted_views(before, acceptance);
     Staging staging(folder, "baseline");
-    std::vector<std::string> lines, replaced;
+    const Suite suite = read();  // another call may have accepted views before this one had the lock
+    if (baseline_folder(suite) != folder)
+        throw InputError({suite.file, 0, 0}, "the suite file was changed while it was read");
+    const std::vector<const SuiteView*> views = wanted_views(suite, acceptance);
+    check_others(suite, views);
+    Accepting accepting(suite, acceptance, folder, staging);
     monitor.begin("accepting views", static_cast<double>(views.size()));
     for (const SuiteView* view : views) {
         monitor.check();
-        const auto [files, constant] = different_files(suite, *view);
-        ProgressMonitor quiet;
-        const RenderStats all = read_all(plan_of_candidate(suite, *view, files), quiet);
-        std::vector<std::string> names;
-        if (suite.options.store == BaselineStorage::moments) {
-            names.push_back(moments_name(suite, *view, folder));
-            write_moments(staging.path(names.back()), all, 0, constant);
-        } else {
-            for (const Accepted& render : renders_of(suite, *view, folder))
-                copy(render.from, staging.path(render.name)), names.push_back(render.name);
-        }
-        Json entry = {{"accepted", acceptance.date}, {"because", acceptance.because}, {"program", acceptance.program},
-            {"storage", suite.options.store == BaselineStorage::moments ? "moments" : "renders"},
-            {"renders", view->candidate.size()}, {"statistics", statistics_of(all)}, {"files", Json::array()}};
-        for (const std::string& name : names)
-            entry["files"].push_back({{"file", name}, {"xxh3_128", hash_of_file(staging.path(name))}});
-        manifest["views"][view->name] = std::move(entry);
-        for (const std::string& path : view->baseline) replaced.push_back(relative_to(path, folder));
-        lines.push_back(fmt::format("{}: {} replaced by {} ({})", view->name, plural(view->baseline.size(), "file"),
-            plural(names.size(), "file"), plural(view->candidate.size(), "render")));
+        accepting.accept(*view);
         monitor.advance(1);
     }
     for (const SuiteView& view : suite.views)
-        if (std::find(views.begin(), views.end(), &view) == views.end())
-            for (const std::string& path : view.baseline) link_or_copy(path, staging.path(relative_to(path, folder)));
-    replaced.push_back(manifest_name);
-    staging.write(manifest_name, text(manifest));
-    staging.adopt(replaced);
-    staging.commit(monitor);
-    return lines;
+        if (std::find(views.begin(), views.end(), &view) == views.end()) accepting.keep(view);
+    return accepting.publish(monitor);
 }
 
 }  // namespace crescent::inline comparison

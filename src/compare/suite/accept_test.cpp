@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <set>
 
 #include "base/files.h"
@@ -31,8 +32,8 @@ class Accepting : public ScratchFolder {
 protected:
     static constexpr int side = 64;
 
-    /// A float render in colour, uncompressed.
-    void render(const std::string& name, const SyntheticNoise& of, std::uint32_t seed) {
+    /// A float render in colour, uncompressed; its first pixel is multiplied by `first`.
+    void render(const std::string& name, const SyntheticNoise& of, std::uint32_t seed, double first = 1) {
         fs::create_directories(fs::path(path(name)).parent_path());
         std::vector<std::vector<float>> planes(3);
         Imf::Header header(side, side);
@@ -42,6 +43,7 @@ protected:
         for (std::uint32_t c = 0; c < 3; ++c) {
             for (std::uint32_t i = 0; i < side * side; ++i)
                 planes[c].push_back(static_cast<float>(synthetic_pixel(of, 3 * seed + c, i, side)));
+            planes[c][0] *= static_cast<float>(first);
             header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
             buffer.insert(channels[c],
                 Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes[c].data()), 4, 4 * std::size_t{side}));
@@ -63,9 +65,20 @@ protected:
         ProgressMonitor monitor;
         return compare_suite(suite(more), monitor);
     }
-    void accept(std::vector<std::string> views, const std::string& more = "") {
+    std::vector<std::string> accept(std::vector<std::string> views, const std::string& more = "",
+        const std::string& because = "a reason", const std::function<void()>& before_reading = {}) {
         ProgressMonitor monitor;
-        accept_views(suite(more), {std::move(views), "a reason", "2026-01-02T03:04:05Z", "crescent test"}, monitor);
+        const Acceptance acceptance{std::move(views), because, "2026-01-02T03:04:05Z", "crescent test"};
+        const auto read = [&] {
+            if (before_reading) before_reading();
+            return suite(more);
+        };
+        return accept_views(read, acceptance, monitor);
+    }
+    ViewResult view(const std::string& name) {
+        for (const ViewResult& each : compare().views)
+            if (each.name == name) return each;
+        return {};
     }
     std::set<std::string> baseline() const {
         std::set<std::string> out;
@@ -112,6 +125,107 @@ TEST_F(Accepting, UnknownViewsAreRefused) {
     EXPECT_FALSE(fs::exists(path("base")));
 }
 
+TEST_F(Accepting, TheBaselineIsReadAgainUnderTheLock) {
+    renders("out/a-", noise, 30, 2), renders("out/b-", noise, 40, 2);
+    int readings = 0;
+    accept({"a"}, "", "a reason", [&] {
+        if (++readings == 2) return;  // another process accepts b after this one has read the suite
+        ProgressMonitor monitor;
+        accept_views([&] { return suite(); }, {{"b"}, "", "", ""}, monitor);
+    });
+    EXPECT_EQ(readings, 2);
+    EXPECT_EQ(manifest()["views"].size(), 2u);
+    EXPECT_THAT(baseline(),
+        UnorderedElementsAre("a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "baseline.json", ".crescent-baseline"));
+    for (const ViewResult& each : compare().views) EXPECT_EQ(each.state, ViewState::same) << each.sentence;
+}
+
+TEST_F(Accepting, ABaselineThatDiffersFromItsManifestIsUnreadable) {
+    renders("out/a-", noise, 30, 3), renders("out/b-", noise, 40, 3);
+    accept({});
+    const std::string bytes = contents_of(path("base/a-1.exr"));
+    std::string damaged = bytes;
+    damaged.back() = static_cast<char>(damaged.back() ^ 1);
+    write("base/a-1.exr", damaged);
+    EXPECT_EQ(view("a").state, ViewState::unreadable);
+    EXPECT_THAT(view("a").sentence, HasSubstr("base/a-1.exr: its contents are not those of baseline.json"));
+    EXPECT_EQ(view("b").state, ViewState::same);
+    EXPECT_EQ(exit_code(compare(), true), 2);
+    EXPECT_THAT(refusal([&] { return accept({"b"}); }), HasSubstr("base/a-1.exr"));
+    fs::remove(path("base/a-1.exr"));
+    EXPECT_THAT(view("a").sentence, HasSubstr("base/a-1.exr: no such file of the baseline"));
+    write("base/a-1.exr", "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 1\n");
+    EXPECT_THAT(view("a").sentence, HasSubstr("git lfs pull"));
+    write("base/a-1.exr", bytes), write("base/a-7.exr", bytes);
+    EXPECT_THAT(view("a").sentence, HasSubstr("base/a-7.exr: baseline.json does not list this file"));
+    fs::remove(path("base/a-7.exr"));
+    EXPECT_EQ(view("a").state, ViewState::same);
+    for (const char* name : {"base/a-0.exr", "base/a-1.exr", "base/a-2.exr"}) fs::remove(path(name));
+    fs::remove(path("out/a-0.exr")), fs::remove(path("out/a-1.exr")), fs::remove(path("out/a-2.exr"));
+    EXPECT_EQ(view("a").state, ViewState::unreadable);  // nothing but the manifest has the view
+    accept({"a"});
+    EXPECT_EQ(compare().views.size(), 1u);
+}
+
+TEST_F(Accepting, ALessInformativeBaselineNeedsAReason) {
+    renders("out/a-", noise, 30, 3), renders("out/b-", noise, 40, 3);
+    accept({}, "", "");
+    fs::remove(path("out/a-2.exr"));
+    EXPECT_THAT(refusal([&] { return accept({"a"}, "", ""); }), HasSubstr("fewer renders than the 3"));
+    EXPECT_THAT(accept({"a"})[0], HasSubstr("fewer renders than the 3"));
+    EXPECT_EQ(manifest()["views"]["a"]["note"], "fewer renders than the 3 of the former baseline");
+    for (const char* name : {"out/b-0.exr", "out/b-1.exr", "out/b-2.exr"}) fs::remove(path(name));
+    EXPECT_EQ(view("b").state, ViewState::missing);
+    EXPECT_THAT(refusal([&] { return accept({"b"}, "", ""); }), HasSubstr("--because"));
+    accept({"b"});
+    EXPECT_EQ(manifest()["views"].size(), 1u);
+    EXPECT_EQ(manifest()["removed"]["b"]["because"], "a reason");
+    EXPECT_THAT(baseline(), UnorderedElementsAre("a-0.exr", "a-1.exr", "baseline.json", ".crescent-baseline"));
+}
+
+TEST_F(Accepting, PixelsThatAreNotFiniteNeedAReason) {
+    renders("out/a-", noise, 30, 2);
+    render("out/a-2.exr", noise, 50, std::nan(""));
+    const std::string refused = refusal([&] { return accept({"a"}, "", ""); });
+    EXPECT_THAT(refused, HasSubstr("1 pixel not finite"));
+    EXPECT_THAT(refused, HasSubstr("a-2.exr"));
+    EXPECT_FALSE(fs::exists(path("base/baseline.json")));
+    EXPECT_THAT(accept({"a"})[0], HasSubstr("not finite"));
+}
+
+TEST_F(Accepting, LinkedFilesAndFoldersAreFollowed) {
+    renders("out/a-", noise, 30, 2), renders("out/b-", noise, 40, 2);
+    accept({});
+    fs::create_directories(path("annex"));
+    for (const char* name : {"a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr"}) {
+        fs::rename(path(std::string("base/") + name), path(std::string("annex/") + name));
+        fs::create_symlink(std::string("../annex/") + name, path(std::string("base/") + name));
+    }
+    for (const ViewResult& each : compare().views) EXPECT_EQ(each.state, ViewState::same) << each.sentence;
+    renders("out/a-", brighter, 60, 2);
+    accept({"a"});
+    EXPECT_EQ(contents_of(path("base/a-1.exr")), contents_of(path("out/a-1.exr")));
+    EXPECT_EQ(contents_of(path("annex/b-1.exr")), contents_of(path("base/b-1.exr")));
+    EXPECT_TRUE(fs::is_symlink(path("base/b-1.exr")));
+    EXPECT_NE(contents_of(path("annex/a-1.exr")), contents_of(path("out/a-1.exr")));
+    fs::rename(path("base"), path("store"));
+    fs::create_symlink("store", path("base"));
+    renders("out/a-", noise, 70, 2);
+    accept({"a"});
+    EXPECT_TRUE(fs::is_symlink(path("base")));
+    EXPECT_EQ(contents_of(path("store/a-1.exr")), contents_of(path("out/a-1.exr")));
+}
+
+TEST_F(Accepting, NamesThatThePatternDoesNotMatchAreRefused) {
+    renders("out/a-", noise, 30, 2);
+    write("s.toml", "[suite]\nbaseline = \"base/{view}-[a-c].exr\"\ncandidate = \"out/{view}-*.exr\"\n");
+    ProgressMonitor monitor;
+    const auto read = [&] { return read_suite(path("s.toml"), {}); };
+    EXPECT_THAT(refusal([&] { return accept_views(read, {{}, "", "", ""}, monitor); }), HasSubstr("which the pattern"));
+    write("s.toml", "[suite]\nbaseline = \"out/{view}-*.exr\"\ncandidate = \"out/../out/{view}-*.exr\"\n");
+    EXPECT_THAT(refusal(read), HasSubstr("on both sides"));
+}
+
 TEST_F(Accepting, MomentsGiveTheNumbersOfTheirRenders) {
     const std::string region = "[view.same]\nregions.box = [3, 4, 40, 50]\n";
     for (const char* folder : {"base/", "out/"}) {
@@ -146,9 +260,10 @@ TEST_F(Accepting, MomentsGiveTheNumbersOfTheirRenders) {
         EXPECT_NEAR(static_cast<double>(a.means->tiles.different), static_cast<double>(b.means->tiles.different), 1);
         EXPECT_NEAR(std::log(a.mean_p), std::log(b.mean_p), 0.05 * std::fabs(std::log(a.mean_p)) + 0.05);
     }
-    const std::string without = refusal([&] { return compare("[view.same]\nregions.other = [3, 4, 40, 50]\n"); });
-    EXPECT_THAT(without, HasSubstr("s.toml:6:"));
-    EXPECT_THAT(without, HasSubstr("accept the view again"));
+    const SuiteResult without = compare("[view.same]\nregions.other = [3, 4, 40, 50]\n");
+    EXPECT_EQ(without.count(ViewState::unreadable), 1u);
+    EXPECT_THAT(without.views[1].sentence, HasSubstr("s.toml:6:"));
+    EXPECT_THAT(without.views[1].sentence, HasSubstr("accept the view again"));
 }
 
 TEST_F(Accepting, ADeterministicViewIsComparedExactlyWithItsMoments) {

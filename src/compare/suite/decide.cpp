@@ -84,7 +84,7 @@ std::string too_few_sentence(const ViewResult& view) {
 
 std::string exact_sentence(const ViewResult& view) {
     const BiasResult& means = *view.means;
-    if (means.identical) return "Deterministic: all renders of both sides have the same pixels.";
+    if (means.identical) return "Deterministic: all renders of both sides have the same R, G and B in every pixel.";
     if (!means.single) return "Deterministic, and its pixels changed.";
     const SingleDifference& s = *means.single;
     return fmt::format(
@@ -98,7 +98,11 @@ void decide_compared(ViewResult& view) {
     const bool changed = view.mean_p / share_of_means <= view.level;
     const int variance = compare_variances(view);
     if (!changed) forget_places(means);
-    if (view.exact) view.state = changed ? ViewState::changed : ViewState::same, view.sentence = exact_sentence(view);
+    if (!view.non_finite.empty()) {
+        view.state = ViewState::changed;
+        view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");
+    } else if (view.exact)
+        view.state = changed ? ViewState::changed : ViewState::same, view.sentence = exact_sentence(view);
     else if (changed) view.state = ViewState::changed, view.sentence = means.sentence;
     else if (variance > 0) view.state = ViewState::noisier, view.sentence = variance_sentence(view, 1);
     else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
@@ -106,7 +110,7 @@ void decide_compared(ViewResult& view) {
         view.state = ViewState::improved,
         view.sentence = "Same mean. " + variance_sentence(view, -1) + " " + power_sentence(means);
     else if (means.identical)
-        view.state = ViewState::same, view.sentence = "Identical: the same pixels in every render.";
+        view.state = ViewState::same, view.sentence = "Identical: every render has the same R, G and B in every pixel.";
     else view.state = ViewState::same, view.sentence = power_sentence(means);
     if (!view.too_few.empty() && view.state == ViewState::noisier) view.sentence += " " + too_few_sentence(view);
 }
@@ -130,10 +134,11 @@ std::size_t SuiteResult::count(ViewState state) const {
         std::count_if(views.begin(), views.end(), [&](const ViewResult& view) { return view.state == state; }));
 }
 
-int exit_code(const SuiteResult& result, bool strict) {
+int exit_code(const SuiteResult& result, bool new_baseline) {
     const auto any = [&](ViewState state) { return result.count(state) > 0; };
+    if (any(ViewState::unreadable)) return 2;
     if (any(ViewState::changed) || any(ViewState::noisier) || any(ViewState::missing)) return 1;
-    if (strict && any(ViewState::added)) return 1;
+    if (!new_baseline && any(ViewState::added)) return 1;
     return any(ViewState::too_few) ? 4 : 0;
 }
 
@@ -144,9 +149,12 @@ void decide(const Suite& suite, SuiteResult& result) {
     result.tested = tested.size();
     set_levels(tested, suite.options.alpha);
     for (ViewResult& view : result.views) {
+        if (view.state == ViewState::unreadable) continue;
         if (view.state == ViewState::added)
-            view.sentence = fmt::format("New: there is no baseline yet; --accept {} makes these {} the baseline.",
-                view.name, plural(view.candidate_renders, "render"));
+            view.sentence = fmt::format(
+                "New: no baseline was found; --accept {} makes {} the baseline, --new-baseline allows new views.",
+                view.name,
+                view.candidate_renders == 1 ? "this render" : fmt::format("these {} renders", view.candidate_renders));
         else if (view.state == ViewState::missing)
             view.sentence = fmt::format(
                 "Missing: the baseline has {}, the candidate none.", plural(view.baseline_renders, "render"));

@@ -79,17 +79,20 @@ TEST(SuiteDecisions, DeterministicViewsNeedNoLevel) {
 }
 
 TEST(SuiteDecisions, TheFirstExitCodeThatAppliesIsTaken) {
-    const auto code = [](std::initializer_list<ViewState> states, bool strict = false) {
+    const auto code = [](std::initializer_list<ViewState> states, bool new_baseline = false) {
         SuiteResult result;
         for (const ViewState state : states) result.views.emplace_back().state = state;
-        return exit_code(result, strict);
+        return exit_code(result, new_baseline);
     };
-    EXPECT_EQ(code({ViewState::same, ViewState::improved, ViewState::added}), 0);
-    EXPECT_EQ(code({ViewState::same, ViewState::added}, true), 1);
+    EXPECT_EQ(code({ViewState::same, ViewState::improved}), 0);
+    EXPECT_EQ(code({ViewState::same, ViewState::added}, true), 0);
+    EXPECT_EQ(code({ViewState::same, ViewState::added}), 1);
+    EXPECT_EQ(code({ViewState::unreadable, ViewState::changed, ViewState::too_few}, true), 2);
     EXPECT_EQ(code({ViewState::too_few, ViewState::same}), 4);
     EXPECT_EQ(code({ViewState::too_few, ViewState::missing}), 1);
     EXPECT_EQ(code({ViewState::too_few, ViewState::noisier}), 1);
-    EXPECT_EQ(code({ViewState::too_few, ViewState::added}, true), 1);
+    EXPECT_EQ(code({ViewState::too_few, ViewState::added}), 1);
+    EXPECT_EQ(code({ViewState::too_few, ViewState::added}, true), 4);
 }
 
 }  // namespace decide_test

@@ -257,6 +257,43 @@ bool is_constant(const std::vector<std::string>& files, const std::vector<std::s
     return files.size() > 1 && different.size() == 1;
 }
 
+std::uint64_t failing_pixels(const ArmStats& arm) {
+    return static_cast<std::uint64_t>(
+        std::count_if(arm.not_finite.begin(), arm.not_finite.end(), [](std::uint32_t n) { return n > 0; }));
+}
+
+/// Describes the pixels that are not finite on one side only; "" if there are none. A single one is a difference: a
+/// sampler that gives NaN is wrong, however rarely.
+std::string one_sided_failures(const RenderStats& all) {
+    const std::array<std::uint64_t, 2> pixels{failing_pixels(all.arms[0]), failing_pixels(all.arms[1])};
+    if ((pixels[0] > 0) == (pixels[1] > 0)) return "";
+    const std::size_t side = pixels[0] > 0 ? 0 : 1;
+    const ArmStats& arm = all.arms[side];
+    std::vector<std::string> files;
+    for (std::size_t k = 0; k < arm.failed_groups.size(); ++k)
+        if (arm.failed_groups[k].back() > 0) files.push_back(arm.files[k].path);
+    const auto first =
+        std::find_if(arm.not_finite.begin(), arm.not_finite.end(), [](std::uint32_t n) { return n > 0; });
+    const int index = static_cast<int>(first - arm.not_finite.begin());
+    constexpr std::array<const char*, 2> names{"baseline", "candidate"};
+    return fmt::format("{} not finite in {} of {} of the {} (first at ({}, {}) of {}), and none of the {}.",
+        pixels[side] == 1 ? "1 pixel is" : fmt::format("{} pixels are", pixels[side]), files.size(),
+        plural(arm.files.size(), "render"), names[side], index % all.width, index / all.width,
+        files.empty() ? "unknown" : files.front(), names[1 - side]);
+}
+
+/// Returns a view whose files cannot be compared.
+ViewResult unreadable_view(const Suite& suite, const SuiteView& view, const InputError& error) {
+    ViewResult out;
+    out.name = view.name;
+    out.smallest = suite.smallest(view);
+    out.baseline_renders = view.baseline.size();
+    out.candidate_renders = view.candidate.size();
+    out.state = ViewState::unreadable;
+    out.sentence = error.what();
+    return out;
+}
+
 }  // namespace
 
 std::uint64_t pixel_hash(const Render& render) {
@@ -271,6 +308,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     const RenderSource& source) {
     ViewResult out;
     out.name = view.name, out.smallest = suite.smallest(view);
+    if (suite.manifest) throw_if_any(manifest_differences(*suite.manifest, view.name, view.baseline));
     ViewFiles files(view, suite.options.layer, source, monitor);
     const std::vector<std::string> baseline = files.different(view.baseline, "baseline", out.notes),
                                    candidate = files.different(view.candidate, "candidate", out.notes);
@@ -299,6 +337,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     const BiasLevel level{alpha / static_cast<double>(compared), alpha};
     out.means = test_bias(plan, all, measured, 1, 0, level, quiet);
     out.mean_p = out.means->p;
+    out.non_finite = one_sided_failures(all);
     out.width = all.width, out.height = all.height;
     out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
     if (out.exact) out.mean_p = out.means->identical ? 1 : 0;
@@ -323,19 +362,15 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
 
 SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source) {
     SuiteResult out;
-    std::vector<Diagnostic> mistakes;
     const std::size_t compared = std::max<std::size_t>(1, suite.compared());
     monitor.begin("views", static_cast<double>(suite.views.size()));
     for (const SuiteView& view : suite.views) {
         monitor.check();
         try {
             out.views.push_back(measure_view(suite, view, compared, monitor, source));
-        } catch (const InputError& e) {
-            mistakes.insert(mistakes.end(), e.diagnostics().begin(), e.diagnostics().end());
-        }
+        } catch (const InputError& e) { out.views.push_back(unreadable_view(suite, view, e)); }
         monitor.advance(1);
     }
-    if (!mistakes.empty()) throw InputError(std::move(mistakes));
     decide(suite, out);
     return out;
 }

@@ -5,13 +5,16 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "compare/compare.h"
+#include "compare/file_pattern.h"
 #include "compare/plan.h"
 #include "compare/results.h"
+#include "compare/suite/manifest.h"
 #include "math/statistics.h"
 #include "report/report.h"
 
@@ -27,7 +30,7 @@ enum class BaselineStorage { renders, moments };
 struct SuiteOptions {
     std::string title = "golden images";
     double alpha = 0.01;                           // false alarms of the whole suite
-    std::vector<std::string> baseline, candidate;  // patterns with {view}
+    std::vector<std::string> baseline, candidate;  // patterns as in the file
     double smallest = 0.01;                        // relative difference of mean Y that must be found
     std::string layer;
     double exposure = 1;
@@ -48,8 +51,10 @@ struct SuiteView {
 struct Suite {
     std::string file;  // "": none
     SuiteOptions options;
-    std::vector<SuiteView> views;  // by name
-    std::size_t compared() const;  // views with renders of both sides
+    std::vector<FilePattern> baseline, candidate;  // with {view}, from the current folder
+    std::vector<SuiteView> views;                  // by name
+    std::optional<Manifest> manifest;              // of the baseline
+    std::size_t compared() const;                  // views with renders of both sides
     double smallest(const SuiteView& view) const { return view.smallest.value_or(options.smallest); }
 };
 
@@ -67,21 +72,10 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags);
 /// Returns the manual of a suite file.
 std::string suite_schema_text();
 
-/// A file that matches a pattern with {view}: its view, and the matches of its other wildcards, in order.
-struct MatchedFile {
-    std::string path, view;
-    std::vector<std::string> wildcards;
-};
-/// Returns the files of the pattern, sorted by path. Patterns have *, ?, [..] and %d in addition to {view}.
-std::vector<MatchedFile> match_views(const std::string& pattern);
-/// Returns the path of the pattern for this view and these wildcards; nothing if their numbers differ.
-std::optional<std::string> path_from(
-    const std::string& pattern, const std::string& view, const std::vector<std::string>& wildcards);
-
 /// The results for a view, the most severe first.
-enum class ViewState { changed, noisier, too_few, missing, added, improved, same };
-inline constexpr std::array<const char*, 7> view_state_names = {
-    "changed", "noisier", "too few renders", "missing", "new", "improved", "same"};
+enum class ViewState { unreadable, changed, noisier, missing, added, too_few, improved, same };
+inline constexpr std::array<const char*, 8> view_state_names = {
+    "unreadable", "changed", "noisier", "missing", "new", "too few renders", "improved", "same"};
 /// Returns the state as in the outputs.
 inline const char* name_of(ViewState state) { return view_state_names[static_cast<std::size_t>(state)]; }
 
@@ -117,7 +111,8 @@ struct ViewResult {
     double mean_p = std::nan(""), variance_p = std::nan("");  // of no difference in any region; NaN: not tested
     double level = 0;                                         // at which the view was decided
     std::string too_few;                                      // why equality cannot be stated; "" if it can
-    std::optional<std::size_t> renders_needed;                // of each side
+    std::string non_finite;                     // the pixels that are not finite on one side only; "" if there are none
+    std::optional<std::size_t> renders_needed;  // of each side
     ViewPictures pictures;
 };
 
@@ -129,9 +124,9 @@ struct SuiteResult {
     std::string sentence;
 };
 
-/// Returns the exit code: 1 for changed, noisier or missing views (if `strict` also for new ones), 4 for too few
-/// renders, else 0.
-int exit_code(const SuiteResult& result, bool strict);
+/// Returns the exit code: 2 for unreadable views, 1 for changed, noisier or missing views and, unless `new_baseline`
+/// allows them, new ones, 4 for too few renders, else 0.
+int exit_code(const SuiteResult& result, bool new_baseline);
 
 /// Returns a hash of the pixels of a render, to find copies.
 std::uint64_t pixel_hash(const Render& render);
@@ -143,7 +138,8 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
 /// Decides all views together: Holm's method over their p-values.
 void decide(const Suite& suite, SuiteResult& result);
 
-/// Measures and decides every view, one view in memory at a time. Throws one InputError with the mistakes of all views.
+/// Measures and decides every view, one view in memory at a time. A view whose files cannot be compared, or differ from
+/// the manifest, is unreadable; the others are compared all the same.
 SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source = {});
 
 // ---- --accept: the candidate of some views becomes the baseline, of all of them at once.
@@ -155,19 +151,27 @@ struct Acceptance {
 };
 
 /// Replaces the baseline's files of these views, stored as the suite states, and writes baseline.json next to them: the
-/// files with their hashes, mean and variance of each region, program, date and reason of each view. A kill leaves the
-/// old baseline or the new one. Returns a line for each accepted view. Throws InputError, OutputError, Interrupted.
-std::vector<std::string> accept_views(const Suite& suite, const Acceptance& acceptance, ProgressMonitor& monitor);
+/// files with their hashes, mean and variance of each region, program, date and reason of each view. A named view
+/// without renders of the candidate is removed from the baseline. `read` returns the suite; it is called again with the
+/// baseline locked against others that accept. What is stored is what was measured, also if candidates are rewritten
+/// meanwhile. A kill leaves the old baseline or the new one. Returns a line for each view. Throws InputError,
+/// OutputError, Interrupted.
+std::vector<std::string> accept_views(
+    const std::function<Suite()>& read, const Acceptance& acceptance, ProgressMonitor& monitor);
 
-/// Returns the folder of the baseline: the part before the first wildcard of its first pattern.
+/// Returns the folder of the baseline: the part before the first wildcard of its first pattern. Throws InputError if
+/// another pattern is not in it.
 std::string baseline_folder(const Suite& suite);
 
 // ---- The result of a suite as text: for machines, build servers, the summary page of a pull request and the terminal.
 
 /// docs/suite.schema.json describes it; equal inputs give equal bytes.
-std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& provenance);
-/// One case for each view: changed, noisier and missing fail, too few renders is an error, new is skipped.
-std::string suite_junit(const Suite& suite, const SuiteResult& result, bool strict);
+std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance);
+/// One case for each view: changed, noisier, missing and new fail, unreadable and too few renders are errors; new is
+/// skipped if `new_baseline` allows it.
+std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_baseline);
+/// One case: the call failed before there was a result.
+std::string failure_junit(const std::string& file, const std::string& message);
 /// A table of all views that are not the same, at most 60 kB.
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
 std::string suite_summary(const Suite& suite, const SuiteResult& result);

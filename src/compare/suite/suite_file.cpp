@@ -1,10 +1,11 @@
 // Reads a suite file: the table of its keys, and the files of each view.
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
-#include <glob.h>
 #include <map>
-#include <regex>
+#include <set>
 
 #include "compare/suite/suite.h"
 #include "experiment/parser.h"
@@ -14,7 +15,8 @@ namespace crescent::inline comparison {
 
 namespace {
 
-constexpr std::string_view view_field = "{view}";
+namespace fs = std::filesystem;
+
 constexpr Range none{}, positive{0, 1e12, true}, pixel_range{0, 65535}, share{1e-6, 10};
 constexpr Requirement required = Requirement::required, optional = Requirement::optional,
                       defaulted = Requirement::defaulted;
@@ -67,11 +69,18 @@ const Section& suite_schema() {
 void read_percent(Node* table) {
     Member* found = table ? table->find("smallest") : nullptr;
     if (!found || found->value.kind != Node::Kind::text) return;
-    static const std::regex form(R"(\s*([0-9]+\.?[0-9]*(?:[eE][-+]?[0-9]+)?)\s*%\s*)");
-    std::smatch match;
-    if (!std::regex_match(found->value.text, match, form)) return;
+    std::string_view text = found->value.text;
+    const auto trim_end = [&] { text = text.substr(0, text.find_last_not_of(" \t") + 1); };
+    trim_end();
+    if (!text.ends_with('%')) return;
+    text.remove_suffix(1);
+    trim_end();
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    double percents = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), percents);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(percents)) return;
     found->value.kind = Node::Kind::number;
-    found->value.number = std::stod(match[1]) / 100;
+    found->value.number = percents / 100;
 }
 
 /// regions.NAME = [...] -> regions.NAME.box = [...].
@@ -102,13 +111,12 @@ SourceLocation place_of(const Node& root, const char* key, const std::string& fi
 }
 
 /// Returns the files of one side by view, from its patterns.
-std::map<std::string, std::vector<std::string>> files_by_view(
-    const std::vector<std::string>& patterns, const SourceLocation& at) {
+std::map<std::string, std::vector<std::string>> files_by_view(const std::vector<FilePattern>& patterns) {
     std::map<std::string, std::vector<std::string>> out;
-    for (const std::string& pattern : patterns) {
-        if (pattern.find(view_field) == std::string::npos)
-            throw InputError(at, fmt::format("expected {{view}} in the pattern '{}'", pattern));
-        for (const MatchedFile& file : match_views(pattern)) out[file.view].push_back(file.path);
+    for (const FilePattern& pattern : patterns) {
+        if (!pattern.has_view())
+            throw InputError(pattern.at(), fmt::format("expected {{view}} in the pattern '{}'", pattern.text()));
+        for (const MatchedFile& file : pattern.find()) out[file.view].push_back(file.path);
     }
     for (auto& [view, paths] : out) {
         std::sort(paths.begin(), paths.end());
@@ -117,10 +125,25 @@ std::map<std::string, std::vector<std::string>> files_by_view(
     return out;
 }
 
-void find_renders(
-    Suite& suite, const SourceLocation& baseline_at, const SourceLocation& candidate_at, bool baseline_only) {
-    auto baseline = files_by_view(suite.options.baseline, baseline_at);
-    auto candidate = files_by_view(suite.options.candidate, candidate_at);
+/// Throws InputError if a file is on both sides.
+void check_sides(const Suite& suite, const SourceLocation& at) {
+    const auto name = [](const std::string& path) {
+        std::error_code ignored;
+        const fs::path folder = fs::path(path).parent_path();
+        return (fs::weakly_canonical(folder.empty() ? "." : folder, ignored) / fs::path(path).filename()).string();
+    };
+    for (const SuiteView& view : suite.views) {
+        std::set<std::string> baseline;
+        for (const std::string& path : view.baseline) baseline.insert(name(path));
+        for (const std::string& path : view.candidate)
+            if (baseline.contains(name(path)))
+                throw InputError(
+                    at, fmt::format("expected other files than those of the baseline, found {} on both sides", path));
+    }
+}
+
+void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baseline_only) {
+    auto baseline = files_by_view(suite.baseline), candidate = files_by_view(suite.candidate);
     if (candidate.empty() && !baseline_only)
         throw InputError(candidate_at,
             fmt::format("expected renders of the candidate, found no file that matches '{}'",
@@ -128,6 +151,8 @@ void find_renders(
     std::vector<std::string> names;
     for (const auto* side : {&baseline, &candidate})
         for (const auto& [name, files] : *side) names.push_back(name);
+    if (suite.manifest)
+        for (const auto& [name, entry] : suite.manifest->views) names.push_back(name);
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     std::vector<Diagnostic> unknown;
@@ -153,12 +178,26 @@ void find_renders(
 
 /// Returns the patterns of a folder with VIEW/*.exr or VIEW-SEED.exr.
 std::vector<std::string> patterns_in(const std::string& folder, const char* flag) {
-    if (!std::filesystem::is_directory(folder))
-        throw InputError({fmt::format("{} {}", flag, folder), 0, 0}, "expected a folder");
-    return {folder + "/{view}/*.exr", folder + "/{view}-*.exr"};
+    if (!fs::is_directory(folder)) throw InputError({fmt::format("{} {}", flag, folder), 0, 0}, "expected a folder");
+    return {pattern_in(folder, "{view}/*.exr"), pattern_in(folder, "{view}-*.exr")};
+}
+
+/// Returns the folder that all paths of the patterns are in; nothing if there is none.
+std::optional<std::string> common_folder(const std::vector<FilePattern>& patterns) {
+    const std::string folder = patterns.front().folder();
+    for (const FilePattern& pattern : patterns)
+        if (folder != "." && pattern.folder() != folder && !pattern.folder().starts_with(folder + "/")) return {};
+    return folder;
 }
 
 }  // namespace
+
+std::string baseline_folder(const Suite& suite) {
+    if (const std::optional<std::string> folder = common_folder(suite.baseline)) return *folder;
+    throw InputError(suite.baseline.front().at(),
+        fmt::format("--accept: expected patterns of the baseline in one folder, found '{}'",
+            fmt::join(suite.options.baseline, "', '")));
+}
 
 std::size_t Suite::compared() const {
     return static_cast<std::size_t>(std::count_if(views.begin(), views.end(),
@@ -183,117 +222,23 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     suite.file = file;
     read_tree(context, suite_schema(), root, &suite);
     throw_if_any(std::move(context.diagnostics));
-    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    const std::string folder = fs::path(file).parent_path().string();
     SuiteOptions& o = suite.options;
     for (std::vector<std::string>* patterns : {&o.baseline, &o.candidate})
-        for (std::string& pattern : *patterns)
-            if (!folder.empty()) pattern = (folder / pattern).string();
+        for (std::string& pattern : *patterns) pattern = pattern_in(folder, pattern);
     if (!flags.baseline.empty()) o.baseline = patterns_in(flags.baseline, "--baseline");
     if (!flags.candidate.empty()) o.candidate = patterns_in(flags.candidate, "--candidate");
     if (o.baseline.empty()) throw InputError(baseline_at, "expected suite.baseline, or --baseline DIR");
     if (o.candidate.empty() && !flags.baseline_only)
         throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
-    find_renders(suite, baseline_at, candidate_at, flags.baseline_only);
+    for (const std::string& pattern : o.baseline) suite.baseline.emplace_back(pattern, baseline_at, true);
+    for (const std::string& pattern : o.candidate) suite.candidate.emplace_back(pattern, candidate_at, true);
+    if (const std::optional<std::string> place = common_folder(suite.baseline)) suite.manifest = read_manifest(*place);
+    find_renders(suite, candidate_at, flags.baseline_only);
+    check_sides(suite, candidate_at);
     return suite;
 }
 
 std::string suite_schema_text() { return manual_of(suite_schema()); }
-
-// ---- Patterns with {view}.
-
-namespace {
-
-/// One piece of a pattern: text as it is, the view, or a wildcard.
-struct PatternPiece {
-    enum class Kind { text, view, wildcard } kind = Kind::text;
-    std::string text;   // of text: itself; of a wildcard: its glob
-    std::string regex;  // of a wildcard
-};
-
-std::vector<PatternPiece> pieces_of(const std::string& pattern) {
-    std::vector<PatternPiece> out;
-    std::string text;
-    const auto add = [&](PatternPiece piece) {
-        if (!text.empty()) out.push_back({PatternPiece::Kind::text, std::exchange(text, {}), {}});
-        out.push_back(std::move(piece));
-    };
-    static const std::regex digits("%[0-9]*d"), set(R"(\[!?[^\]/]+\])");
-    for (std::size_t i = 0; i < pattern.size();) {
-        const auto from = pattern.cbegin() + static_cast<std::ptrdiff_t>(i);
-        std::smatch match;
-        const auto at = std::regex_constants::match_continuous;
-        if (pattern.compare(i, view_field.size(), view_field) == 0)
-            add({PatternPiece::Kind::view, {}, {}}), i += view_field.size();
-        else if (pattern[i] == '*') add({PatternPiece::Kind::wildcard, "*", "[^/]*?"}), ++i;
-        else if (pattern[i] == '?') add({PatternPiece::Kind::wildcard, "?", "[^/]"}), ++i;
-        else if (std::regex_search(from, pattern.cend(), match, digits, at))
-            add({PatternPiece::Kind::wildcard, "*", "[0-9]+"}), i += static_cast<std::size_t>(match.length());
-        else if (std::regex_search(from, pattern.cend(), match, set, at)) {
-            std::string regex = match.str();
-            if (regex[1] == '!') regex[1] = '^';
-            add({PatternPiece::Kind::wildcard, match.str(), regex}), i += static_cast<std::size_t>(match.length());
-        } else text += pattern[i++];
-    }
-    if (!text.empty()) out.push_back({PatternPiece::Kind::text, text, {}});
-    return out;
-}
-
-std::string regex_text(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (std::string_view(R"(\^$.|?*+()[]{})").find(c) != std::string_view::npos) out += '\\';
-        out += c;
-    }
-    return out;
-}
-
-}  // namespace
-
-std::vector<MatchedFile> match_views(const std::string& pattern) {
-    std::string glob, regex;
-    std::vector<std::size_t> wildcards;
-    std::size_t view = 0, group = 0;
-    for (const PatternPiece& piece : pieces_of(pattern)) {
-        if (piece.kind == PatternPiece::Kind::text) {
-            for (const char c : piece.text) glob += c == '\\' ? std::string("\\\\") : std::string(1, c);
-            regex += regex_text(piece.text);
-        } else if (piece.kind == PatternPiece::Kind::wildcard) {
-            glob += piece.text, regex += "(" + piece.regex + ")";
-            wildcards.push_back(++group);
-        } else {
-            glob += "*";
-            if (view == 0) regex += "([^/]+)", view = ++group;
-            else regex += fmt::format("\\{}", view);
-        }
-    }
-    glob_t found{};
-    const bool failed = ::glob(glob.c_str(), GLOB_ERR, nullptr, &found) != 0;
-    const std::regex form(regex);
-    std::vector<MatchedFile> out;
-    for (std::size_t i = 0; !failed && i < found.gl_pathc; ++i) {
-        const std::string path = found.gl_pathv[i];
-        std::smatch match;
-        if (!std::regex_match(path, match, form) || std::filesystem::is_directory(path)) continue;
-        MatchedFile file{path, match[view], {}};
-        for (const std::size_t k : wildcards) file.wildcards.push_back(match[k]);
-        out.push_back(std::move(file));
-    }
-    ::globfree(&found);
-    return out;
-}
-
-std::optional<std::string> path_from(
-    const std::string& pattern, const std::string& view, const std::vector<std::string>& wildcards) {
-    std::string out;
-    std::size_t next = 0;
-    for (const PatternPiece& piece : pieces_of(pattern)) {
-        if (piece.kind == PatternPiece::Kind::text) out += piece.text;
-        else if (piece.kind == PatternPiece::Kind::view) out += view;
-        else if (next < wildcards.size()) out += wildcards[next++];
-        else return {};
-    }
-    if (next != wildcards.size()) return {};
-    return out;
-}
 
 }  // namespace crescent::inline comparison

@@ -50,6 +50,7 @@ Json view_json(const ViewResult& view) {
         {"renders_needed", view.renders_needed ? Json(*view.renders_needed) : Json(nullptr)}, {"notes", view.notes},
         {"means", Json::object()}, {"variances", Json::object()}};
     for (const VarianceTest& t : view.variances) out["variances"][t.region] = variance_json(t);
+    out["non_finite"] = view.non_finite;
     if (!view.means) return out;
     const BiasResult& means = *view.means;
     for (const MeanTest& t : means.regions) out["means"][t.region] = mean_json(t);
@@ -61,13 +62,14 @@ Json view_json(const ViewResult& view) {
     return out;
 }
 
-JunitCase::State junit_state(const ViewResult& view, bool strict) {
+JunitCase::State junit_state(const ViewResult& view, bool new_baseline) {
     switch (view.state) {
         case ViewState::changed:
         case ViewState::noisier:
         case ViewState::missing: return JunitCase::State::failed;
+        case ViewState::unreadable:
         case ViewState::too_few: return JunitCase::State::error;
-        case ViewState::added: return strict ? JunitCase::State::failed : JunitCase::State::skipped;
+        case ViewState::added: return new_baseline ? JunitCase::State::skipped : JunitCase::State::failed;
         default: return JunitCase::State::passed;
     }
 }
@@ -85,6 +87,7 @@ std::string cell(const std::string& text) {
 
 const char* mark_of(ViewState state) {
     switch (state) {
+        case ViewState::unreadable:
         case ViewState::changed:
         case ViewState::noisier:
         case ViewState::missing: return "❌";
@@ -105,9 +108,9 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result) {
     return out;
 }
 
-std::string suite_json(const Suite& suite, const SuiteResult& result, bool strict, const Provenance& p) {
+std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& p) {
     Json out = {{"format", "crescent suite 1"}, {"title", suite.options.title}, {"sentence", result.sentence},
-        {"exit_code", exit_code(result, strict)}, {"alpha", output::number(suite.options.alpha)},
+        {"exit_code", exit_code(result, new_baseline)}, {"alpha", output::number(suite.options.alpha)},
         {"share_of_means", output::number(share_of_means)}, {"views_tested", result.tested}, {"counts", Json::object()},
         {"views", Json::array()}};
     for (std::size_t k = 0; k < view_state_names.size(); ++k)
@@ -118,12 +121,16 @@ std::string suite_json(const Suite& suite, const SuiteResult& result, bool stric
     return text(out);
 }
 
-std::string suite_junit(const Suite& suite, const SuiteResult& result, bool strict) {
+std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_baseline) {
     JunitSuite out{suite.options.title, {{"alpha", shortest(suite.options.alpha)}}, {}};
     for (const ViewResult& view : result.views)
-        out.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name, junit_state(view, strict),
-            fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
+        out.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name,
+            junit_state(view, new_baseline), fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
     return junit_text(out);
+}
+
+std::string failure_junit(const std::string& file, const std::string& message) {
+    return junit_text({"crescent compare", {}, {{file, "input", JunitCase::State::error, message, "", {}}}});
 }
 
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {
@@ -175,7 +182,8 @@ std::string lower_case(std::string text) {
 }
 
 bool is_bad(ViewState state) {
-    return state == ViewState::changed || state == ViewState::noisier || state == ViewState::missing;
+    return state == ViewState::unreadable || state == ViewState::changed || state == ViewState::noisier ||
+        state == ViewState::missing;
 }
 
 bool is_good(ViewState state) { return state == ViewState::improved || state == ViewState::same; }

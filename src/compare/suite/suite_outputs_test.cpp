@@ -24,14 +24,15 @@ TEST(SuiteOutputs, ListTheMostSevereViewsFirst) {
     std::vector<std::string> names;
     for (const ViewResult* view : by_state(result)) names.push_back(view->name);
     EXPECT_EQ(names,
-        (std::vector<std::string>{"a", "changed", "noisier", "too few renders", "missing", "new", "improved", "same"}));
+        (std::vector<std::string>{
+            "unreadable", "a", "changed", "noisier", "missing", "new", "too few renders", "improved", "same"}));
 }
 
 TEST(SuiteOutputs, JunitFailsErrsAndSkips) {
     EXPECT_THAT(
-        suite_junit({}, every_state(), false), HasSubstr("tests=\"7\" failures=\"3\" errors=\"1\" skipped=\"1\""));
+        suite_junit({}, every_state(), false), HasSubstr("tests=\"8\" failures=\"4\" errors=\"2\" skipped=\"0\""));
     EXPECT_THAT(
-        suite_junit({}, every_state(), true), HasSubstr("tests=\"7\" failures=\"4\" errors=\"1\" skipped=\"0\""));
+        suite_junit({}, every_state(), true), HasSubstr("tests=\"8\" failures=\"3\" errors=\"2\" skipped=\"1\""));
 }
 
 TEST(SuiteOutputs, JsonHasTheNumbersOfEachView) {
@@ -42,7 +43,7 @@ TEST(SuiteOutputs, JsonHasTheNumbersOfEachView) {
     test.region = "frame", test.a = 3, test.b = 2, test.joint_p = 0.5, test.smallest = 0.125;
     view.variances.emplace_back().region = "frame", view.variances[0].why = "heavy tail";
     const nlohmann::json json = nlohmann::json::parse(suite_json({}, result, true, {}));
-    EXPECT_EQ(json["exit_code"], 1);
+    EXPECT_EQ(json["exit_code"], 2);
     EXPECT_EQ(json["counts"]["changed"], 1);
     const nlohmann::json& first = json["views"][0];
     EXPECT_EQ(first["state"], "same");

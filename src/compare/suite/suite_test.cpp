@@ -15,7 +15,6 @@
 namespace crescent::inline comparison {
 namespace suite_test {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Kind = SyntheticNoise::Kind;
 
@@ -144,45 +143,35 @@ TEST(Suites, AHeavyTailIsReportedAndNotDecided) {
     for (const VarianceTest& t : view.variances) EXPECT_THAT(t.why, HasSubstr("heavy tail"));
 }
 
-TEST(Suites, MistakesOfAllViewsAreReportedTogether) {
+TEST(Suites, AFileThatCannotBeComparedHidesNoOtherView) {
     MemorySuite s;
-    s.put_both("one", noise, noise, 2400, 2);
-    s.put_both("two", noise, noise, 2500, 2);
+    s.put_both("changed", noise, brighter, 2400);
+    s.put_both("one", noise, noise, 2500, 2);
     s.renders["one/candidate/0"] = Render("one/candidate/0", 4, 4);
-    s.renders["two/candidate/1"] = Render("two/candidate/1", 5, 4);
-    try {
-        s.compare();
-        FAIL() << "sizes that differ are accepted";
-    } catch (const InputError& e) {
-        ASSERT_EQ(e.diagnostics().size(), 2u);
-        EXPECT_EQ(e.diagnostics()[0].at.file, "one/candidate/0");
-        EXPECT_EQ(e.diagnostics()[1].at.file, "two/candidate/1");
-    }
+    const SuiteResult result = s.compare();
+    EXPECT_EQ(view_of(result, "one").state, ViewState::unreadable);
+    EXPECT_THAT(view_of(result, "one").sentence, HasSubstr("one/candidate/0"));
+    EXPECT_EQ(view_of(result, "changed").state, ViewState::changed);
+    EXPECT_EQ(exit_code(result, false), 2);
 }
 
-class SuitePatterns : public ScratchFolder {};
+TEST(Suites, PixelsThatAreNotFiniteOnOneSideChangeAView) {
+    for (const char* side_with : {"candidate", "baseline"})
+        for (const float value : {std::nanf(""), HUGE_VALF}) {
+            MemorySuite s;
+            s.suite.options.smallest = 0.05;
+            s.put_both("view", noise, noise, 2600);
+            s.put_both("other", noise, noise, 2700);
+            s.renders[std::string("view/") + side_with + "/3"].g[77] = value;
+            const SuiteResult result = s.compare();
+            EXPECT_EQ(view_of(result, "view").state, ViewState::changed);
+            EXPECT_THAT(view_of(result, "view").sentence, HasSubstr(std::string(side_with) + "/3"));
+            EXPECT_EQ(view_of(result, "other").state, ViewState::same);
+            EXPECT_EQ(exit_code(result, false), 1);
+        }
+}
+
 class SuiteFiles : public ScratchFolder {};
-
-TEST_F(SuitePatterns, ViewsAndSeedsAreReadFromNames) {
-    const std::string root = path("");
-    std::filesystem::create_directories(root + "b/inner");
-    for (const char* name : {"b/crown-1.exr", "b/crown-12.exr", "b/crown-hall-3.exr", "b/crown.exr", "b/inner/7.exr"})
-        std::ofstream(root + name) << "x";
-    const auto views = [&](const std::string& pattern) {
-        std::vector<std::string> out;
-        for (const MatchedFile& file : match_views(root + pattern))
-            out.push_back(file.view + ":" + (file.wildcards.empty() ? "" : file.wildcards[0]));
-        return out;
-    };
-    EXPECT_THAT(views("b/{view}-*.exr"), ElementsAre("crown:1", "crown:12", "crown-hall:3"));
-    EXPECT_THAT(views("b/{view}-%d.exr"), ElementsAre("crown:1", "crown:12", "crown-hall:3"));
-    EXPECT_THAT(views("b/{view}-?.exr"), ElementsAre("crown:1", "crown-hall:3"));
-    EXPECT_THAT(views("b/{view}/*.exr"), ElementsAre("inner:7"));
-    EXPECT_THAT(views("{view}/{view}*.exr"), ElementsAre());
-    EXPECT_EQ(path_from("x/{view}-*.exr", "crown", {"12"}), "x/crown-12.exr");
-    EXPECT_EQ(path_from("x/{view}/{view}-%03d-[ab].exr", "v", {"1", "a"}), "x/v/v-1-a.exr");
-    EXPECT_EQ(path_from("x/{view}.exr", "v", {"1"}), std::nullopt);
-}
 
 TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
     const std::string root = path("");
@@ -207,6 +196,9 @@ TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
     EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("did you mean 'v'?"));
     EXPECT_THAT(mistake("smallest = \"much\"\n"), HasSubstr("s.toml:4:12: "));
     EXPECT_THAT(mistake("[view.v]\nregions.lamp = [1, 2, 3]\n"), HasSubstr("s.toml:5:"));
+    for (const char* text : {"1e999 %", "%", " %", "nan %", "2 % %"})
+        EXPECT_THAT(mistake(std::string("smallest = \"") + text + "\"\n"), HasSubstr("s.toml:4:12: "));
+    EXPECT_EQ(read("smallest = \"" + std::string(60'000, ' ') + "4 %\"\n").options.smallest, 0.04);
     EXPECT_THAT(mistake("[view.v]\nregions.frame = [1, 2, 3, 4]\n"), HasSubstr("expected another"));
 }
 
