@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ import numpy as np
 from . import _arrays
 
 #: The states of a view, the most severe first: a suite has the first of these that one of its views has.
-STATES = ("changed", "noisier", "missing", "too few renders", "new", "improved", "same")
+STATES = ("unreadable", "changed", "noisier", "missing", "new", "too few renders", "improved", "same")
 
 _ERRORS: dict[int, type[Exception]] = {2: ValueError, 3: OSError}
 
@@ -47,7 +47,7 @@ class Comparison:
     state: str  #: the first of STATES that a view has
     sentence: str
     views: Mapping[str, View]
-    exit_code: int  #: of the program: 0, 1 (changed, noisier or missing) or 4 (too few renders)
+    exit_code: int  #: of the program: 0, 1 (changed, noisier, missing or new), 2 (unreadable) or 4 (too few renders)
     _markdown: str = field(default="", repr=False)
 
     def to_markdown(self) -> str:
@@ -67,10 +67,13 @@ def program() -> str:
     return found
 
 
-def run_compare(arguments: Sequence[str]) -> subprocess.CompletedProcess[str]:
-    """Runs `crescent compare`; ValueError for wrong input, OSError for outputs that cannot be written."""
+def run_compare(arguments: Sequence[str], result: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Runs `crescent compare`; ValueError for wrong input, OSError for outputs that cannot be written.
+
+    With the file of a `result` that was written, views that cannot be read are part of the result.
+    """
     done = subprocess.run([program(), "compare", *arguments], capture_output=True, text=True, check=False)
-    if done.returncode in (0, 1, 4):
+    if done.returncode in (0, 1, 4) or (done.returncode == 2 and result and result.exists()):
         return done
     if done.returncode == 130:
         raise KeyboardInterrupt
@@ -102,8 +105,19 @@ def _renders(side: Any, what: str) -> list[Any]:
 
 
 def file_name(view: str) -> str:
-    """A file name for a view."""
-    return "".join("_" if c in '/\\*?"{}%' or ord(c) < 32 else c for c in view)
+    """A file name for a view: `%` and two hexadecimal digits stand for characters that it cannot have."""
+    if not view:
+        raise ValueError("expected a name of a view, found an empty one")
+    odd = '/\\*?"{}%'
+    name = "".join(f"%{ord(c):02x}" if c in odd or ord(c) < 32 or (k == 0 and c == ".") else c for k, c in enumerate(view))
+    if len(name.encode("utf-8", "surrogateescape")) > 200:
+        raise ValueError(f"expected a name of a view of at most 200 bytes, found {view[:40]}...")
+    return name
+
+
+def escape_pattern(path: str) -> str:
+    """The pattern of a suite that matches this path only."""
+    return "".join(f"[{c}]" if c in "*?[%{" else c for c in path)
 
 
 def write_renders(folder: Path, view: str, side: Any, what: str) -> None:
@@ -143,7 +157,7 @@ def compare_suite(suite: os.PathLike[str] | str, *, out: os.PathLike[str] | str 
     with tempfile.TemporaryDirectory(prefix="crescent-") as work:
         json_file, markdown_file = Path(work) / "suite.json", Path(work) / "summary.md"
         outputs = ["--json", str(json_file), "--markdown", str(markdown_file), "--out", str(out or Path(work) / "out")]
-        run_compare([os.fspath(suite), "--quiet", *outputs])
+        run_compare([os.fspath(suite), "--quiet", *outputs], json_file)
         return _read(json_file, markdown_file)
 
 
@@ -180,6 +194,7 @@ def compare(
         side: dict(views) if isinstance(views, Mapping) else {name: views} for side, views in sides.items()
     }
     names: Iterable[str] = dict.fromkeys([*by_view["baseline"], *by_view["candidate"]])
+    original = {file_name(view): view for view in names}
     options = {"alpha": alpha, "smallest": smallest, "brightest": brightest, "layer": layer}
     with tempfile.TemporaryDirectory(prefix="crescent-") as work:
         for side, views in by_view.items():
@@ -188,4 +203,9 @@ def compare(
         boxes = {view: regions for view in names} if regions else {}
         suite = Path(work) / "suite.toml"
         suite.write_text(suite_text("baseline/{view}/*", "candidate/{view}/*", options, boxes), encoding="utf-8")
-        return compare_suite(suite, out=out)
+        result = compare_suite(suite, out=out)
+    unreadable = [v.sentence for v in result.views.values() if v.state == "unreadable"]
+    if unreadable:
+        raise ValueError("\n".join(unreadable))
+    views = {original[v.name]: replace(v, name=original[v.name]) for v in result.views.values()}
+    return replace(result, views=views)

@@ -12,7 +12,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ._compare import Comparison, compare_suite, file_name, run_compare, suite_text, write_renders
+from ._compare import (
+    Comparison,
+    compare_suite,
+    escape_pattern,
+    file_name,
+    run_compare,
+    suite_text,
+    write_renders,
+)
 
 
 @dataclass(frozen=True)
@@ -45,7 +53,7 @@ class RenderRegression:
         with tempfile.TemporaryDirectory(prefix="crescent-") as work:
             write_renders(Path(work) / "candidate", view, renders, "renders")
             suite = Path(work) / "suite.toml"
-            baseline = str(self.folder.absolute() / "{view}-*.exr")
+            baseline = escape_pattern(str(self.folder.absolute())) + "/{view}-*.exr"
             suite.write_text(
                 suite_text(baseline, "candidate/{view}/*", options, {view: regions} if regions else {}),
                 encoding="utf-8",

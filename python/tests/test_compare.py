@@ -37,7 +37,7 @@ def test_views_and_regions():
         regions={"corner": (0, 0, 7, 7)},
     )
     assert {name: view.state for name, view in result.views.items()} == {"a": "same", "b": "missing", "c": "new"}
-    assert result.state == "missing"
+    assert result.state == "missing" and result.exit_code == 1
     assert set(result.views["a"].numbers["means"]) == {"corner", "frame"}
 
 
@@ -56,9 +56,30 @@ def test_files_are_compared(tmp_path):
     files = sorted(tmp_path.glob("b*.npy"))
     assert crescent.compare(f"{tmp_path}/a*.npy", files, smallest=0.05, out=tmp_path / "out").state == "same"
     assert (tmp_path / "out" / "report.html").stat().st_size > 10_000
-    (tmp_path / "suite.toml").write_text('[suite]\nbaseline = "{view}?.npy"\ncandidate = "{view}?.npy"\n')
-    suite = crescent.compare(tmp_path / "suite.toml")
-    assert set(suite.views) == {"a", "b"} and suite.state == "same"
+    for k, (a, b) in enumerate(zip(renders(3), renders(4))):
+        np.save(tmp_path / f"old-v{k}.npy", a)
+        np.save(tmp_path / f"new-v{k}.npy", b)
+    suite = tmp_path / "suite.toml"
+    suite.write_text('[suite]\nsmallest = 0.05\nbaseline = "old-{view}?.npy"\ncandidate = "new-{view}?.npy"\n')
+    result = crescent.compare(suite)
+    assert set(result.views) == {"v"} and result.state == "same"
+    (tmp_path / "new-v0.npy").write_bytes(b"no array")
+    assert crescent.compare(suite).state == "unreadable"
+    suite.write_text('[suite]\nbaseline = "old-{view}?.npy"\ncandidate = "old-{view}?.npy"\n')
+    with pytest.raises(ValueError, match="both sides"):
+        crescent.compare(suite)
+
+
+def test_views_have_any_names():
+    names = ["a/b", "a_b", "a%2fb", ".hidden", "x[1]", "*", 'say "hi"', "{view}"]
+    same = {name: renders(2 * k) for k, name in enumerate(names)}
+    other = {name: renders(2 * k + 1) for k, name in enumerate(names)}
+    result = crescent.compare(same, other, smallest=0.5, regions={"corner": (0, 0, 7, 7)})
+    assert sorted(result.views) == sorted(names)
+    assert all(view.state == "same" and view.name == name for name, view in result.views.items())
+    for name in ("", "x" * 300):
+        with pytest.raises(ValueError, match="name of a view"):
+            crescent.compare({name: renders(1)}, {name: renders(2)})
 
 
 def test_bad_input_is_a_value_error(tmp_path):
@@ -83,6 +104,14 @@ def renders(seed, scale):
 def test_lamp(render_regression):
     render_regression(renders({seed}, {scale}), smallest=0.05)
 """
+
+
+def test_the_folder_of_a_fixture_is_no_pattern(pytester):
+    folder = pytester.mkdir("run[1]%2f")
+    (folder / "test_scene.py").write_text(TEST.replace("{seed}", "1").replace("{scale}", "1"))
+    pytester.runpytest_subprocess(*LOAD, "--crescent-accept", str(folder)).assert_outcomes(passed=1)
+    assert (folder / "test_scene" / "test_lamp-moments.exr").exists()
+    pytester.runpytest_subprocess(*LOAD, str(folder)).assert_outcomes(passed=1)
 
 
 def test_the_fixture_compares_with_what_was_accepted(pytester):

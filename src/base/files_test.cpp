@@ -283,5 +283,17 @@ TEST_F(Publishing, NamesTheFileThatCannotBeWritten) {
     EXPECT_EQ(text_of(top_ / ".out.crescent/new/theirs"), "theirs");
 }
 
+TEST(WholeFiles, BelowDevShmAreFiles) {
+    if (!fs::is_directory("/dev/shm")) GTEST_SKIP() << "no /dev/shm";
+    const std::string path = "/dev/shm/crescent-whole-" + std::to_string(getpid());
+    write_whole(path, std::string(100, 'x'));
+    write_whole(path, "new");
+    EXPECT_EQ(contents_of(path), "new");
+    fs::remove(path);
+    EXPECT_NO_THROW(write_whole("/dev/null", "x"));
+    EXPECT_THROW(write_whole("/dev/crescent-absent", "x"), OutputError);
+    EXPECT_FALSE(fs::exists("/dev/crescent-absent"));
+}
+
 }  // namespace files_test
 }  // namespace crescent::inline base

@@ -21,10 +21,12 @@ namespace {
     throw OutputError("cannot write " + printable(path) + ": " + why);
 }
 
-/// Returns whether the path is a stream, such as /dev/stdout, a FIFO or /dev/null.
+/// Returns whether the path is a stream, such as /dev/stdout, a FIFO or /dev/null. Folders below /dev, such as /dev/shm,
+/// have files; /dev/stdout and /dev/fd/1 are streams even if a file is behind them.
 bool is_stream(const std::string& path) {
     struct stat s{};
-    return path.starts_with("/dev/") || path.starts_with("/proc/") ||
+    const bool in_dev = path.starts_with("/dev/") && (path.rfind('/') == 4 || path.starts_with("/dev/fd/"));
+    return in_dev || path.starts_with("/proc/") ||
         (stat(path.c_str(), &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
 }
 
