@@ -107,7 +107,7 @@ def test_lamp(render_regression):
 
 
 def test_the_folder_of_a_fixture_is_no_pattern(pytester):
-    folder = pytester.mkdir("run[1]%2f")
+    folder = pytester.mkdir("run{1}%2f*")
     (folder / "test_scene.py").write_text(TEST.replace("{seed}", "1").replace("{scale}", "1"))
     pytester.runpytest_subprocess(*LOAD, "--crescent-accept", str(folder)).assert_outcomes(passed=1)
     assert (folder / "test_scene" / "test_lamp-moments.exr").exists()

@@ -38,17 +38,33 @@ PY
 mkdir bin && ln -s "$CRESCENT" bin/crescent
 action() { # SUITE CHECK
     rm -rf summary outputs reports
-    SUITE=$1 CHECK=$2 OUT=reports GITHUB_STEP_SUMMARY=$PWD/summary GITHUB_OUTPUT=$PWD/outputs PATH="$PWD/bin:$PATH" \
+    SUITE=$1 CHECK=$2 OUT=${3:-reports} GITHUB_STEP_SUMMARY=$PWD/summary GITHUB_OUTPUT=$PWD/outputs PATH="$PWD/bin:$PATH" \
         bash --noprofile --norc -eo pipefail run.sh
 }
 cp "$CRESCENT_SOURCE/examples/pipe_samplers/cosine.py" .
 expect 0 action '' "cosine --wo 30
 --exec 'python3 cosine.py' --wo 30"
-[ "$(cat outputs)" = code=0 ] && [ -s reports/check-1.xml ] && [ -s reports/check-2.html ] || die "$(ls reports)"
+grep -qx code=0 outputs && grep -qx artifact=reports outputs && [ -s reports/check-1.xml ] && [ -s reports/check-2.html ] || die "$(ls reports)"
 grep -q "crescent check cosine --wo 30" summary || die "the summary lacks the table: $(cat summary)"
 expect 3 action '' "--exec 'false' --wo 30
 phong --set s=128 --wo 30
 cosine --wo 30"
 expect 2 action '' 'cosin'
+# A line is words: nothing in it is run, expanded or a redirection. Comment lines are skipped.
+expect 2 action '' 'cosine --wo 30 ; touch ran $(touch ran) >ran'
+[ ! -e ran ] || die "a line of the input was run"
+expect 0 action '' "  # cosine --nothing
+
+cosine --wo 30"
+[ -s reports/check-1.xml ] && [ ! -e reports/check-2.xml ] || die "$(ls reports)"
+expect 2 action '' "cosine 'not closed"
+# A crash keeps its exit code, whatever follows.
+printf '#!/bin/bash\n[ "$2" = crash ] && exit 139\nexec "%s" "$@"\n' "$CRESCENT" >crescent && chmod +x crescent
+mv crescent bin/crescent.new && mv bin/crescent.new bin/crescent
+expect 139 action '' "crash
+cosin
+cosine --wo 30"
 expect 2 action '' ''
 expect 2 action nowhere.toml ''
+expect 0 action '' 'cosine --wo 30' 'out/a:b'
+grep -qx artifact=out-a-b outputs || die "no valid name of an artifact: $(cat outputs)"
