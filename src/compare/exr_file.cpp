@@ -51,12 +51,15 @@ void read_attributes(const OpenFile& file, exr_const_context_t context, ExrPart&
     for (std::int32_t i = 0; i < count; ++i) {
         const exr_attribute_t* a = nullptr;
         expect_success(file, exr_get_attribute_by_index(context, part.index, EXR_ATTR_LIST_FILE_ORDER, i, &a));
-        ExrAttribute attribute{a->name, {}, ""};
+        ExrAttribute attribute{a->name, {}, "", {}};
         if (a->type == EXR_ATTR_INT) attribute.number = a->i;
         if (a->type == EXR_ATTR_FLOAT) attribute.number = static_cast<double>(a->f);
         if (a->type == EXR_ATTR_DOUBLE) attribute.number = a->d;
         if (a->type == EXR_ATTR_STRING && a->string->str)
             attribute.text.assign(a->string->str, static_cast<std::size_t>(std::max(0, a->string->length)));
+        if (a->type == EXR_ATTR_FLOAT_VECTOR && a->floatvector->arr)
+            attribute.numbers.assign(
+                a->floatvector->arr, a->floatvector->arr + std::max<std::int32_t>(0, a->floatvector->length));
         if (a->type == EXR_ATTR_CHROMATICITIES && attribute.name == "chromaticities")
             part.primaries = primaries_of(file, *a);
         part.attributes.push_back(std::move(attribute));

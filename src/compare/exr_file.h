@@ -56,7 +56,8 @@ struct ExrChannel {
 struct ExrAttribute {
     std::string name;
     std::optional<double> number;
-    std::string text;  // the value of a string
+    std::string text;            // the value of a string
+    std::vector<float> numbers;  // the values of a vector of floats
 };
 
 struct ExrPart {

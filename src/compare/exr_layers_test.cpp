@@ -77,16 +77,16 @@ TEST(ExrSamples, AreTheMeanOfCountsAndNotOfShares) {
 TEST(ExrAttributes, AreNumbersOrTimesOfAnyRenderer) {
     const auto seconds = [](const ExrAttribute& attribute) {
         ExrPart of;
-        of.attributes = {{"samples", 9.0, ""}, attribute};
+        of.attributes = {{"samples", 9.0, "", {}}, attribute};
         return exr_attribute("r", of, "a time", {"rendertime"});
     };
-    EXPECT_EQ(seconds({"RenderTime", 2.5, ""}), 2.5);
-    EXPECT_EQ(seconds({"cycles.ViewLayer.render_time", {}, "01:02:03.5"}), 3723.5);
-    EXPECT_EQ(seconds({"arnold/render time", {}, "7s"}), 7);
-    EXPECT_EQ(seconds({"renderTime", {}, "soon"}), std::nullopt);
-    EXPECT_EQ(seconds({"renderTime", 0.0, ""}), std::nullopt);
-    EXPECT_EQ(seconds({"renderTimeLimit", 5.0, ""}), std::nullopt);
-    EXPECT_THROW((void)seconds({"renderTime", -1.0, ""}), InputError);
+    EXPECT_EQ(seconds({"RenderTime", 2.5, "", {}}), 2.5);
+    EXPECT_EQ(seconds({"cycles.ViewLayer.render_time", {}, "01:02:03.5", {}}), 3723.5);
+    EXPECT_EQ(seconds({"arnold/render time", {}, "7s", {}}), 7);
+    EXPECT_EQ(seconds({"renderTime", {}, "soon", {}}), std::nullopt);
+    EXPECT_EQ(seconds({"renderTime", 0.0, "", {}}), std::nullopt);
+    EXPECT_EQ(seconds({"renderTimeLimit", 5.0, "", {}}), std::nullopt);
+    EXPECT_THROW((void)seconds({"renderTime", -1.0, "", {}}), InputError);
 }
 
 }  // namespace exr_layers_test

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "compare/moments.h"
 #include "math/statistics.h"
 #include "tests/support/memory_renders.h"
 #include "tests/support/scratch_folder.h"
@@ -82,6 +83,44 @@ TEST_F(MomentFiles, HaveOnlyTheRegionsOfTheirPlan) {
     const CompareFlag other{{"regions", "low", "box"}, "[0, 0, 15, 8]", true, ""};
     written.regions[0].box = Box{0, 0, 15, 8};
     EXPECT_THROW((void)read(renders.plan({other})), InputError);
+}
+
+TEST_F(MomentFiles, OddTextsAreRefused) {
+    const std::string good = R"({"format": "crescent moments 1", "renders": 4, "constant": false, "quantities": 4,
+        "rounding": 0, "regions": [{"name": "frame", "box": [0, 0, 15, 15]}]})";
+    const auto mistake = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        text.replace(text.find(from), from.size(), to);
+        return refusal([&] { return parse_moments_text(text, file, 16, 16); });
+    };
+    EXPECT_EQ(parse_moments_text(good, file, 16, 16).renders, 4u);
+    for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{{"moments 1", "moments 2"},
+             {"4,", "0,"}, {"4,", "1000000000000,"}, {"4,", "-4,"}, {"4,", "4.5,"}, {"\"renders\": 4, ", ""},
+             {"false", "1"}, {"\"quantities\": 4", "\"quantities\": 3"}, {"\"rounding\": 0", "\"rounding\": null"},
+             {"\"rounding\": 0", "\"rounding\": -1"}, {"\"frame\"", "7"}, {"15, 15", "15, 16"}, {"15, 15", "15"},
+             {"15, 15", "15, 1e300"}, {"[0, 0", "[16, 0"}, {"15, 15]}]", "7, 7]}], \"regions\": []"},
+             {"[0, 0, 15, 15]", std::string(100'000, '[') + std::string(100'000, ']')}})
+        EXPECT_NE(mistake(from, to), "") << from << " -> " << to.substr(0, 40);
+}
+
+TEST_F(MomentFiles, DamagedFilesAreRefusedOrGiveFiniteNumbers) {
+    const std::string good = bytes_of(file);
+    const ComparePlan plan = renders.plan({box});
+    int refused = 0;
+    for (std::size_t k = 0; k < 400; ++k) {
+        std::string bytes = good;
+        const std::size_t place = (k * 2654435761u) % bytes.size();
+        if (k % 4 == 0) bytes.resize(place);
+        else bytes[place] = static_cast<char>(bytes[place] ^ (1 << k % 8));
+        write("moments.exr", bytes);
+        refused += !refusal([&] { return read_moments_header(file); }).empty();
+        (void)refusal([&] {
+            const RenderStats all = read(plan);
+            for (const double x : all.arms[0].film.planes[0].m2) EXPECT_TRUE(std::isfinite(x));
+            return 0;
+        });
+    }
+    EXPECT_GT(refused, 0);
 }
 
 }  // namespace moments_test
