@@ -73,17 +73,22 @@ def fitted_slope(n: NDArray[np.int64], over: Sequence[Values]) -> Slope | None:
 
 def best_of(values: Mapping[str, Values], alpha: float = 0.05) -> set[str]:
     """The arms of which none is significantly worse than the smallest in mean logarithm: paired t over seeds, alpha
-    shared by Bonferroni. Empty with fewer than two seeds or two arms: nothing is ranked."""
-    arms = {arm: np.log(v) for arm, v in values.items() if len(v) > 1 and (np.asarray(v) > 0).all()}
+    shared by Bonferroni. If a value is not positive, the values themselves are compared. Empty, nothing is ranked, with
+    fewer than two arms, or if an arm has fewer than two seeds, other seeds than another, or a value that is not finite."""
+    arms = {arm: np.asarray(v, dtype=float) for arm, v in values.items()}
     if len(arms) < 2 or len({len(v) for v in arms.values()}) != 1:
         return set()
+    if any(len(v) < 2 or not np.isfinite(v).all() for v in arms.values()):
+        return set()
+    if all((v > 0).all() for v in arms.values()):
+        arms = {arm: np.log(v) for arm, v in arms.items()}
     best = min(arms, key=lambda arm: float(arms[arm].mean()))
     out = {best}
-    for arm, logs in arms.items():
+    for arm, compared in arms.items():
         if arm == best:
             continue
-        apart = logs - arms[best]
-        error = apart.std(ddof=1) / math.sqrt(apart.size)
-        if error == 0 or apart.mean() / error < t_quantile(1 - alpha / (len(arms) - 1), apart.size - 1):
+        apart = compared - arms[best]
+        error, mean = apart.std(ddof=1) / math.sqrt(apart.size), apart.mean()
+        if mean <= error * t_quantile(1 - alpha / (len(arms) - 1), apart.size - 1):
             out.add(arm)
     return out

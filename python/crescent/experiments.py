@@ -16,7 +16,8 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
-from os.path import abspath
+from os.path import abspath, dirname
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,9 @@ def _toml(value: Any) -> str:
         return json.dumps(value)
     if isinstance(value, (int, float, np.number)):
         return repr(value.item() if isinstance(value, np.number) else value)
-    if isinstance(value, Iterable) and not isinstance(value, Mapping):
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{json.dumps(str(key))} = {_toml(v)}" for key, v in value.items()) + "}"
+    if isinstance(value, Iterable):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
     raise TypeError(
         f"{type(value).__name__} is not a value of an experiment: expected a number, a text, or a list of them"
@@ -125,6 +128,33 @@ def _lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
         yield from (f"[{at}]", *_lines(value, at))
 
 
+@dataclass(frozen=True)
+class _Source:
+    """What was read, and what was changed since. A change is applied to what was read, as by --set: a value that a file
+    does not give may depend on the changed key."""
+
+    text: str
+    name: str  #: of the file, in messages
+    folder: str  #: absolute; paths of the file are relative to it
+    changes: tuple[str, ...] = ()
+
+    def changed(self, more: Sequence[str]) -> _Source:
+        """With more changes; one of the key that was changed last replaces it."""
+        kept = list(self.changes)
+        for change in more:
+            if kept and kept[-1].partition("=")[0] == change.partition("=")[0]:
+                kept.pop()
+            kept.append(change)
+        return _Source(self.text, self.name, self.folder, tuple(kept))
+
+    def core(self) -> _crescent.Experiment:
+        return _crescent.parse(self.text, self.name, list(self.changes), self.folder)
+
+    def tree(self) -> dict[str, Any]:
+        """The keys that the file, or a change, gives."""
+        return tomllib.loads(_crescent.text_with_overrides(self.text, self.name, list(self.changes)))
+
+
 class Experiment:
     """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. The whole is checked after a change.
 
@@ -133,8 +163,11 @@ class Experiment:
     [4]}``, and removed by ``del e["arms.phong"]``. Values are read as copies.
     """
 
-    def __init__(self, core: _crescent.Experiment, samplers: Mapping[str, Any] | None = None) -> None:
+    def __init__(
+        self, core: _crescent.Experiment, samplers: Mapping[str, Any] | None = None, source: _Source | None = None
+    ) -> None:
         self._core = core
+        self._source = source or _Source(core.text, core.file, dirname(abspath(core.file)))
         self.samplers: Samplers = Samplers()  #: samplers in Python by the name of their arm, which :func:`run` adds
         self.samplers.update(samplers or {})
 
@@ -146,16 +179,23 @@ class Experiment:
         return _found(self._tree(), path)[1]
 
     def __setitem__(self, path: str, value: Any) -> None:
-        self._core = self.with_({path: value})._core
+        changed = self.with_({path: value})
+        self._core, self._source = changed._core, changed._source
 
     def __delitem__(self, path: str) -> None:
-        whole = tomllib.loads(self._core.text)
-        steps, _ = _found(whole, path)
+        whole = self._source.tree()
+        try:
+            steps, _ = _found(whole, path)
+        except KeyError:
+            if path in self:
+                raise KeyError(f"{path}: has its default value; expected a key that the file, or a change, gives") from None
+            raise
         at: Any = whole
         for step in steps[:-1]:
             at = _inside(at, step)
         del at[int(steps[-1]) if isinstance(at, list) else steps[-1]]
-        self._core = _crescent.parse("\n".join(_lines(whole)), self._core.file, [])
+        source = _Source("\n".join(_lines(whole)), self._source.name, self._source.folder)
+        self._core, self._source = source.core(), source
 
     def __contains__(self, path: object) -> bool:
         try:
@@ -170,8 +210,12 @@ class Experiment:
 
     def with_(self, changes: Mapping[str, Any]) -> Experiment:
         """Another experiment, with these keys changed all at once."""
-        core = _crescent.parse(self._core.text, self._core.file, _overrides(changes))
-        return Experiment(core, self.samplers)
+        return self._with_overrides(_overrides(changes))
+
+    def _with_overrides(self, overrides: Sequence[str]) -> Experiment:
+        """The same with PATH=VALUE each, as --set takes it."""
+        source = self._source.changed(overrides)
+        return Experiment(source.core(), self.samplers, source)
 
     def _with_arms(self) -> Experiment:
         """With an arm for each of `samplers`, at the sample counts of the other arms."""
@@ -196,7 +240,7 @@ class Experiment:
         return self._with_arms()._core.hash
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self.text, self._core.file, dict(self.samplers))
+        return _restored, (self._source, dict(self.samplers))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Experiment) or self.samplers != other.samplers:
@@ -207,19 +251,22 @@ class Experiment:
         return f"<Experiment {self._core.file} {self.hash}>"
 
 
-def _restored(text: str, name: str, samplers: Mapping[str, Any]) -> Experiment:
+def _restored(source: _Source, samplers: Mapping[str, Any]) -> Experiment:
     """An experiment that was pickled or copied."""
-    return Experiment(_crescent.parse(text, name, []), samplers)
+    return Experiment(source.core(), samplers, source)
 
 
 def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Experiment:
     """An experiment file; ValueError names every mistake with line and column."""
-    return Experiment(_crescent.load(fspath(path), _overrides(changes or {})))
+    name, overrides = fspath(path), _overrides(changes or {})
+    core = _crescent.load(name, overrides)
+    text = Path(name).read_bytes().decode("utf-8-sig")
+    return Experiment(core, None, _Source(text, name, dirname(abspath(name)), tuple(overrides)))
 
 
 def parse(text: str, name: str = "text.toml") -> Experiment:
     """The same from text; `name` is the file's name in messages."""
-    return Experiment(_crescent.parse(text, name, []))
+    return Experiment(_crescent.parse(text, name, []), None, _Source(text, name, dirname(abspath(name))))
 
 
 @dataclass(frozen=True, repr=False)

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "experiment/parser.h"
 #include "module.h"
 #include "run_result.h"
 #include "watched.h"
@@ -208,12 +209,33 @@ Experiment settled_paths(Experiment e) {
     };
     e = with_files(std::move(e));
     absolute(e.published);
+    if (e.sky) e.sky->file = std::filesystem::absolute(e.sky->file).lexically_normal().string();
     for (ArmPlan& arm : e.arms) {
         absolute(arm.plugin);
         for (std::optional<std::string>* python : {&arm.python, &arm.combination.weights_python})
             if (*python && !python_file(**python).empty()) absolute(*python);
     }
     return e;
+}
+
+/// Parses a text as the file `name`, whose paths are relative to `folder`: also after a change of the working folder.
+Experiment parsed_in(const std::string& folder, const std::string& text, const std::string& name,
+    const std::vector<std::string>& overrides) {
+    const std::string file = (std::filesystem::path(folder) / std::filesystem::path(name).filename()).string();
+    const auto shown = [&](SourceLocation at) {
+        if (at.file == file) at.file = name;
+        return at;
+    };
+    try {
+        Experiment e = settled_paths(parse(text, file, overrides));
+        e.file = name;
+        for (auto& [_, at] : e.places) at = shown(at);
+        return e;
+    } catch (const InputError& error) {
+        std::vector<Diagnostic> all = error.diagnostics();
+        for (Diagnostic& one : all) one.at = shown(one.at);
+        throw InputError(std::move(all));
+    }
 }
 
 using FloatPlane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
@@ -250,10 +272,17 @@ void add_experiments(nb::module_& m) {
         "path"_a, "overrides"_a = Overrides{});
     m.def(
         "parse",
-        [](const std::string& text, const std::string& name, const Overrides& overrides) {
-            return settled_paths(parse(text, name, overrides));
+        [](const std::string& text, const std::string& name, const Overrides& overrides, const std::string& folder) {
+            return folder.empty() ? settled_paths(parse(text, name, overrides))
+                                  : parsed_in(folder, text, name, overrides);
         },
-        "text"_a, "name"_a, "overrides"_a = Overrides{});
+        "text"_a, "name"_a, "overrides"_a = Overrides{}, "folder"_a = "");
+    m.def(
+        "text_with_overrides",
+        [](const std::string& text, const std::string& name, const Overrides& overrides) {
+            return text_with_overrides(text, name, overrides);
+        },
+        "text"_a, "name"_a, "overrides"_a, "A file with these keys changed, without values that other keys decide.");
     m.def("refuse_code", &refuse_code, "experiment"_a);
     m.def(
         "with_arms",

@@ -47,6 +47,23 @@ def test_only_significant_differences_are_ranked():
     assert best_of({"a": one[:1], "b": one[:1]}) == set()
 
 
+def test_no_arm_is_bold_beside_a_better_one():
+    one, zero = np.array([1.0, 1.2, 0.9, 1.1]), np.zeros(4)
+    assert best_of({"a": one, "none": zero, "b": one + 3}) == {"none"}
+    assert best_of({"none": zero, "some": np.array([0.0, 1, 0, 0])}) == {"none", "some"}
+    assert best_of({"a": one, "b": one + 5, "once": np.array([0.1])}) == set()
+    assert best_of({"a": one, "b": one + 5, "broken": np.array([0.1, np.nan, 0.1, 0.1])}) == set()
+    assert best_of({"a": np.full(4, 5.0), "b": np.full(4, 4.0)}) == {"b"}
+
+
+def test_the_interval_of_a_slope_over_seeds_has_its_coverage():
+    rng, n, held = np.random.default_rng(5), np.array([4, 16, 64]), 0
+    for _ in range(1000):
+        slope = fitted_slope(n, [k**-0.5 * np.exp(rng.normal(0, 0.1, 4)) for k in n])
+        held += abs(slope.value + 0.5) <= slope.half
+    assert 925 <= held <= 972
+
+
 def test_a_ladder_draws_the_medians_of_every_arm(result):
     ax = plot.ladder(result)
     rows = [r for r in result.records() if r["meter"] == "rmse" and r["s"] == result.s]

@@ -2,6 +2,7 @@
 // path is a full one (shapes.sphere.s) or starts at a name (sphere.s); list items are .0 or [0].
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "experiment/experiment.h"
@@ -167,7 +168,55 @@ private:
     std::string written_;
 };
 
+// ---- The tree as TOML: tables of tables are inline.
+
+std::string toml_string(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') out += '\\';
+        if (byte < 0x20 || byte == 0x7f) out += fmt::format("\\u{:04x}", byte);
+        else out += c;
+    }
+    return out + '"';
+}
+
+std::string number_text(double x) {
+    if (std::isnan(x)) return "nan";
+    if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
+    const std::string text = fmt::format("{}", x);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string toml_text(const Node& node) {
+    switch (node.kind) {
+        case Node::Kind::text: return toml_string(node.text);
+        case Node::Kind::integer: return fmt::format("{}", node.integer);
+        case Node::Kind::number: return number_text(node.number);
+        case Node::Kind::flag: return node.flag ? "true" : "false";
+        case Node::Kind::date: return node.text;
+        case Node::Kind::table:
+        case Node::Kind::array: break;
+    }
+    std::string inside;
+    for (const Member& member : node.members)
+        inside += (inside.empty() ? "" : ", ") + (node.is_table() ? toml_string(member.key) + " = " : "") +
+            toml_text(member.value);
+    return node.is_table() ? "{" + inside + "}" : "[" + inside + "]";
+}
+
 }  // namespace
+
+std::string text_with_overrides(
+    std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+    ParseContext context;
+    Node root = read_toml(text, name);
+    apply_overrides(context, root, overrides);
+    throw_if_any(std::move(context.diagnostics));
+    std::string out;
+    for (const Member& member : root.members) out += toml_string(member.key) + " = " + toml_text(member.value) + "\n";
+    return out;
+}
 
 void apply_overrides(ParseContext& context, Node& root, const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides) Override(context, root, text).apply(text);

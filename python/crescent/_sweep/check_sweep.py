@@ -7,6 +7,7 @@ new points, so that points can be added without checking the finished ones again
 from __future__ import annotations
 
 import ast
+import contextlib
 import html
 import io
 import json
@@ -23,7 +24,7 @@ from .engines import DaskEngine, Job, engine_of
 from .grid import UsageError, axes_of, grid, hint, label, short
 from .identity import NUMERICS, _of_python, digest
 from .progress import Progress
-from .store import Store, read_json, write_whole
+from .store import Store, locked, read_json, write_whole
 from .sweep import Say, _folder
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
@@ -134,12 +135,22 @@ def run_check_sweep(
     if engine_of(engine) == "commands":
         raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
     values = grid(axes, zip)
-    identity, code = _identify(sampler, [axis.path for axis in axes])
     folder = _folder(out)
+    with contextlib.nullcontext() if dry_run else locked(folder):
+        return _check_points(
+            sampler, values, [axis.path for axis in axes], engine, folder, alpha, full, seed, workers, progress, dry_run, say
+        )
+
+
+def _check_points(
+    sampler: str, values: list[dict[str, Any]], paths: list[str], engine: str, folder: Path, alpha: float, full: bool,
+    seed: int, workers: int | None, progress: bool, dry_run: bool, say: Say,
+) -> CheckSweep:  # fmt: skip
+    identity, code = _identify(sampler, paths)
     store = Store(folder)
     state = read_json(folder / "sweep.json") or {"calls": 0, "points": [], "alpha": alpha}
     if state["alpha"] != alpha:
-        raise UsageError(f"--alpha {alpha:g}: the sweep in {out} has alpha {state['alpha']:g}; expected the same")
+        raise UsageError(f"--alpha {alpha:g}: the sweep in {folder} has alpha {state['alpha']:g}; expected the same")
     ids = {digest(NUMERICS, identity, at, seed, full): at for at in values}
     new = {name: at for name, at in ids.items() if store.check(name) is None}
     say(f"{len(ids)} points: {len(new)} to check, {len(ids) - len(new)} there")

@@ -1,5 +1,5 @@
 """The command line of ``crescent sweep``. Exit codes are those of the program: 0 done, 1 wrong (--check), 2 wrong call,
-3 tasks failed or the engine was lost, 4 inconclusive (--check), 130 interrupted."""
+3 tasks failed or the engine was lost, 4 inconclusive (--check), 70 a bug, 130 interrupted."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ import argparse
 import os
 import signal
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from .. import _crescent
 from . import require
-from .grid import UsageError, hint
+from .grid import UsageError, axis_of, hint
 
 _USAGE = """\
 crescent sweep FILE.toml --over PATH=VALUES [--over ...] [--zip] [--seeds K] [--out DIR] [--engine ENGINE]
@@ -22,7 +23,7 @@ _FOOTER = """\
 VALUES: 8,32,128 or log:0.05:0.8:9 or lin:0:1:5. ENGINE: local (default), dask://HOST:PORT, slurm:PROFILE, commands.
 The same command finishes an interrupted sweep; more values, seeds or samplers compute only what is new.
 Exit codes: 0 done; 1 wrong (--check); 2 wrong call; 3 tasks failed, or the engine was lost; 4 inconclusive (--check);
-130 interrupted."""
+70 a bug in crescent; 130 interrupted."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -63,6 +64,7 @@ def _parser() -> _Parser:
     add = parser.add_argument
     add("file", nargs="?", metavar="FILE", help="the experiment, a TOML file or the name of an installed one")
     add("--over", action="append", default=[], metavar="PATH=VALUES", help="a key, as for --set, and its values")
+    add("--set", action="append", default=[], metavar="PATH=VALUE", help="another value for a key, at every point")
     add("--zip", action="store_true", help="the k-th values of all keys are one point; default: all combinations")
     add("--seeds", type=_whole(4096), metavar="K", help="seeds of each point; default: the experiment's")
     add("--out", metavar="DIR", help="the folder of the sweep; default: out/ and FILE's name and -sweep")
@@ -123,6 +125,13 @@ def _list_failures(failed: dict[str, str]) -> None:
         _say(f"  and {len(failed) - 50} more: DIR/sweep.json lists all")
 
 
+def _one_value(setting: str) -> str:
+    """--set of a check: a parameter that has the same value at every point."""
+    if len(axis_of(setting).values) != 1:
+        raise UsageError(f"--set {setting}: expected one value; --over takes several")
+    return setting
+
+
 def _check(given: argparse.Namespace) -> int:
     from .check_sweep import run_check_sweep
 
@@ -131,7 +140,7 @@ def _check(given: argparse.Namespace) -> int:
     name = os.path.basename(given.check.partition(":")[0]).removesuffix(".py")
     out = given.out or f"out/{name}-check"
     result = run_check_sweep(
-        given.check, over=given.over, zip=given.zip, engine=given.engine, out=out, alpha=given.alpha, full=given.full,
+        given.check, over=[*given.over, *map(_one_value, given.set)], zip=given.zip, engine=given.engine, out=out, alpha=given.alpha, full=given.full,
         seed=given.seed, workers=given.workers, progress=not given.quiet, dry_run=given.dry_run, say=_say,
     )  # fmt: skip
     if given.dry_run:
@@ -149,7 +158,7 @@ def _check(given: argparse.Namespace) -> int:
 
 def _run(given: argparse.Namespace) -> int:
     from .report import write_report
-    from .sweep import experiment_of, run_sweep, settled_options
+    from .sweep import experiment_of, run_sweep, settled_options, with_settings
 
     if not given.file:
         raise UsageError("expected FILE, an experiment, or --check SAMPLER, or summary DIR")
@@ -166,7 +175,7 @@ def _run(given: argparse.Namespace) -> int:
         resume=given.resume, verify=given.verify, workers=given.workers, sampler_versions=versions,
         progress=not given.quiet, say=_say,
     )  # fmt: skip
-    result = run_sweep(experiment_of(given.file), options, given.dry_run)
+    result = run_sweep(with_settings(experiment_of(given.file), given.set), options, given.dry_run)
     if given.dry_run:
         return 3 if result.failed else 0
     if given.engine != "commands":
@@ -184,6 +193,8 @@ def _dispatch(words: list[str]) -> int:
 
         from .sweep import run_task
 
+        if len(words) != 2:
+            raise UsageError("task: expected one file of store/tasks")
         return run_task(Path(words[1]))
     if words[:1] == ["summary"]:
         from .summary import summary
@@ -230,6 +241,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except (ValueError, TypeError, KeyError) as e:
         text = str(e.args[0]) if isinstance(e, KeyError) and e.args else str(e)
         code = _ended(2, f"crescent sweep: {text}\n`crescent sweep --help` lists its flags")
+    except Exception:  # noqa: BLE001: a fault of the program, which must not end as "wrong"
+        traceback.print_exc()
+        code = _ended(70, "crescent sweep: this is a bug in crescent; finished results are kept")
     sys.stdout.flush()
     sys.stderr.flush()
     if words is None:

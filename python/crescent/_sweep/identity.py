@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import ast
 import base64
+import functools
 import hashlib
 import importlib.metadata
+import importlib.util
 import inspect
 import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import CellType
 from typing import Any
 
 from .. import _crescent
@@ -25,9 +26,10 @@ from .._sampler import Sampler
 from ..combinations import Combination
 from ..experiments import Experiment
 from .grid import hint
+from .state import state_of
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
-_NOT_OF_THE_SCENE = (
+NOT_OF_THE_SCENE = (
     "title", "seeds", "n", "exposure", "published", "note_evidence", "arms", "plates", "assertions", "furnaces",
 )  # fmt: skip
 _NOT_OF_THE_REFERENCE = ("regions", "firefly_k", "flip_seeds")
@@ -43,12 +45,12 @@ def digest(*parts: Any) -> str:
 
 def scene_id(e: Experiment) -> str:
     """The identity of the scene and its metrics, without the samplers."""
-    return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in _NOT_OF_THE_SCENE})
+    return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in NOT_OF_THE_SCENE})
 
 
 def reference_id(e: Experiment) -> str:
     """The identity of the references of an experiment."""
-    left_out = (*_NOT_OF_THE_SCENE, *_NOT_OF_THE_REFERENCE)
+    left_out = (*NOT_OF_THE_SCENE, *_NOT_OF_THE_REFERENCE)
     return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in left_out})
 
 
@@ -96,11 +98,23 @@ def _of_python(where: str) -> tuple[Any, Code | None]:
         versions = {}
         for distribution in importlib.metadata.packages_distributions().get(package, []):
             versions[distribution] = importlib.metadata.version(distribution)
-        return [where, versions], None
+        return [where, versions, _hashes_of_module(package)], None
     path = Path(name)
     files, packages = python_sources(path)
     hashes = {file: hashlib.sha256(data).hexdigest() for file, data in files.items()}
     return [path.name, inside, hashes, packages], _code_of(files, f"{path.name}{colon}{inside}")
+
+
+def _hashes_of_module(name: str) -> dict[str, str]:
+    """The hashes of the Python files of a top-level module; of one that is not installed, of what it imports too."""
+    spec = importlib.util.find_spec(name)
+    origin = spec.origin if spec else None
+    if not origin or not origin.endswith(".py"):
+        return {}
+    file = Path(origin)
+    files = {str(path.relative_to(file.parent)): path.read_bytes() for path in file.parent.rglob("*.py")} \
+        if file.name == "__init__.py" else python_sources(file)[0]  # fmt: skip
+    return {name: hashlib.sha256(data).hexdigest() for name, data in sorted(files.items())}
 
 
 def _of_plugin(where: str) -> tuple[Any, Code]:
@@ -108,13 +122,12 @@ def _of_plugin(where: str) -> tuple[Any, Code]:
     return [hashlib.sha256(data).hexdigest()], _code_of({Path(where).name: data}, Path(where).name)
 
 
-def _of_function(call: Any) -> list[Any]:
-    """What distinguishes functions of one name in one file: the line, and the numbers and texts that they enclose."""
-    function = inspect.unwrap(call)
-    cells = [cell.cell_contents for cell in getattr(function, "__closure__", None) or () if cell != CellType()]
-    kept = [repr(value) for value in cells if isinstance(value, (int, float, str))]
-    code = getattr(function, "__code__", None)
-    return [code and code.co_firstlineno, kept]
+def _function_of(call: Any) -> Any:
+    """The function inside functools.partial and decorators."""
+    call = inspect.unwrap(call)
+    while isinstance(call, functools.partial):
+        call = inspect.unwrap(call.func)
+    return call
 
 
 def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
@@ -127,13 +140,13 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
     for call in own:
         if not callable(call):
             continue
-        module = sys.modules.get(getattr(inspect.unwrap(call), "__module__", "") or "")
+        module = sys.modules.get(getattr(_function_of(call), "__module__", "") or "")
         file = getattr(module, "__file__", None)
         if module is not None and module.__name__ != "__main__" and file and "site-packages" not in file:
             modules.add(module)
         where = source_of(own[0] if callable(own[0]) else call)
         if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
-            texts.append([*_of_python(where)[0], _of_function(call)])
+            texts.append(_of_python(where)[0])
             continue
         try:
             texts.append(inspect.getsource(inspect.unwrap(call)))
@@ -149,7 +162,7 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
     fields: list[Any] = [list(sampler.uses)]
     if isinstance(sampler, Sampler):
         fields = [sampler.u, sampler.domain, sampler.wo, list(sampler.uses)]
-    return [texts, fields], {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
+    return [texts, fields, [state_of(call) for call in own]], {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
 
 
 class Arm:

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..experiments import Experiment, _lines, _overrides, parse
+from ..experiments import Experiment, _found, _lines, _overrides, parse
 from .engines import InProcess, Job
 from .grid import label
-from .identity import NUMERICS, Arm, arms_of, digest, reference_id, scene_id
+from .identity import NOT_OF_THE_SCENE, NUMERICS, Arm, arms_of, digest, reference_id, scene_id
 from .store import Store, read_json, write_whole
 from .tasks import error_text
 
@@ -41,6 +41,13 @@ class Point:
     def tree(self) -> dict[str, Any]:
         """Every value of the experiment."""
         return self.experiment._tree()
+
+    @functools.cached_property
+    def key(self) -> str:
+        """What tells the point from others: its scene, and swept keys that are not of the scene, such as arms.x.n."""
+        steps = {path: families_of(self.tree, path) for path in self.values}
+        other = {path: value for path, value in self.values.items() if steps[path] in NOT_OF_THE_SCENE}
+        return digest(self.scene, other) if other else self.scene
 
     @property
     def label(self) -> str:
@@ -69,6 +76,14 @@ class Point:
             "code_id": digest(codes) if any(codes := [arm["code"] for arm in named.values()]) else "",
             **more,
         }  # fmt: skip
+
+
+def families_of(tree: Mapping[str, Any], path: str) -> str:
+    """The table of a path, which may begin at a name: "arms" of "phong.n"."""
+    try:
+        return _found(tree, path)[0][0]
+    except KeyError:
+        return path.partition(".")[0]
 
 
 def points_of(
@@ -192,7 +207,7 @@ class Plan:
         self.references = len({p.reference for p in points if self._parts(p) and not self._has_reference(p)})
 
     def _has_reference(self, point: Point) -> bool:
-        return self._store.reference_path(point.reference).is_file()
+        return self._store.has_reference(point.reference)
 
     def studies_name(self, point: Point) -> str:
         """The identity of the studies of a point."""
@@ -288,11 +303,11 @@ def kept_points(
 ) -> list[Point]:
     """The points of earlier calls that are points of this experiment still, without those of `new`."""
     known = read_json(out / "sweep.json") or {}
-    scenes = {point.scene for point in new}
-    old = [p for p in known.get("points", []) if p["scene"] not in scenes]
+    keys = {point.key for point in new}
+    old = [p for p in known.get("points", []) if p["scene"] not in keys]
     same = []
     for at in old:
         found, _ = points_of(base, [at["values"]], seeds, versions)
-        if found and found[0].scene == at["scene"]:
+        if found and found[0].key == at["scene"]:
             same += found
     return same

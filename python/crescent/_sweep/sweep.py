@@ -16,14 +16,14 @@ from typing import Any
 
 from .. import _crescent
 from .._sampler import whole
-from ..experiments import Experiment, Measured, load
-from .dataset import Dataset
+from ..experiments import Experiment, Measured, _steps, load
+from .dataset import COLUMNS, Dataset
 from .engines import DaskEngine, EngineError, InProcess, Job, engine_of, profile_of, usable_cores
-from .grid import UsageError, axes_of, grid
+from .grid import Axis, UsageError, axes_of, grid
 from .identity import NUMERICS, digest
 from .plan import Costs, Plan, Point, calibrate, kept_points, points_of
 from .progress import Progress, duration, quantity
-from .store import Store, read_json, write_whole
+from .store import Store, locked, read_json, write_whole
 from .tasks import Result
 
 Say = Callable[[str], None]
@@ -108,6 +108,23 @@ def _folder(out: str | PathLike[str]) -> Path:
     return path
 
 
+_NO_AXES = {
+    "n": "every result has the sample counts of its arms: expected a list of counts, --set arms.NAME.n=[4,16,64]",
+    "seed": "every result has its seeds: expected --seeds K",
+    "seeds": "every point has the same number of seeds: expected --seeds K",
+}
+
+
+def _check_axes(axes: Sequence[Axis]) -> None:
+    """Refuses keys that a sweep gives its points itself."""
+    for axis in axes:
+        steps = _steps(axis.path)
+        if len(steps) == 1 and steps[0] in _NO_AXES:
+            raise UsageError(f"--over {axis.path}: {_NO_AXES[steps[0]]}")
+        if axis.path in COLUMNS:
+            raise UsageError(f"--over {axis.path}: the dataset has a column of this name: expected a whole path")
+
+
 class Run:
     """One call."""
 
@@ -115,6 +132,7 @@ class Run:
         self.options, self.base = options, base
         self.store = Store(options.out)
         axes = axes_of(options.over)
+        _check_axes(axes)
         self.seeds = base["seeds"] if options.seeds is None else options.seeds
         values = grid(axes, options.zip)
         self.points, self.failed = points_of(base, values, self.seeds, options.versions)
@@ -150,7 +168,7 @@ class Run:
         """sweep.json: the points and axes, for later calls and for the summary."""
         points = [
             {
-                "values": p.values, "scene": p.scene, "folder": p.folder, "experiment": p.experiment.hash,
+                "values": p.values, "scene": p.key, "folder": p.folder, "experiment": p.experiment.hash,
                 "arms": {name: arm.id for name, arm in p.arms.items()},
             }
             for p in self.all_points
@@ -164,7 +182,7 @@ class Run:
 
     def _row_of(self, point: Point, arm: str) -> dict[str, Any]:
         known = point.arms[arm]
-        return {"values": point.values, "point": point.scene, "sampler": known.sampler, "sampler_id": known.id}
+        return {"values": point.values, "point": point.key, "sampler": known.sampler, "sampler_id": known.id}
 
     def sync_dataset(self) -> None:
         """Makes the dataset agree with the store: files that are missing, stale or newly suspect."""
@@ -175,10 +193,14 @@ class Run:
             for name, arm in point.arms.items():
                 folder = self.store.root / "results" / point.scene / arm.id
                 for path in sorted(folder.glob("*-*.json")) if folder.is_dir() else ():
+                    first, last = (int(part) for part in path.stem.split("-"))
+                    result = self.store.result(point.scene, arm.id, first, last)
+                    if result is None:
+                        continue
                     marked = self.store.key(point.scene, arm.id, path.stem) in suspect
-                    file = f"{point.scene}-{arm.id}-{path.stem}{'-suspect' if marked else ''}.parquet"
+                    file = f"{point.key}-{arm.id}-{path.stem}{'-suspect' if marked else ''}.parquet"
                     wanted.add(file)
-                    if file not in there and (result := read_json(path)):
+                    if file not in there:
                         self.dataset.write(file, self._row_of(point, name), result, marked)
         for file in there - wanted:
             self.dataset.remove(file)
@@ -203,7 +225,7 @@ class Run:
                 arm = point.arms[name].id
                 self.store.add(point.scene, arm, first, last, kept)
                 if self.dataset:
-                    file = f"{point.scene}-{arm}-{first}-{last}.parquet"
+                    file = f"{point.key}-{arm}-{first}-{last}.parquet"
                     self.dataset.write(file, self._row_of(point, name), kept, False)
             for name, data in result["films"].items():
                 write_whole(self.options.out / "points" / point.folder / "films" / name, data)
@@ -419,6 +441,13 @@ def run_task(path: Path) -> int:
 
 def run_sweep(base: Experiment, options: Options, dry_run: bool = False) -> Sweep:
     """Runs a sweep; see :func:`crescent.sweep`."""
+    if dry_run:
+        return _run_sweep(base, options, dry_run)
+    with locked(options.out):
+        return _run_sweep(base, options, dry_run)
+
+
+def _run_sweep(base: Experiment, options: Options, dry_run: bool) -> Sweep:
     say = options.say
     run = Run(base, options)
     if dry_run:
@@ -488,3 +517,8 @@ def experiment_of(given: Experiment | str | PathLike[str]) -> Experiment:
     if "/" not in text and "." not in text and not Path(text).exists() and installed.is_file():
         return load(installed)
     return load(text)
+
+
+def with_settings(e: Experiment, settings: Sequence[str]) -> Experiment:
+    """An experiment with keys changed as by --set of `crescent run`: PATH=VALUE each."""
+    return e._with_overrides(list(settings)) if settings else e

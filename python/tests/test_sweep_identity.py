@@ -1,0 +1,239 @@
+"""What identifies a result of a sweep: a sampler with its state; and results that are damaged or cannot be told apart."""
+
+import functools
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from test_experiments import TINY
+
+import crescent
+
+for needed in ("dask", "distributed", "pyarrow"):
+    pytest.importorskip(needed)
+
+from crescent._sweep.grid import UsageError  # noqa: E402
+from crescent._sweep.identity import arms_of  # noqa: E402
+from crescent._sweep.state import state_of  # noqa: E402
+from crescent._sweep.store import Store, locked, write_whole  # noqa: E402
+
+
+
+def cosine(wo, u):  # workers do not have the modules beside this one
+    r, phi, z = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1], np.sqrt(1 - u[:, 0])
+    return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), z / np.pi
+
+
+def cosine_pdf(wo, wi):
+    return np.maximum(wi[:, 2], 0) / np.pi
+
+
+FACTOR = 1.0
+TABLE = {"factors": np.ones(3)}
+
+
+def scaled_pdf(wo, wi):
+    return FACTOR * TABLE["factors"][0] * cosine_pdf(wo, wi)
+
+
+def _inside(wo, wi):
+    return FACTOR * cosine_pdf(wo, wi)
+
+
+def calling_pdf(wo, wi):
+    return _inside(wo, wi)
+
+
+class Scaled:
+    step = 1.0
+
+    def __init__(self, factor):
+        self.factor = factor
+        self.nested = {"list": [factor]}
+
+    def sample(self, wo, u):
+        wi, pdf = cosine(wo, u)
+        return wi, self.factor * self.step * pdf
+
+
+class Slotted:
+    __slots__ = ("factor",)
+
+    def __init__(self, factor):
+        self.factor = factor
+
+    def __call__(self, wo, u):
+        return cosine(wo, u)
+
+
+def identity(sampler):
+    e = crescent.parse(TINY)
+    e.samplers["mine"] = sampler
+    return arms_of(e, {})["mine"].id
+
+
+def test_attributes_closures_defaults_and_globals_are_part_of_a_sampler(monkeypatch):
+    def closed(factor):
+        def sample(wo, u):
+            return cosine(wo, u * factor)
+
+        return sample
+
+    def default(factor):
+        def sample(wo, u, by=factor):
+            return cosine(wo, u * by)
+
+        return sample
+
+    def keyword(factor):
+        def sample(wo, u, *, by):
+            return cosine(wo, u * by)
+
+        return functools.partial(sample, by=factor)
+
+    makers = [closed, default, keyword, lambda f: Scaled(f).sample, Slotted, lambda f: closed(np.array([f, 1.0])),
+              lambda f: closed({"a": {"b": [f]}}), lambda f: closed(Scaled(f))]  # fmt: skip
+    for make in makers:
+        assert identity(make(1.0)) == identity(make(1.0))
+        assert identity(make(1.0)) != identity(make(1.5))
+    for pdf in (scaled_pdf, calling_pdf):
+        before = identity(crescent.Sampler(cosine, pdf))
+        monkeypatch.setattr(sys.modules[__name__], "FACTOR", 2.0)
+        assert identity(crescent.Sampler(cosine, pdf)) != before
+        monkeypatch.setattr(sys.modules[__name__], "FACTOR", 1.0)
+        assert identity(crescent.Sampler(cosine, pdf)) == before
+    before = identity(crescent.Sampler(cosine, scaled_pdf))
+    TABLE["factors"][0] = 1.25
+    assert identity(crescent.Sampler(cosine, scaled_pdf)) != before
+    TABLE["factors"][0] = 1.0
+    before = identity(Scaled(1.0).sample)
+    monkeypatch.setattr(Scaled, "step", 2.0)
+    assert identity(Scaled(1.0).sample) != before
+
+
+def test_a_state_ends_and_is_the_same_in_another_process():
+    loop = []
+    loop.append(loop)
+    assert state_of(loop)
+    code = "import test_sweep_identity as t; print(t.identity(t.Scaled(1.5).sample), t.state_of(t.scaled_pdf))"
+    there = {
+        subprocess.run(
+            [sys.executable, "-c", code], cwd=os.path.dirname(__file__), capture_output=True, text=True, check=True,
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(sys.path)},
+        ).stdout
+        for seed in ("1", "2")
+    }  # fmt: skip
+    assert len(there) == 1
+
+
+def test_a_sweep_of_an_ablation_computes_each_value(tmp_path):
+    e = crescent.parse(TINY)
+    e["arms.phong.n"] = e["arms.cosine.n"]
+    found = []
+    for factor in (1.0, 1.5):
+        e.samplers["mine"] = Scaled(factor).sample
+        swept = crescent.sweep(e, seeds=1, out=tmp_path / "out", workers=1, verify=0)
+        assert swept.computed > 0 and not swept.failed
+        rows = [r for r in swept.measured().records() if (r["arm"], r["meter"]) == ("mine", "y_mean")]
+        found.append(rows[-1]["value"])
+    assert found[0] == pytest.approx(1.5 * found[1], rel=1e-5)
+
+
+def test_keys_of_the_sweep_itself_are_refused_at_once(tmp_path):
+    e = crescent.parse(TINY)
+    for over in ("n=4,16", "seed=1,2", "seeds=2,3", "'n'=4,16"):
+        with pytest.raises(UsageError, match="expected"):
+            crescent.sweep(e, over=[over], out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_points_that_differ_in_an_arm_alone_are_told_apart(tmp_path):
+    e = crescent.parse(TINY)
+    swept = crescent.sweep(e, over={"arms.phong.n": [[4], [4, 8]]}, seeds=2, out=tmp_path / "out", workers=1, verify=0)
+    assert not swept.failed and len({point["scene"] for point in swept.points}) == 2
+    rows = swept.to_pandas()
+    rows = rows[(rows.arm == "phong") & (rows.metric == "y_mean") & (rows.n == 4) & (rows.s == 32)]
+    assert len(rows) == 4  # two points of two seeds
+
+
+def test_a_damaged_result_is_not_used(tmp_path):
+    store = Store(tmp_path)
+    path = store.add("scene", "arm", 1, 2, {"json": "x" * 100, "csv": "y"})
+    store.add_studies("s", {"json": "{}"})
+    store.add_check("c", {"state": "right"})
+    store.add_reference("r", b"reference")
+    assert store.blocks("scene", "arm") == [(1, 2)] and store.studies("s") == "{}" and store.check("c")
+    assert store.has_reference("r") and store.reference("r") == b"reference"
+    for file in (path, *(tmp_path / "store" / name for name in ("studies/s.json", "checks/c.json", "references/r"))):
+        whole = file.read_bytes()
+        changed = bytearray(whole)
+        changed[len(whole) // 2] ^= 1
+        for damaged in (whole[: len(whole) // 2], bytes(changed), b"", b"null"):
+            file.write_bytes(damaged)
+            fresh = Store(tmp_path)
+            found = (fresh.blocks("scene", "arm"), fresh.studies("s"), fresh.check("c"), fresh.has_reference("r"))
+            assert sum(map(bool, found)) == 3, (file, damaged)
+        file.write_bytes(whole)
+
+
+def test_a_truncated_result_is_computed_again(tmp_path):
+    e = crescent.parse(TINY)
+    run = functools.partial(crescent.sweep, e, seeds=2, out=tmp_path / "out", workers=1, verify=0)
+    first = run().measured().metrics
+    for file in (tmp_path / "out" / "store").rglob("results/*/*/*.json"):
+        file.write_bytes(file.read_bytes()[:100])
+    again = run()
+    assert again.computed > 0
+    assert again.measured().metrics["runs"] == first["runs"]
+
+
+def test_a_folder_has_one_sweep_and_no_unfinished_files(tmp_path):
+    write_whole(tmp_path / "store" / "x.json", "{}")
+    dead = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, text=True).stdout.strip()
+    import socket
+
+    left = tmp_path / "store" / f".x.json.{socket.gethostname()}-{dead}.partial"
+    mine = tmp_path / "store" / f".y.json.{socket.gethostname()}-{os.getpid()}.partial"
+    for partial in (left, mine):
+        partial.write_text("x")
+    with locked(tmp_path):
+        assert not left.exists() and mine.exists()
+        with pytest.raises(BlockingIOError, match="another sweep"), locked(tmp_path):
+            pass
+    assert json.loads((tmp_path / "store" / "x.json").read_text()) == {}
+
+
+def command(*words, cwd):
+    run = subprocess.run([sys.executable, "-m", "crescent._sweep", *words], cwd=cwd, capture_output=True, text=True,
+                         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})  # fmt: skip
+    return run.returncode, run.stdout + run.stderr
+
+
+def test_exit_codes_of_mistakes_locks_and_bugs(tmp_path):
+    (tmp_path / "e.toml").write_text(TINY)
+    assert command("e.toml", "--over", "n=4,8", cwd=tmp_path)[0] == 2
+    code, text = command("e.toml", "--set", "ball.q=4", cwd=tmp_path)
+    assert code == 2 and "ball.q" in text
+    assert command("task", cwd=tmp_path)[0] == 2
+    (tmp_path / "o" / "store").mkdir(parents=True)
+    with locked(tmp_path / "o"):
+        code, text = command("e.toml", "--out", "o", cwd=tmp_path)
+        assert code == 3 and "another sweep" in text
+    (tmp_path / "o" / "store" / "tasks").mkdir(parents=True)
+    (tmp_path / "o" / "store" / "tasks" / "x.task").write_bytes(b"no pickle")
+    code, text = command("task", "o/store/tasks/x.task", cwd=tmp_path)
+    assert code == 70 and "bug" in text
+
+
+def test_set_changes_every_point(tmp_path):
+    (tmp_path / "e.toml").write_text(TINY)
+    code, text = command("e.toml", "--set", "arms.phong.n=4", "--set", "arms.cosine.n=8", "--over", "ball.s=8,16",
+                         "--seeds", "1", "--out", "o", "--workers", "1", "--quiet", cwd=tmp_path)  # fmt: skip
+    assert code == 0, text
+    from crescent._sweep.dataset import read
+
+    table = read(tmp_path / "o").to_pandas()
+    assert set(table[table.arm == "cosine"].n) == {8} and set(table[(table.arm == "phong") & (table.s < 20)].n) == {4}
