@@ -61,6 +61,8 @@ Vec3d direction_of(const std::string& text) {
     if (v.size() < 3) {
         if (!(v[0] >= 0 && v[0] <= 180 && v[0] != 90))
             throw InputError({"--wo " + text, 0, 0}, "expected 0 to 180 degrees from the normal, and not 90");
+        if (v.size() > 1 && !(std::fabs(v[1]) <= 360))
+            throw InputError({"--wo " + text, 0, 0}, "expected -360 to 360 degrees about the normal");
         return tilt(v[0], v.size() > 1 ? v[1] : 0);
     }
     const Vec3d w{v[0], v[1], v[2]};

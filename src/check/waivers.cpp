@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
+#include <filesystem>
+#include <sstream>
 
 #include "base/errors.h"
+#include "base/input.h"
 #include "base/text.h"
 
 namespace crescent::inline results {
@@ -62,10 +64,11 @@ bool is_of(const Waiver& w, const Verdict& v) {
 }
 
 void read_file(const std::string& path, std::vector<Waiver>& out) {
-    std::ifstream in(path);
-    if (!in)
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored) || std::filesystem::is_directory(path, ignored))
         throw InputError(
             {"--expect " + path, 0, 0}, "is neither [ARM ]VERDICT=STATE: REASON nor a file that can be read");
+    std::istringstream in(read_input(path, std::size_t{1} << 20, "a file of waivers"));
     std::string line;
     for (unsigned number = 1; std::getline(in, line); ++number)
         if (const std::string text = trimmed(line.substr(0, line.find('#'))); !text.empty())

@@ -79,12 +79,68 @@ void check_material(ParseContext& context, std::size_t surface) {
     const bool by_alpha = lobe.parameter == LobeParameter::alpha;
     if (by_alpha && !m.alpha && context.is_valid(path + ".alpha"))
         context.report(path + ".alpha",
-            fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, above 0, up to 1", path,
+            fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, from 0.0001 to 1", path,
                 lobe.name));
     if (!by_alpha && !m.s && context.is_valid(path + ".s"))
         context.report(path + ".s",
             fmt::format(
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
+}
+
+/// Kernels square a radiance times an albedo in single precision, whose smallest normal number is 1e-38: the square of
+/// the smallest product, 1e-15, leaves eight digits for the weight of a sample.
+constexpr double least_radiance = 1e-9, least_albedo = 1e-6;
+
+/// Reports a colour whose largest channel is above 0 and below `least`.
+void check_not_lost(ParseContext& context, const std::string& path, const Rgb& color, double least) {
+    const double largest = std::ranges::max(color);
+    if (largest <= 0 || largest >= least || !context.is_valid(path)) return;
+    context.report(path,
+        fmt::format("{}: expected 0, or a largest channel of at least {:g}, found {:g}, whose square is lost in single "
+                    "precision",
+            path, least, largest));
+}
+
+void check_magnitudes(ParseContext& context) {
+    const Experiment& e = context.e;
+    check_not_lost(context, "fill.radiance", e.fill, least_radiance);
+    for (const DiskLight& disk : e.disks)
+        check_not_lost(context, "disks." + disk.name + ".radiance", disk.radiance, least_radiance);
+    for (const Light& light : e.lights)
+        check_not_lost(context, "lights." + light.name + ".radiance", light.radiance, least_radiance);
+    for (const MeshObject& mesh : e.meshes)
+        check_not_lost(context, "meshes." + mesh.name + ".emission", mesh.emission, least_radiance);
+    for (std::size_t k = 0; k < e.surface_count(); ++k) {
+        const Material& m = e.material(k);
+        check_not_lost(context, e.surface_path(k) + ".rho_d", m.rho_d, least_albedo);
+        check_not_lost(context, e.surface_path(k) + ".rho_s", {m.rho_s, m.rho_s, m.rho_s}, least_albedo);
+    }
+}
+
+/// Reports an arm whose sampler reaches no light that the experiment has: every sample of it is 0.
+void check_reached_light(ParseContext& context) {
+    for (const char* table : {"disks", "lights", "fill", "fill.radiance", "sky", "meshes", "arms"})
+        if (!context.is_valid(table)) return;
+    const Experiment& e = context.e;
+    const auto shines = [](const auto& light) { return std::ranges::max(light.radiance) > 0; };
+    const bool lights = std::ranges::any_of(e.disks, shines) || std::ranges::any_of(e.lights, shines),
+               triangles = std::ranges::any_of(e.meshes, &MeshObject::emits), fill = std::ranges::max(e.fill) > 0;
+    for (const ArmPlan& arm : e.arms) {
+        const SamplerInfo* info = arm.is_external() || arm.is_combination() ? nullptr : find_arm_info(arm.sampler);
+        if (!info) continue;
+        const Reaches& reaches = info->reaches;
+        if ((reaches.fill && fill) || (reaches.lights && lights) || (reaches.triangles && triangles) ||
+            (reaches.sky && e.sky))
+            continue;
+        std::string reached;
+        for (const auto& [of, name] : {std::pair(reaches.fill, "the fill"), {reaches.lights, "disks and lights"},
+                 {reaches.triangles, "triangles that emit"}, {reaches.sky, "a sky"}})
+            if (of) reached += (reached.empty() ? "" : " and ") + std::string(name);
+        context.report("arms." + arm.name,
+            fmt::format("arms.{}: the sampler '{}' reaches only {}, and the experiment has no such light: every sample "
+                        "would be 0",
+                arm.name, arm.sampler, reached));
+    }
 }
 
 void check_content(ParseContext& context, const std::string& path, const std::optional<std::string>& content) {
@@ -223,6 +279,7 @@ void check_geometry(ParseContext& context) {
     for (const PlatePlan& plate : context.e.plates)
         if (plate.crop) check_box_on_image(context, "plates." + plate.name + ".crop", *plate.crop);
     check_light(context);
+    check_magnitudes(context);
 }
 
 void check_names(ParseContext& context) {
@@ -239,6 +296,7 @@ void check_names(ParseContext& context) {
     }
     check_furnaces(context);
     check_film_files(context);
+    check_reached_light(context);
     check_external_arms(context);
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
         if (const Shape* shape = context.e.find_shape(name))

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 #include "base/errors.h"
@@ -88,7 +89,8 @@ void add_combinations(const Experiment& experiment, ExternalSamplers& samplers) 
 
 namespace {
 
-constexpr std::uint32_t probes = 64;  // points at which the sum of formulas is tested, for each shape
+constexpr std::size_t most_samplers = 64;  // of an arm with those of its parts: each sample evaluates all of them
+constexpr std::uint32_t probes = 64;       // points at which the sum of formulas is tested, for each shape
 
 class Checks {
 public:
@@ -185,9 +187,29 @@ private:
         return false;
     }
 
+    /// Returns the number of samplers that a sample of an arm evaluates, at most one more than may be. A part that
+    /// occurs several times counts each time; an arm within itself, which is reported elsewhere, counts once.
+    std::size_t sampler_count(const ArmPlan& arm) {
+        const auto [known, is_new] = sampler_counts_.try_emplace(arm.name, 1);
+        if (!is_new) return known->second;
+        std::size_t sum = 0;
+        std::vector<std::string> parts = arm.combination.of;
+        if (arm.combination.target) parts.push_back(*arm.combination.target);
+        for (const std::string& part : parts) {
+            const ArmPlan* other = context_.e.find_arm(part);
+            sum += other && other->is_combination() ? sampler_count(*other) : 1;
+        }
+        return sampler_counts_[arm.name] = std::min(sum, most_samplers + 1);
+    }
+
     void names(const ArmPlan& arm, const std::string& path) {
         const CombinationPlan& c = arm.combination;
         if (!context_.is_valid(path + ".of")) return;
+        if (sampler_count(arm) > most_samplers)
+            report(path + ".of",
+                fmt::format("expected at most {} samplers, found more: a part that occurs several times counts each "
+                            "time",
+                    most_samplers));
         const std::size_t least = c.kind == CombinationKind::ris ? 1 : 2;
         if (!c.of.empty() && (c.of.size() < least || c.of.size() > most_parts))
             report(path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_parts, c.of.size()));
@@ -280,6 +302,7 @@ private:
         return in;
     }
     ParseContext& context_;
+    std::map<std::string, std::size_t> sampler_counts_{};  // by arm
 };
 
 }  // namespace

@@ -60,6 +60,13 @@ PacksInUse packs_in_use;
 
 }  // namespace
 
+bool leads_out(const std::string& folder, const std::string& path) {
+    std::error_code error;
+    const std::filesystem::path inside = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error),
+                                file = std::filesystem::weakly_canonical(path, error);
+    return !error && *file.lexically_relative(inside).begin() == "..";
+}
+
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) {
     return packs_in_use.read(contents_of_regular_file(path), path);
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/experiment.h"
+#include "experiment/parser.h"
 #include "experiment/schema.h"
 
 namespace crescent::inline experiment {
@@ -260,6 +261,21 @@ TEST(PublishedFigures, AreLookedUpByArmNSAndMeter) {
     EXPECT_EQ(published->find("phong", 65, 32, "rmse.H"), std::nullopt);
     EXPECT_EQ(published->furnace("phong_combined"), 0.193);
     EXPECT_FALSE(load_published(""));
+}
+
+TEST(Overrides, GiveATextThatIsReadTheSame) {
+    const std::string text =
+        "title = \"a \\\"b\\\" \\\\\"\nn = 4\n[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\n"
+        "target = [0, 1, 0]\nvfov_deg = 40\n[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\n"
+        "radius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\n"
+        "[arms.uniform]\n[plates.hero]\nkind = \"hero\"\nruns = [{arm = \"cosine\"}]\n";
+    const std::vector<std::string> changes = {
+        "n=16", "ball.radius=0.1", "arms.uniform.n=[1, 2]", "fill.radiance=[1, 2, 3e-3]"};
+    const std::string changed = text_with_overrides(text, "a.toml", changes);
+    EXPECT_EQ(canonical_text(parse(changed, "a.toml")), canonical_text(parse(text, "a.toml", changes)));
+    EXPECT_EQ(canonical_text(parse(changed, "a.toml", {"n=64"})),
+        canonical_text(parse(text, "a.toml", {changes[0], changes[1], changes[2], changes[3], "n=64"})));
+    EXPECT_THROW((void)text_with_overrides(text, "a.toml", {"nothing.at.all=3"}), InputError);
 }
 
 TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {

@@ -258,6 +258,44 @@ INSTANTIATE_TEST_SUITE_P(Values, AMistake, testing::ValuesIn(values));
 INSTANTIATE_TEST_SUITE_P(Names, AMistake, testing::ValuesIn(names));
 INSTANTIATE_TEST_SUITE_P(Checks, AMistake, testing::ValuesIn(checks));
 
+/// Returns the message for the good file with other values.
+std::string mistake_with(const std::vector<std::string>& overrides) {
+    try {
+        (void)parse(good, "x.toml", overrides);
+    } catch (const InputError& error) { return error.what(); }
+    return "";
+}
+
+TEST(Mistakes, MagnitudesThatSinglePrecisionLosesAreRefused) {
+    EXPECT_THAT(mistake_with({"key.radiance=[0, 1e-30, 0]"}), HasSubstr("disks.key.radiance: expected 0, or"));
+    EXPECT_THAT(mistake_with({"fill.radiance=[9e-10, 0, 0]"}), HasSubstr("fill.radiance: expected 0, or"));
+    EXPECT_THAT(mistake_with({"brick.rho_d=[1e-20, 0, 0]"}), HasSubstr("shapes.brick.rho_d: expected 0, or"));
+    EXPECT_THAT(mistake_with({"ball.rho_s=1e-7"}), HasSubstr("shapes.ball.rho_s: expected 0, or"));
+    EXPECT_EQ(mistake_with({"key.radiance=[0, 1e-9, 1e-20]", "brick.rho_d=[0, 0, 0]", "ball.rho_d=[1e-6, 0, 0]"}), "");
+    EXPECT_THAT(mistake_with({"ball.brdf=ggx", "ball.alpha=9.9e-5"}), HasSubstr("a number from 0.0001 to 1"));
+    EXPECT_EQ(mistake_with({"ball.brdf=ggx", "ball.alpha=1e-4"}), "");
+}
+
+TEST(Mistakes, CombinationsOfManySamplersAreRefusedAtOnce) {
+    const auto levels = [](int count) {
+        std::vector<std::string> overrides = {"arms.m0={kind = \"mixture\", of = [\"cosine\", \"uniform\"]}"};
+        for (int k = 1; k <= count; ++k)
+            overrides.push_back(fmt::format("arms.m{0}={{kind = \"mixture\", of = [\"m{1}\", \"m{1}\"]}}", k, k - 1));
+        return overrides;
+    };
+    EXPECT_EQ(mistake_with(levels(5)), "");
+    EXPECT_THAT(mistake_with(levels(6)), HasSubstr("arms.m6.of: expected at most 64 samplers, found more"));
+    EXPECT_THAT(mistake_with(levels(60)), HasSubstr("arms.m60.of: expected at most 64 samplers, found more"));
+}
+
+TEST(Mistakes, AnArmThatReachesNoLightIsRefused) {
+    for (const char* sampler : {"sky", "light-triangle"})
+        EXPECT_THAT(mistake_with({std::string("arms.other.sampler=") + sampler}), HasSubstr("arms.other: the sampler"));
+    EXPECT_EQ(mistake_with({"arms.other.sampler=light-area"}), "");
+    EXPECT_THAT(mistake_with({"arms.other.sampler=light-area", "key.radiance=[0, 0, 0]", "fill.radiance=[1, 1, 1]"}),
+        HasSubstr("arms.other: the sampler 'light-area' reaches only disks and lights"));
+}
+
 TEST(Mistakes, TheFileWithoutOneIsAccepted) { EXPECT_NO_THROW((void)parse(good, "x.toml")); }
 
 TEST(Mistakes, AllAreReportedAtOnceInFileOrder) {

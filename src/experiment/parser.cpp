@@ -2,14 +2,12 @@
 #include "experiment/parser.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <tuple>
 
+#include "base/input.h"
 #include "experiment/experiment.h"
 #include "experiment/input_files.h"
 #include "samplers/info.h"
@@ -473,23 +471,7 @@ Experiment with_files(Experiment experiment) {
 }
 
 std::string read_text(const std::string& path, std::string_view what) {
-    constexpr std::streamsize most = (std::streamsize{4} << 20) + 1;
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        throw InputError({path, 0, 0}, fmt::format("expected {}, found a folder", what));
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        throw InputError(
-            {path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
-    std::string text(static_cast<std::size_t>(most), '\0');
-    file.read(text.data(), most);
-    if (file.bad())
-        throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-    if (text.size() == static_cast<std::size_t>(most))
-        throw InputError({path, 0, 0}, fmt::format("expected {} of at most 4 MiB, found more", what));
-    return text;
+    return read_input(path, std::size_t{4} << 20, what);
 }
 
 }  // namespace crescent::inline experiment

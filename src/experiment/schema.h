@@ -17,6 +17,10 @@
 
 namespace crescent::inline experiment {
 
+/// The smallest roughness. A lobe of 1e-4 is 1,700 steps of single precision (6e-8) wide in a direction's coordinates;
+/// of 1e-5 the densities of its samples are not known to a figure, and films have pixels that are not numbers.
+inline constexpr double least_alpha = 1e-4;
+
 /// The type of a key's value.
 enum class Type {
     text,   // any text on one line

@@ -10,6 +10,7 @@ constexpr Range free_range{-1e6, 1e6};  // coordinates: float kernels resolve st
 constexpr Range length_range{1e-6, 1e6};
 constexpr Range factor_range{-1e6, 1e6};
 constexpr Range unit_range{0, 1};  // albedos
+constexpr Range alpha_range{least_alpha, 1};
 constexpr Range exponent_range{0, 1e6, true};
 constexpr Range radiance_range{0, 1e9};       // its square times a weight of a thousand fits a float
 constexpr Range count_range{1, 16777216};     // 2^24 samples per pixel
@@ -86,7 +87,7 @@ template <class Owner> std::vector<Key> material_keys() {
             "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Owner::material, &Material::s>},
         {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Owner::material, &Material::brdf>,
             lobe_names()},
-        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a lobe of microfacets",
+        {"alpha", Type::number, alpha_range, "", optional, "sqrt(2/(s+2)); required for a lobe of microfacets",
             "Roughness of a lobe of microfacets, not remapped.", to<&Owner::material, &Material::alpha>}};
 }
 

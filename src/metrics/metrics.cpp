@@ -299,25 +299,63 @@ std::vector<SeedSpread> bands(
 namespace {
 
 struct Line {
-    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN if there are none
+    double slope = 0, half_width = 0;  // of the 90 % interval from the residuals, NaN if there are none
 };
 
-/// Fits log y against log x by least squares.
+/// The variance of a fitted slope for errors of unit variance, the mean of its residuals' squares, and Satterthwaite's
+/// degrees of freedom of that mean. The samples of N1 are a part of those of N2 > N1: the correlation of the two mean
+/// squared errors, and so nearly of their logarithms, is N1 / N2. With M = 1 - H the residuals and R the correlations,
+/// their squares have the mean tr MR and tr(MR)^2 / tr(MRMR) degrees of freedom.
+struct FitErrors {
+    double slope_variance = 0, residual_mean = 0, degrees = 0;
+};
+
+FitErrors fit_errors(const std::vector<std::uint64_t>& n, const std::vector<double>& x, double mean, double spread) {
+    const std::size_t k = n.size();
+    const auto correlation = [&](std::size_t i, std::size_t j) {
+        return static_cast<double>(std::min(n[i], n[j])) / static_cast<double>(std::max(n[i], n[j]));
+    };
+    FitErrors out;
+    std::vector<double> product(k * k);  // M R
+    for (std::size_t i = 0; i < k; ++i)
+        for (std::size_t j = 0; j < k; ++j) {
+            for (std::size_t m = 0; m < k; ++m) {
+                const double hat = 1 / static_cast<double>(k) + (x[i] - mean) * (x[m] - mean) / spread;
+                product[i * k + j] += ((i == m) - hat) * correlation(m, j);
+            }
+            out.slope_variance += (x[i] - mean) * (x[j] - mean) / square(spread) * correlation(i, j);
+        }
+    double squares = 0;
+    for (std::size_t i = 0; i < k; ++i) {
+        out.residual_mean += product[i * k + i];
+        for (std::size_t j = 0; j < k; ++j) squares += product[i * k + j] * product[j * k + i];
+    }
+    out.degrees = square(out.residual_mean) / squares;
+    return out;
+}
+
+/// Fits log y against log n by least squares.
 Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y) {
     const double count = static_cast<double>(n.size());
+    std::vector<double> x;
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (std::size_t i = 0; i < n.size(); ++i) {
         const double a = math::log(static_cast<double>(n[i])), b = math::log(y[i]);
-        sx += a, sy += b, sxx += a * a, sxy += a * b;
+        x.push_back(a);
+        sx += a;
+        sy += b;
+        sxx += a * a;
+        sxy += a * b;
     }
     const double spread = sxx - sx * sx / count;
     Line line{(sxy - sx * sy / count) / spread, std::nan("")};
     if (n.size() < 3) return line;
     double residual = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
-        residual +=
-            square(math::log(y[i]) - sy / count - line.slope * (math::log(static_cast<double>(n[i])) - sx / count));
-    line.half_width = 1.645 * std::sqrt(residual / (count - 2) / spread);  // normal 90 %
+        residual += square(math::log(y[i]) - sy / count - line.slope * (x[i] - sx / count));
+    const FitErrors errors = fit_errors(n, x, sx / count, spread);
+    line.half_width = student_two_sided_quantile(errors.degrees, 0.1) *
+        std::sqrt(residual / errors.residual_mean * errors.slope_variance);
     return line;
 }
 

@@ -197,7 +197,9 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     return out;
 }
 
-std::shared_ptr<const RgbImage> read_pack(const std::string& path, WhyNot why_not) {
+std::shared_ptr<const RgbImage> read_pack(const std::string& path, std::string_view head, WhyNot why_not) {
+    std::error_code error;
+    (void)read_image_size(head, std::filesystem::file_size(path, error), path);  // before its memory is taken
     std::shared_ptr<const RgbImage> image = read_image_file(contents_of(path), path);
     if (const std::string why = why_not(image->width, image->height); !why.empty()) throw InputError({path, 0, 0}, why);
     return image;
@@ -215,7 +217,7 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
             {path, 0, 0}, fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
     std::string head(image_header_size, '\0');
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
-    if (is_image_file(head)) return read_pack(path, why_not);
+    if (is_image_file(head)) return read_pack(path, head, why_not);
     try {
         return read_parts(path, why_not);
     } catch (const InputError&) { throw; } catch (const std::exception& why) {

@@ -14,6 +14,9 @@
 namespace crescent::inline report {
 namespace {
 
+constexpr int deepest = 64;       // levels of arrays and objects; a metrics.json has ten
+constexpr int most_seeds = 4096;  // as in an experiment
+
 /// Parses the output of number().
 double number_of(const Json& json) {
     if (!json.is_string()) return json.get<double>();
@@ -132,6 +135,8 @@ Provenance provenance_of(const Json& json) {
     p.experiment_text = experiment.at("text").get<std::string>();
     p.seeds = json.at("seeds").get<std::vector<std::uint32_t>>();
     p.series = json.at("series").at("of").get<int>();
+    if (p.series < 1 || p.series > most_seeds)
+        throw Json::other_error::create(501, fmt::format("a series of {} seeds", p.series), &json);
     const auto missing = json.at("series").value("missing", std::vector<int>{});
     for (int place = 1; place <= p.series; ++place)
         if (std::ranges::find(missing, place) == missing.end()) p.places.push_back(place);
@@ -152,6 +157,14 @@ Experiment experiment_of(const Provenance& p, const Json& json, const std::strin
             "written, by this version of crescent");
     e.seed = p.seeds.at(0), e.seeds = static_cast<int>(p.seeds.size());
     return e;
+}
+
+/// Parses JSON whose values are nested a few deep: what reads or compares them is recursive.
+Json parse_bounded(const std::string& text) {
+    return Json::parse(text, [](int depth, Json::parse_event_t, const Json& value) {
+        if (depth > deepest) throw Json::other_error::create(501, "values that are nested too deep", &value);
+        return true;
+    });
 }
 
 MetricsFile file_of(const Json& json, const std::string& name) {
@@ -176,7 +189,7 @@ MetricsFile file_of(const Json& json, const std::string& name) {
 
 MetricsFile read_metrics(const std::string& text, const std::string& name) {
     try {
-        return file_of(Json::parse(text), name);
+        return file_of(parse_bounded(text), name);
     } catch (const Json::exception& error) {
         throw InputError({name, 0, 0}, fmt::format("expected the metrics.json of a run: {}", error.what()));
     } catch (const std::out_of_range&) {

@@ -1,7 +1,6 @@
-// A file named by the XXH3-64 of the run's key (version, commit, the files of program and library, the experiment's
-// hash, the back end and the seeds) with a sequence of CBOR items (RFC 8742): the key, then the metrics of finished
-// passes. CBOR keeps every double exactly, including NaN and infinities. Each write appends whole items; an item that a
-// kill cut off is removed before more are appended.
+// A file named by the XXH3-64 of the run's key: version, commit, the files of program and library, the experiment's
+// hash, the back end and the seeds. Each write appends whole items (run/checkpoint_items.h); what a kill cut off, or
+// what changed since, is removed before more are appended.
 #include "run/checkpoint.h"
 
 #include <dlfcn.h>
@@ -15,22 +14,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include "base/machine.h"
+#include "run/checkpoint_items.h"
 #include "run/version.h"
 
 namespace crescent::inline runs {
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunKey, arm, n, s, seed)
-#define CRESCENT_FIELD(name, Type) , name
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(
-    RegionMetrics, region, pixels, flip, mse, mse_error, reference_error CRESCENT_REGION_METRICS(CRESCENT_FIELD))
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMetrics, key, regions CRESCENT_FRAME_METRICS(CRESCENT_FIELD))
-#undef CRESCENT_FIELD
 
 namespace {
 
@@ -38,11 +31,14 @@ namespace fs = std::filesystem;
 
 std::string mark_of(const std::string& path) {
     struct stat about{};
-    std::error_code unknown;
-    const auto written = fs::last_write_time(path, unknown);
-    if (unknown || stat(path.c_str(), &about) != 0) return "";
-    return fmt::format("{:x}-{:x}-{:x}-{:x}", about.st_dev, about.st_ino, about.st_size,
-        static_cast<std::int64_t>(written.time_since_epoch().count()));
+    if (stat(path.c_str(), &about) != 0) return "";
+#ifdef __APPLE__
+    const timespec& written = about.st_mtimespec;
+#else
+    const timespec& written = about.st_mtim;
+#endif
+    return fmt::format(
+        "{:x}-{:x}-{:x}-{:x}-{:x}", about.st_dev, about.st_ino, about.st_size, written.tv_sec, written.tv_nsec);
 }
 
 /// Identifies the files of the program and of the library with this code, with their times: what another build kept is
@@ -53,26 +49,38 @@ std::string build_mark() {
     return mark_of(program_file()) + " " + mark_of(known ? about.dli_fname : "");
 }
 
-bool are_of(const Experiment& experiment, const std::vector<RegionMetrics>& metrics) {
-    return std::equal(metrics.begin(), metrics.end(), experiment.regions.begin(), experiment.regions.end(),
-        [](const RegionMetrics& m, const Region& region) { return m.region == region.name; });
-}
-
 std::string key_of(const Experiment& experiment, const std::string& work) {
     return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), hash(experiment), work);
 }
 
-using Item = std::vector<std::uint8_t>;
+constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;  // 4,096 seeds of a hundred passes fit
 
 /// Appends with one call, so that items of two processes do not mix.
-bool append(const std::string& path, const Item& items) {
-    const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+bool append(const std::string& path, const std::string& items) {
+    // A pipe in its place, which nobody reads, does not stop the run.
+    constexpr int flags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+    const int file = ::open(path.c_str(), flags, 0666);
     if (file < 0) return false;
-    const ssize_t n = ::write(file, items.data(), items.size());
-    const int error = n < 0 ? errno : n == static_cast<ssize_t>(items.size()) ? 0 : ENOSPC;
+    struct stat about{};
+    const bool regular = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
+    const ssize_t n = regular ? ::write(file, items.data(), items.size()) : 0;
+    const int error = !regular ? EINVAL : n < 0 ? errno : n == static_cast<ssize_t>(items.size()) ? 0 : ENOSPC;
     ::close(file);
     errno = error;
     return error == 0;
+}
+
+/// Returns the bytes of a regular file; empty if there is none, or if it is larger than a checkpoint.
+std::optional<std::string> bytes_of(const std::string& path) {
+    std::error_code unknown;
+    if (!fs::is_regular_file(fs::symlink_status(path, unknown))) return {};
+    const std::uintmax_t size = fs::file_size(path, unknown);
+    if (unknown || size > most_bytes) return {};
+    std::string bytes(size, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(in.gcount()));
+    return bytes;
 }
 
 }  // namespace
@@ -95,23 +103,20 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& work, co
 
 void Checkpoint::read(const Experiment& experiment) {
     std::error_code ignored;
-    if (!fs::is_regular_file(fs::symlink_status(file_, ignored))) return;
-    std::ifstream in(file_, std::ios::binary);
-    const auto next = [&] { return nlohmann::json::from_cbor(in, false, false); };  // discarded at an incomplete item
-    if (!(next() == key_)) {  // != is false for an incomplete item
+    const std::optional<std::string> bytes = bytes_of(file_);
+    if (!bytes) return;
+    CheckpointContent content = read_items(*bytes, key_, experiment);
+    if (content.bytes < bytes->size())
+        monitor_.log(fmt::format(
+            "the checkpoint {} is incomplete or damaged from byte {} on: what it held there is computed again", file_,
+            content.bytes));
+    if (!content.has_key) {
         fs::remove(file_, ignored);
         return;
     }
     begun_ = true;
-    std::streamoff whole = in.tellg();
-    try {
-        for (nlohmann::json item = next(); !item.is_discarded(); item = next()) {
-            for (RunMetrics& metric : item.get<std::vector<RunMetrics>>())
-                if (are_of(experiment, metric.regions)) metrics_.push_back(std::move(metric));
-            whole = in.tellg();
-        }
-    } catch (const nlohmann::json::exception&) {}  // not metrics: what follows is not used
-    fs::resize_file(file_, static_cast<std::uintmax_t>(whole), ignored);
+    metrics_ = std::move(content.metrics);
+    fs::resize_file(file_, content.bytes, ignored);
     if (ignored) disabled_ = true;
 }
 
@@ -135,13 +140,12 @@ void Checkpoint::add(const std::vector<RunMetrics>& metrics) {
     metrics_.insert(metrics_.end(), metrics.begin(), metrics.end());
     if (disabled_ || start_.seconds() < checkpoint_after_s_) return;
     const std::vector<RunMetrics> fresh(metrics_.begin() + static_cast<std::ptrdiff_t>(written_), metrics_.end());
-    Item items;
-    if (!begun_) nlohmann::json::to_cbor(key_, items);
-    nlohmann::json::to_cbor(fresh, items);
+    const std::string items = (begun_ ? "" : key_item(key_)) + metrics_item(fresh);
     std::error_code ignored;  // append() reports the error
     fs::create_directories(folder_, ignored);
     if (append(file_, items)) {
-        begun_ = true, written_ = metrics_.size();
+        begun_ = true;
+        written_ = metrics_.size();
         return;
     }
     monitor_.log(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", file_,

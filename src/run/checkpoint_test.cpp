@@ -2,6 +2,7 @@
 #include "run/checkpoint.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -99,6 +100,38 @@ TEST_F(Keeping, OtherItemsAreNotUsed) {
     std::ofstream(file(), std::ios::binary | std::ios::app) << '\0' << "\x82\xf6\xf6";  // 0; [null, null]
     EXPECT_EQ(found(experiment_), all);
     EXPECT_EQ(found(experiment_), all);
+}
+
+TEST_F(Keeping, AnyChangedBitIsFound) {
+    keep(experiment_);
+    std::ifstream in(file(), std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(in), {}};
+    for (std::size_t byte = 0; byte < whole.size(); byte += 7) {
+        std::string damaged = whole;
+        damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << byte % 8));
+        std::ofstream(file(), std::ios::binary | std::ios::trunc) << damaged;
+        const auto metrics = found(experiment_);  // compares their numbers
+        EXPECT_NE(metrics, all) << "byte " << byte;
+        EXPECT_NE(monitor_.message.find("incomplete or damaged"), std::string::npos);
+        keep(experiment_);  // the file is there again if its key was damaged
+    }
+}
+
+TEST_F(Keeping, NestedDataAndEndlessLengthsAreNotUsed) {
+    keep(experiment_);
+    std::ofstream(file(), std::ios::binary | std::ios::app) << std::string(2'000'000, '\x81');
+    EXPECT_EQ(found(experiment_), all);
+    std::ofstream(file(), std::ios::binary | std::ios::app) << std::string(64, '\xff');
+    EXPECT_EQ(found(experiment_), all);
+}
+
+TEST_F(Keeping, APipeInItsPlaceStopsNothing) {
+    keep(experiment_);
+    const std::string path = file();
+    fs::remove(path);
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    EXPECT_EQ(found(experiment_), nothing);
+    keep(experiment_);
 }
 
 TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {

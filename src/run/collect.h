@@ -61,6 +61,8 @@ Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std:
 /// Throws InputError if a part cannot be read or is of another experiment, build or back end, or if two parts give two
 /// values for one quantity.
 Measured join(const std::vector<std::string>& parts, const std::string& command);
+/// The same of the texts of metrics.json.
+Measured join_texts(const std::vector<std::string>& texts, const std::string& command);
 
 /// Writes metrics.json, metrics.csv and junit.xml, all at once. Throws OutputError.
 void write_metrics(const Measured& measured, const std::string& folder, ProgressMonitor& monitor);

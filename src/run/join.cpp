@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
@@ -15,6 +14,7 @@
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/input.h"
 #include "experiment/experiment.h"
 #include "output/format.h"
 #include "run/plan.h"
@@ -29,21 +29,28 @@ struct Part {
     MetricsFile file;
 };
 
-std::string text_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (!in || text.empty())
-        throw InputError({path, 0, 0}, "expected the metrics.json of a run, or the folder of one, that can be read");
-    return text;
+/// A run has the metrics of the experiment's regions, and is one that the experiment makes.
+void check_run(const RunMetrics& run, const Experiment& e, const std::string& name) {
+    const ArmPlan* arm = e.find_arm(run.key.arm);
+    const bool made = arm && std::ranges::find(arm->n, run.key.n) != arm->n.end() && std::isfinite(run.key.s);
+    if (!made || !std::ranges::equal(run.regions, e.regions, {}, &RegionMetrics::region, &Region::name))
+        throw InputError({name, 0, 0},
+            fmt::format("the run {} is not one of the experiment in it, or has other regions", to_string(run.key)));
 }
+
+Part part_of(const std::string& text, const std::string& path) {
+    MetricsFile file = read_metrics(text, path);
+    for (const RunMetrics& run : file.metrics.runs) check_run(run, file.experiment, path);
+    return {path, Json::parse(text), std::move(file)};
+}
+
+constexpr std::size_t most_bytes = std::size_t{2} << 30;  // a run of 4,096 seeds has some 500 MB
 
 Part read_part(const std::string& given) {
     std::error_code ignored;
     const bool folder = std::filesystem::is_directory(given, ignored);
     const std::string path = folder ? (std::filesystem::path(given) / "metrics.json").string() : given;
-    const std::string text = text_of(path);
-    MetricsFile file = read_metrics(text, path);
-    return {path, Json::parse(text), std::move(file)};
+    return part_of(read_input(path, most_bytes, "the metrics.json of a run, or the folder of one,"), path);
 }
 
 /// "section.key" -> value, of an experiment's canonical text.
@@ -193,16 +200,7 @@ std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
     return out;
 }
 
-}  // namespace
-
-Measured join(const std::vector<std::string>& given, const std::string& command) {
-    std::vector<Part> parts;
-    Rows rows;
-    for (const std::string& path : given) {
-        parts.push_back(read_part(path));
-        check_alike(parts.front(), parts.back());
-        rows.add(parts.back());
-    }
+Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std::string& command) {
     const auto of_longest_series =
         std::ranges::max_element(parts, {}, [](const Part& part) { return part.file.provenance.series; });
     Measured out;
@@ -221,12 +219,15 @@ Measured join(const std::vector<std::string>& given, const std::string& command)
             out.metrics.runs.push_back(std::move(run));
         }
     }
-    ensure(!out.provenance.seeds.empty(), "a part has a seed of its own series");
+    if (out.provenance.seeds.empty())
+        throw InputError({parts.front().name, 0, 0}, "cannot be joined: none of its runs is of a seed of its series");
     out.experiment.seed = out.provenance.seeds.front();
     out.experiment.seeds = static_cast<int>(out.provenance.seeds.size());
     const auto begins = std::ranges::find_if(
         parts, [&](const Part& part) { return part.file.provenance.seeds.front() == out.experiment.seed; });
-    ensure(begins != parts.end(), "the first seed of all is the first of a part");
+    if (begins == parts.end())
+        throw InputError({parts.front().name, 0, 0},
+            fmt::format("cannot be joined: no part begins with the seed {}, the first of all", out.experiment.seed));
     const Metrics& of_first = begins->file.metrics;
     out.metrics.film_hashes = of_first.film_hashes, out.metrics.references = of_first.references;
     out.metrics.furnaces = of_first.furnaces, out.metrics.shape_pixels = of_first.shape_pixels;
@@ -234,6 +235,30 @@ Measured join(const std::vector<std::string>& given, const std::string& command)
     add_spreads(out);
     std::ranges::move(backend_claims(parts), std::back_inserter(out.metrics.assertions));
     return out;
+}
+
+}  // namespace
+
+Measured join(const std::vector<std::string>& given, const std::string& command) {
+    std::vector<Part> parts;
+    Rows rows;
+    for (const std::string& path : given) {
+        parts.push_back(read_part(path));
+        check_alike(parts.front(), parts.back());
+        rows.add(parts.back());
+    }
+    return join_parts(parts, rows, command);
+}
+
+Measured join_texts(const std::vector<std::string>& texts, const std::string& command) {
+    std::vector<Part> parts;
+    Rows rows;
+    for (const std::string& text : texts) {
+        parts.push_back(part_of(text, fmt::format("part {}", parts.size() + 1)));
+        check_alike(parts.front(), parts.back());
+        rows.add(parts.back());
+    }
+    return join_parts(parts, rows, command);
 }
 
 void write_metrics(const Measured& m, const std::string& folder, ProgressMonitor& monitor) {

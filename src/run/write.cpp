@@ -25,6 +25,13 @@ namespace crescent::inline runs {
 
 namespace {
 
+/// Returns "2026-01-31T12:00:00Z"; "unknown" if the clock has no date, as at the ends of 64 bits.
+std::string utc_date() {
+    const std::time_t now = std::time(nullptr);
+    std::tm date{};
+    return gmtime_r(&now, &date) ? fmt::format("{:%FT%TZ}", date) : "unknown";
+}
+
 PlateInputs plate_inputs(const Measured& m) {
     return {m.experiment, m.metrics, m.shapes, [&m](const RunKey& key) { return m.film(key); },
         [&m](double s) { return m.reference(s); }, m.provenance.backend, m.experiment.theme.value_or(Theme::dark),
@@ -161,7 +168,7 @@ void write(Measured& m, Staging& staging, ProgressMonitor& monitor, const Output
     write_reports(m, staging, parts);
     m.timing.stages.emplace_back("report", report.seconds());
     m.timing.total_s += start.seconds();
-    m.timing.date = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+    m.timing.date = utc_date();
     m.timing.host_cpu = host_cpu();
     staging.write("timing.json", timing_json(m.timing, m.provenance));
     monitor.check();

@@ -54,19 +54,27 @@ std::size_t entry_of(double x, std::size_t entries) {
 
 }  // namespace
 
+constexpr double darkest_sky =
+    1e-9;  // W/(sr m^2), of its brightest texel, as of every radiance of a file that is not 0
+
 std::string why_no_sky(const RgbImage& image, double scale) {
     if (const std::string why = why_no_sky_of(image.width, image.height); !why.empty()) return why;
-    bool light = false;
+    double largest = 0;
     for (std::size_t k = 0; k < image.rgb.size(); ++k) {
         const float x = image.rgb[k];
         const double scaled = scale * double(x);
-        light = light || scaled > 0;
+        largest = std::max(largest, scaled);
         if (x >= 0 && scaled <= brightest_sky) continue;
         const std::size_t texel = k / 3, width = static_cast<std::size_t>(image.width);
         return fmt::format("texel ({}, {}), counted from the top-left: expected a radiance from 0 to {:g}, found {}",
             texel % width, texel / width, brightest_sky, scaled);
     }
-    return light ? "" : "every texel is 0: expected a sky with light";
+    if (largest <= 0) return "every texel is 0: expected a sky with light";
+    if (largest >= darkest_sky) return "";
+    return fmt::format(
+        "expected a texel with a radiance of at least {:g}, found {:g} at most, whose square is lost in "
+        "single precision",
+        darkest_sky, largest);
 }
 
 SkyTable::SkyTable(const SkyLight& light) : image_(light.image), scale_(light.scale), turns_(light.rotation / 360) {

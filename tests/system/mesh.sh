@@ -162,6 +162,19 @@ refuses 'text.mesh: expected a .mesh file' text.mesh
 refuses 'folder.mesh: expected a regular file' folder.mesh
 refuses 'none.mesh: .*found none' none.mesh
 refuses 'in the folder of the experiment' ../tent-obj.mesh
+mkdir outside inside
+cp tent-obj.mesh uv.mesh wood.exr outside
+mv outside ..
+ln -s ../outside/tent-obj.mesh linked.mesh
+ln -s ../outside linked
+ln -s ../outside/wood.exr linked.exr
+ln -s ../uv.mesh inside/uv.mesh
+refuses 'in the folder of the experiment.*link' linked.mesh
+refuses 'in the folder of the experiment.*link' linked/tent-obj.mesh
+refuses 'in the folder of the experiment.*link' uv.mesh 'rho_d_texture = "linked.exr"'
+experiment inside/uv.mesh # a link that stays in the folder
+expect 0 "$CRESCENT" run mesh.toml --only metrics --out linked-inside
+rm -r ../outside
 refuses 'in the folder of the experiment' "$PWD/tent-obj.mesh"
 refuses 'determinant' tent-obj.mesh 'scale = [1, 0, 1]'
 refuses 'within 1000000 m' tent-obj.mesh 'translate = [1e6, 0, 0]'

@@ -1,5 +1,5 @@
 /* The cosine sampler, and what a plugin may do to its process: `-D ON_LOAD=...` when it is loaded, `-D ON_CALL=...` in
- * every call of crescent_sampler_sample, `-D PDF=...` in place of cos / pi, `-D LENGTH=...` of the direction. */
+ * every call of crescent_sampler_sample, `-D PDF=...` in place of cos / pi, `-D LENGTH=...` of the direction, `-D NAME_BYTES=...` of its name. */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
@@ -70,6 +70,14 @@ static inline void write_junk(const char* text) {
 __attribute__((constructor)) static void on_load(void) { ON_LOAD; }
 
 unsigned crescent_sampler_abi(void) { return CRESCENT_SAMPLER_ABI; }
+
+#ifdef NAME_BYTES
+const char* crescent_sampler_name(void) {
+    static char name[NAME_BYTES + 1];
+    memset(name, 'a', NAME_BYTES);
+    return name;
+}
+#endif
 
 int crescent_sampler_sample(
     size_t count, const double* wo, const double* u, const double* surface, double* wi, double* pdf) {

@@ -112,13 +112,7 @@ public:
               .file = host_program(),
               .label = std::filesystem::path(library).filename().string(),
               .shared = memory_.file()}) {
-        std::string line;
-        for (char c = 0; line.size() < 65536;) {
-            receive({&c, 1}, "while it was opened");
-            if (c == '\n') break;
-            line += c;
-        }
-        read_handshake(line);
+        read_handshake(receive_line("while it was opened"));
     }
     ~Host() { process_.end(200); }
     Host(const Host&) = delete;
@@ -157,6 +151,9 @@ public:
             receive(text, what);
             throw SamplerError(fmt::format("the plugin {} {} {}", library_, printable(text), what));
         }
+        if (answer.rows != rows || answer.bytes != 0)
+            throw SamplerError(fmt::format("the plugin {} answered {} rows with {} bytes of text {}: expected {} rows",
+                library_, answer.rows, answer.bytes, what, rows));
         return block;
     }
 
@@ -182,6 +179,18 @@ private:
             else if (n == 0) throw_ended(what);
             else wait(false, last, what);
         }
+    }
+    /// A handshake has a name and a few numbers: what is longer is none, and its rest would be taken for answers.
+    std::string receive_line(const std::string& what) {
+        constexpr std::size_t longest = 4096;
+        std::string line;
+        for (char c = 0; line.size() < longest; line += c) {
+            receive({&c, 1}, what);
+            if (c == '\n') return line;
+        }
+        throw OutputError(fmt::format(
+            "cannot open the plugin {}: expected a handshake of one line of at most {} bytes, found '{}...'", library_,
+            longest, printable(line, 60)));
     }
     void wait(bool to_write, Clock::time_point last, const std::string& what) {
         process_.wait_ready(to_write, !to_write, 50);

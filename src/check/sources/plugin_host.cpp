@@ -146,8 +146,7 @@ struct Library {
         if (version < 1 || version > CRESCENT_SAMPLER_ABI)
             throw Fault{"it has version " + std::to_string(version) + " of the interface; this program has version " +
                 std::to_string(CRESCENT_SAMPLER_ABI)};
-        if (version >= 2 && find("crescent_sampler_uses", names))
-            if (const char* own = called("crescent_sampler_uses", names)) uses = own;
+        if (version >= 2 && find("crescent_sampler_uses", names)) uses = text_of("crescent_sampler_uses", names);
         if (uses.find_first_of(" \n") != std::string::npos)
             throw Fault{"crescent_sampler_uses gives '" + uses + "': expected names separated by commas"};
         if (!find("crescent_sampler_sample", sample)) throw missing("crescent_sampler_sample");
@@ -157,10 +156,18 @@ struct Library {
             throw Fault{"it takes " + std::to_string(numbers) + " random numbers a sample: expected 1 to 8"};
         if (find("crescent_sampler_serial", one_at_a_time))
             serial = called("crescent_sampler_serial", one_at_a_time) != 0;
-        if (find("crescent_sampler_name", calls_itself))
-            if (const char* own = called("crescent_sampler_name", calls_itself)) name = own;
+        if (find("crescent_sampler_name", calls_itself)) name = text_of("crescent_sampler_name", calls_itself);
         if (name.empty()) name = path.substr(path.rfind('/') + 1);
         std::replace(name.begin(), name.end(), '\n', ' ');
+    }
+
+    /// Returns the text that a function gives; a text without an end is a fault as well.
+    static std::string text_of(const char* function, const char* (*give)()) {
+        constexpr std::size_t longest = 200;
+        const char* text = called(function, give);
+        const std::size_t size = text ? ::strnlen(text, longest + 1) : 0;
+        if (size > longest) throw Fault{std::string(function) + " gives a text of more than 200 bytes"};
+        return {text ? text : "", size};
     }
 
     static Fault missing(const char* function) {

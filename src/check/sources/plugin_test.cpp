@@ -23,11 +23,11 @@ using ::testing::HasSubstr;
 /// A plugin that executes `on_call` in each call, in a folder that exists as long as the test.
 class Plugins : public ::testing::Test {
 protected:
-    std::string compiled(const std::string& on_call) {
+    std::string compiled(const std::string& on_call, const std::string& flags = "") {
         const std::string file = (folder_ / "libodd.so").string();
         const std::string command =
-            "cc -O1 -shared -fPIC -pthread -I " CRESCENT_SOURCE_DIR "/src -D 'ON_CALL=" + on_call + "' -o '" + file +
-            "' " CRESCENT_SOURCE_DIR "/tests/system/odd_plugin.c -lm";
+            "cc -O1 -shared -fPIC -pthread -I " CRESCENT_SOURCE_DIR "/src -D 'ON_CALL=" + on_call + "' " + flags +
+            " -o '" + file + "' " CRESCENT_SOURCE_DIR "/tests/system/odd_plugin.c -lm";
         EXPECT_EQ(std::system(command.c_str()), 0);
         return file;
     }
@@ -43,7 +43,6 @@ protected:
     void SetUp() override { std::filesystem::create_directory(folder_); }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-private:
     std::filesystem::path folder_ =
         std::filesystem::temp_directory_path() / ("crescent-plugins-" + std::to_string(::getpid()));
 };
@@ -93,6 +92,49 @@ TEST_F(Plugins, EndlessCallsAreStopped) {
     const auto plugin = open_plugin(file, stopped);
     stop = true;
     EXPECT_EQ(error<Interrupted>(*plugin), "interrupted");
+}
+
+/// A name of 200 bytes is one; a longer one, or one without an end, would fill the pipe with what is taken for answers.
+TEST_F(Plugins, LongNamesAreRefused) {
+    EXPECT_EQ(open_plugin(compiled("", "-D NAME_BYTES=200"))->name(), std::string(200, 'a'));
+    for (const char* bytes : {"201", "65499", "65528", "1000000"}) {
+        const std::string file = compiled("", "-D NAME_BYTES=" + std::string(bytes));
+        EXPECT_THROW(open_plugin(file), OutputError) << bytes;
+    }
+}
+
+/// A host that begins with a handshake and then answers every request with `rows` rows.
+class OtherHosts : public Plugins {
+protected:
+    std::string host(const std::string& handshake, const std::string& answer) {
+        const std::string path = (folder_ / "host.sh").string();
+        std::ofstream(path) << "#!/bin/sh\nprintf '" << handshake << "'\nprintf '" << answer << "'\nsleep 5\n";
+        std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+        return path;
+    }
+    void SetUp() override {
+        Plugins::SetUp();
+        if (const char* before = std::getenv("CRESCENT_PLUGIN_HOST")) before_ = before;
+    }
+    void TearDown() override {
+        before_.empty() ? unsetenv("CRESCENT_PLUGIN_HOST") : setenv("CRESCENT_PLUGIN_HOST", before_.c_str(), 1);
+        Plugins::TearDown();
+    }
+
+private:
+    std::string before_;
+};
+
+TEST_F(OtherHosts, AnswersOfAnotherSizeAreRefused) {
+    const std::string handshake = "crescent-plugin 2 numbers=2 pdf=0 f=0 serial=0 name=x\\n";
+    // Ten rows are asked for: nine, eleven, and ten with a text after them.
+    for (const char* answer :
+        {"\\011\\0\\0\\0\\0\\0\\0\\0", "\\013\\0\\0\\0\\0\\0\\0\\0", "\\012\\0\\0\\0\\1\\0\\0\\0"}) {
+        setenv("CRESCENT_PLUGIN_HOST", host(handshake, answer).c_str(), 1);
+        EXPECT_THAT(error<SamplerError>(*open_plugin("x.so")), HasSubstr("expected 10 rows")) << answer;
+    }
+    setenv("CRESCENT_PLUGIN_HOST", host("crescent-plugin 2 name=" + std::string(5000, 'a'), "").c_str(), 1);
+    EXPECT_THROW(open_plugin("x.so"), OutputError);
 }
 
 TEST_F(Plugins, MissingFunctionsAreReported) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fstream>
 
+#include "base/input.h"
 #include "base/npy.h"
 #include "base/text.h"
 #include "check/sources/pipe_io.h"
@@ -48,7 +49,8 @@ double number(FileDiagnostics& in, std::string_view word, unsigned line, unsigne
 NumberTable read_csv(FileDiagnostics& in, std::istream& file) {
     NumberTable t;
     std::string text;
-    for (unsigned line = 1; std::getline(file, text); ++line) {
+    constexpr std::size_t longest_line = 65536;
+    for (unsigned line = 1; read_line(file, text, longest_line); ++line) {
         if (line == 1 && text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a byte order mark
         if (trimmed(text).empty()) continue;
         if (t.columns.empty()) {
@@ -66,7 +68,10 @@ NumberTable read_csv(FileDiagnostics& in, std::istream& file) {
             t.lines.push_back(line);
         }
     }
-    if (t.columns.empty()) in.add(1, 1, "the file is empty; expected a header line");
+    if (text.size() > longest_line)
+        in.add(static_cast<unsigned>(t.lines.size()) + 2, 1,
+            fmt::format("expected lines of at most {} bytes, found a longer one", longest_line));
+    else if (t.columns.empty()) in.add(1, 1, "the file is empty; expected a header line");
     in.throw_if_any();
     return t;
 }
@@ -127,6 +132,7 @@ int NumberTable::column(std::string_view name) const {
 }
 
 NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts) {
+    if (is_named_pipe(in.path)) in.add(0, 0, "is a named pipe; expected a regular file"), in.throw_if_any();
     std::ifstream file(in.path, std::ios::binary);
     if (!file || file.peek() == std::ifstream::traits_type::eof())
         in.add(0, 0, file ? "is empty" : "cannot be read"), in.throw_if_any();
