@@ -2,5 +2,9 @@
 // crescent/gtest.h has GoogleTest matchers.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "crescent needs C++20: compile with -std=c++20"
+#else
 #include "check/report/print.h"
 #include "check/user.h"
+#endif

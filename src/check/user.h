@@ -9,16 +9,17 @@
 //
 // in plain floats or doubles: directions and u may be arrays, spans, const T* or structs that braces initialise. u
 // holds one to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be output references.
-// An environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. SIMD or a base class is
-// not needed:
+// An environment light has sample(u), or sample(uc, u), and pdf(wi). n = +z; both directions leave the surface. SIMD or
+// a base class is not needed:
 //
 //   crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
 //
 // A pointer to a sampler is checked like the sampler; sampler_of(sample, pdf, f) makes a sampler from lambdas.
 //
-// Members that are const are called by many threads at the same time, others by one. An exception of a sampler gives
-// the state "error", not "wrong". An empty std::optional, and false with output references, mean that there is no
-// sample.
+// Members that are const are called by many threads at the same time, others by one; so are closures of sampler_of that
+// capture something and draw with random numbers of their own (Traits::own_random), such as one generator. An exception
+// of a sampler gives the state "error", not "wrong". An empty std::optional, and false with output references, mean
+// that there is no sample.
 #pragma once
 
 #include <fmt/format.h>
@@ -91,8 +92,10 @@ template <class S> consteval bool gives_weights() {
 /// Whether pdf and f, if the class declares them, can be called.
 template <class S> consteval bool pdf_is_plain() { return HasPdf<S> || !names_pdf<S>(); }
 template <class S> consteval bool f_is_plain() { return HasF<S> || !names_f<S>(); }
+/// Whether f, which is what is called, has that name: an eval beside no f would be ignored.
+template <class S> consteval bool f_is_named() { return names_f<S>() || !names_eval<S>(); }
 template <class S> consteval bool is_checkable() {
-    if constexpr (!HasSample<S> || !pdf_is_plain<S>() || !f_is_plain<S>()) return false;
+    if constexpr (!HasSample<S> || !pdf_is_plain<S>() || !f_is_plain<S>() || !f_is_named<S>()) return false;
     else if constexpr (!takes_numbers<S>()) return false;
     else
         return takes_directions<S>() && gives_pdf<S>() && f_fits<S>() && traits_fit<S>() && gives_draws<S>() &&
@@ -113,8 +116,12 @@ template <class S> consteval bool require_checkable() {
         static_assert(f_is_plain<S>(),
             "f is private, overloaded or a template: pass crescent::sampler_of(sample, pdf, f), three lambdas that "
             "call yours");
+        static_assert(f_is_named<S>(),
+            "eval is not called: name it f, without the cosine, or pass crescent::sampler_of(sample, pdf, f), whose f "
+            "divides your eval by |cos| if it includes the cosine");
         static_assert(takes_numbers<S>(),
-            "sample takes wo and then one to eight random numbers, sample(wo, u), sample(wo, uc, u) or sample(u): "
+            "sample takes wo and then one to eight random numbers, sample(wo, u), sample(wo, uc, u), sample(u) or "
+            "sample(uc, u): "
             "directions and u are arrays, spans, const T* or structs of floats or doubles that braces initialise; wi "
             "and pdf "
             "may be output references after them");
@@ -156,6 +163,12 @@ template <class S> consteval bool all_const() {
     if constexpr (HasF<S>) out = out && OfF<S>::is_const;
     return out;
 }
+/// Whether sample is a closure that captures something, which its copies may share.
+template <class S> consteval bool shares_state() {
+    if constexpr (std::is_member_object_pointer_v<decltype(&S::sample)>)
+        return !std::is_empty_v<Bare<decltype(std::declval<S&>().sample)>>;
+    else return false;
+}
 template <class S> consteval bool returns_weights() {
     if constexpr (output_count<SampleParameters<S>>() > 0) return output_count<SampleParameters<S>>() > 2;
     else return HasWeight<Result<S>>;
@@ -187,7 +200,7 @@ public:
     UserSampler(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler()); }
-    bool serial() const override { return !user::all_const<S>(); }
+    bool serial() const override { return !user::all_const<S>() || (user::shares_state<S>() && traits().own_random); }
     bool limited() const override { return false; }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         count(u.size());
@@ -250,10 +263,17 @@ private:
 
 /// Checks a sampler, or the target of a pointer, over a grid of w_o under a uniform light. TestSettings::thorough()
 /// detects smaller faults and takes minutes. Throws Interrupted if `monitor` requests a stop.
-template <class S> CheckResult check_sampler(std::string name, S sampler,
+template <class Given> CheckResult check_sampler(std::string name, Given&& sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
-    if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
-        const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), std::move(sampler));
+    using S = std::decay_t<Given>;
+    static_assert(!std::is_abstract_v<S>,
+        "a sampler is copied, and one of an abstract class cannot be: pass a pointer to it, check_sampler(name, "
+        "&sampler)");
+    static_assert(std::is_abstract_v<S> || std::is_constructible_v<S, Given>,
+        "a sampler is copied, and this one cannot be: pass a pointer to it, check_sampler(name, &sampler), or move it");
+    if constexpr (std::is_abstract_v<S> || !std::is_constructible_v<S, Given>) return {};
+    else if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
+        const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), S(std::forward<Given>(sampler)));
         ProgressMonitor alone;
         return run_checks(make_user_cases(adapter, settings.full, settings.wo), settings, monitor ? *monitor : alone);
     } else {

@@ -196,7 +196,7 @@ concept Optional = requires(const D d) {
 
 // ---- Calls of a user's sampler: the parameters that are w_o, random numbers or outputs, and the result of a draw.
 //
-//   sample(wo, u)   sample(wo, uc, u)   sample(wo, u, wi&, pdf&)   sample(u), of a sampler without w_o
+//   sample(wo, u)   sample(wo, uc, u)   sample(wo, u, wi&, pdf&)   sample(u) and sample(uc, u), without w_o
 //
 // Numbers are assigned to the first parameter that holds two or more of them, then to the others in their order: uc of
 // (wo, uc, u) is the third.
@@ -211,7 +211,7 @@ concept HasF = requires { &S::f; } && HasSignature<decltype(&S::f)>;
 /// A name inherited from two bases is ambiguous, which shows that S has a member of that name even if it is overloaded,
 /// private or a template; otherwise S would count as a sampler without it.
 struct Names {
-    int sample, pdf, f;
+    int sample, pdf, f, eval;
 };
 template <class S> struct Named : S, Names {};
 template <class S>
@@ -223,6 +223,11 @@ template <class S> consteval bool names_pdf() {
 template <class S> consteval bool names_f() {
     if constexpr (Derivable<S>) return !requires { &Named<S>::f; };
     else return HasF<S>;
+}
+/// Whether a class without f has a member eval, as the BSDFs of Mitsuba have.
+template <class S> consteval bool names_eval() {
+    if constexpr (Derivable<S>) return !requires { &Named<S>::eval; };
+    else return requires { &S::eval; };
 }
 template <class S>
 concept HasTraits = requires { &S::traits; } || requires(S s) { s.traits(); };
@@ -252,8 +257,12 @@ template <class S, class C> consteval int numbers_in() {
 template <class C>
 concept Direction = size_of<C>() == 3 || size_of<C>() == 0 || size_of<C>() == 4;  // the fourth of a padded one is 0
 
-/// Whether the member is sample(u), without w_o.
-template <class S> consteval bool without_wo() { return input_count<SampleParameters<S>>() == 1; }
+/// Whether the member takes no w_o: sample(u), or sample(choice, u), whose first parameter is one number or two.
+template <class S> consteval bool without_wo() {
+    using T = SampleParameters<S>;
+    if constexpr (input_count<T>() <= 1) return input_count<T>() == 1;
+    else return size_of<At<T, 0>>() == 1 || size_of<At<T, 0>>() == 2;
+}
 
 /// The numbers of parameter `i` of sample: the first one, and how many.
 struct Share {

@@ -145,5 +145,59 @@ TEST(UserSamplers, MayBeLambdas) {
     static_assert(!user::Checkable<NoSample>);
 }
 
+/// A light that chooses by a number of its own: without w_o.
+struct ChosenLight {
+    struct Out {
+        Vec3d wi;
+        double pdf;
+    };
+    Out sample(float choice, std::array<float, 2> u) const { return {{choice, u[0], u[1]}, 0.5}; }
+    double pdf(Vec3d wi) const { return wi.x; }
+};
+
+TEST(UserSamplers, MayTakeAChoiceInPlaceOfWo) {
+    const UserSampler<ChosenLight> s("light", {});
+    EXPECT_EQ(s.traits().numbers, 3);
+    EXPECT_EQ(s.traits().wo, Traits::WoDomain::none);
+    PrimarySample u(0.25, 0.5);
+    u[2] = 0.75;
+    const Draw d = drawn(s, u);
+    EXPECT_EQ(d.wi.x, 0.75);
+    EXPECT_EQ(d.wi.y, 0.25);
+    EXPECT_EQ(d.wi.z, 0.5);
+    EXPECT_EQ(pdf_and_f(s, {{0, 0, 1}, {0.25, 0, 0.5}}).first, 0.25);
+}
+
+/// A class with Mitsuba's names, without and with an f.
+struct WithEval : ChosenLight {
+    double eval(Vec3d wi) const { return wi.z; }
+};
+struct WithEvalAndF : WithEval {
+    double f(Vec3d wi) const { return wi.z; }
+};
+static_assert(user::is_checkable<ChosenLight>() && !user::is_checkable<WithEval>());
+static_assert(user::is_checkable<WithEvalAndF>());
+
+TEST(UserSamplers, ClosuresThatShareAGeneratorAreCalledByOneThread) {
+    int draws = 0;
+    const auto counted = [&draws](Vec3d, Vec2d) {
+        ++draws;
+        return ChosenLight::Out{};
+    };
+    const auto plain = [](Vec3d, Vec2d) { return ChosenLight::Out{}; };
+    const auto pdf = [](Vec3d, Vec3d) { return 0.0; };
+    const auto serial = [](auto sampler) { return UserSampler<decltype(sampler)>("closures", sampler).serial(); };
+    EXPECT_TRUE(serial(sampler_of(counted, pdf, Traits{.own_random = true})));
+    EXPECT_FALSE(serial(sampler_of(counted, pdf)));
+    EXPECT_FALSE(serial(sampler_of(plain, pdf, Traits{.own_random = true})));
+}
+
+/// A sampler that cannot be copied is checked by a pointer, or moved.
+struct Unique : ChosenLight {
+    Unique() = default;
+    Unique(Unique&&) = default;
+};
+static_assert(requires(Unique s) { check_sampler("mine", &s); } && requires { check_sampler("mine", Unique{}); });
+
 }  // namespace user_sampler_test
 }  // namespace crescent
