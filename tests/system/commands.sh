@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" --version
-for topic in arms isas verdicts metrics; do
+for topic in arms isas verdicts plates; do
     expect 0 "$CRESCENT" list $topic
     [ -s printed ] || die "list $topic prints nothing"
 done
@@ -43,12 +43,12 @@ expect 3 "$CRESCENT" check --exec 'exit 5' --wo 30
 for seed in 1 2 3 4; do
     expect 0 "$CRESCENT" run "$tiny" --quiet --only films --set seed=$seed --out "seed-$seed"
     expect 0 "$CRESCENT" run "$tiny" --quiet --only films --set seed=$((seed + 10)) --out "other-$seed"
-    expect 0 "$CRESCENT" run "$tiny" --quiet --only films --set seed=$((seed + 20)) --set disks.key.radiance=[120,110,100] \
+    expect 0 "$CRESCENT" run "$tiny" --quiet --only films --set seed=$((seed + 20)) --set fill.radiance=[3,3.4,4] \
         --out "bright-$seed"
 done
 film=films/$(cd seed-1/films && ls | grep cosine | head -n 1)
-expect 0 "$CRESCENT" compare --arm a="seed-*/$film" --arm b="other-*/$film" --expect same --out same
-expect 1 "$CRESCENT" compare --arm a="seed-*/$film" --arm b="bright-*/$film" --expect same --out different
+expect 0 "$CRESCENT" compare --arm a="seed-*/$film" --arm b="other-*/$film" --layer n=16 --out same
+expect 1 "$CRESCENT" compare --arm a="seed-*/$film" --arm b="bright-*/$film" --layer n=16 --expect same --out different
 
 if "$CRESCENT" import --help >/dev/null 2>&1 && [ -x "$(dirname "$CRESCENT")/crescent-import" ]; then
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
