@@ -282,6 +282,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
         std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));
         case_of.resize(out.verdicts.size(), i);
     }
+    for (Verdict& v : out.verdicts) v.next.thorough = settings.full;
     if (settings.accept_few) require_examined(outcomes, out);
     for (std::size_t v = 0; v < out.verdicts.size(); ++v)
         expect(check_cases[case_of[v]], reaches_all[case_of[v]], out.verdicts[v]);

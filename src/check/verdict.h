@@ -45,7 +45,8 @@ struct NextStep {
     /// What would decide the verdict.
     enum class Kind { none, more_draws, more_time, heavier_pdf };
     Kind kind = Kind::none;
-    double times = 0;  // required factor on the number of draws; 0: unknown
+    double times = 0;       // required factor on the number of draws; 0: unknown
+    bool thorough = false;  // whether the check was thorough already
 };
 
 /// The density that the draws of a sampler without pdf(w) imply, with standard errors, 1/sr: means over rings about n,
@@ -71,11 +72,14 @@ struct Verdict {
     std::string next_step{};  // for an inconclusive verdict, if no front end has a call for it
     NextStep next{};
     std::optional<std::pair<double, double>> wo{};  // theta and azimuth in degrees; none for a sampler without w_o
-    double size = 0;                                // in standard errors: orders verdicts of one name
+    double size = 0;                                // of the fault, as a share: orders verdicts of one name
     std::map<std::string, double> hidden{};         // of a right verdict: the size that it could hide, by kind of fault
-    double nothing = 0;                             // of `valid`: the share of the draws without a sample
+    double nothing = 0;                             // of `valid`: the share of the draws with pdf 0, no sample
+    double outside = 0;                             // and of those below the surface with a pdf, where pdf(w) is 0
+    std::string place{};                            // of the fault, if it is not at the w_o of this case
     bool first_failure = false;                     // of an error: the sampler failed here, and all others follow
     bool unmet_tail = false;                        // inconclusive since weights are larger than those drawn
+    std::optional<double> integral{};               // of a wrong `normalised`: the integral of p
     std::optional<bool> same{};                     // of a comparison: whether A and B agree
     std::optional<ImpliedDensity> implied{};        // of `density`, without a pdf(w)
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();

@@ -116,6 +116,7 @@ public:
         : AtPoint(std::move(name), std::move(point), limited), combination_(std::move(combination)) {}
     Traits traits() const override { return {.numbers = most_numbers(combination_->parts())}; }
     int techniques() const override { return static_cast<int>(combination_->parts().size()); }
+    std::string technique_name(int t) const override { return combination_->plan().of[static_cast<std::size_t>(t)]; }
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         draw_with(part(t), wo, u, out);
     }

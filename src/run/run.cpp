@@ -13,6 +13,7 @@
 #include "base/progress.h"
 #include "run/checkpoint.h"
 #include "run/execute.h"
+#include "run/mis_warnings.h"
 #include "run/plan.h"
 
 namespace crescent::inline runs {
@@ -85,6 +86,7 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     const RunPlan plan = plan_of(experiment, options);
     if (options.parts.draws()) check_font(plan.experiment);
     Prepared prepared = look(plan, engine);
+    for (const std::string& line : mis_warnings(plan.experiment, prepared.outside)) monitor.log(line);
     Staging staging(out);
     staging.expect(outputs_of(plan, options.parts));
     std::optional<Checkpoint> checkpoint;  // a program may draw differently in the next run

@@ -45,6 +45,9 @@ std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
 /// Random numbers of which few bits are used: a draw moves with large changes of u, and does not move with its last
 /// bits.
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key);
+/// Draws on a curve, which no density draws: at nearly all u no two random numbers move the draw apart, as if one
+/// number is used twice (decide/curve.cpp).
+std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key);
 /// Random numbers that change no draw.
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key);
 

@@ -89,6 +89,71 @@ TEST(RepeatedCalls, GiveTheSameDrawsAndAnswers) {
     EXPECT_TRUE(tested(MixedRows(), answers));
 }
 
+/// Rounds p next to w_i = -w_o by the size of the block, as vector units do that add in another order.
+struct RoundedByBlock : FunctionSampler {
+    double factor = 1;  // 1: by rounding alone
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+            const Pair& p = pairs[i];
+            const double by = pairs.size() % 2 == 0 ? 0 : 2 * ulp;
+            const Vec3d m{rounded(p.wo.x + p.wi.x) + by, rounded(p.wo.y + p.wi.y) - by, rounded(p.wo.z + p.wi.z) + by};
+            const double c = m.z * m.z / (dot(m, m) + 1e-30);
+            out[i] = (1 + c) / two_pi * (by > 0 ? factor : 1);
+        }
+    }
+};
+
+TEST(RepeatedCalls, MayDifferByRounding) {
+    RoundedByBlock s;
+    // Draws within 1e-6 of -w_o, where the half vector has few bits.
+    s.draw = [](Vec3d, const PrimarySample& u) {
+        const Vec3d w{1e-6 * (u.x - 0.5), 1e-6 * (u.y - 0.5), -1};
+        return w * (1 / length(w));
+    };
+    EXPECT_FALSE(tested(s, answers));
+    s.factor = 1.01;
+    EXPECT_TRUE(tested(s, answers));
+}
+
+TEST(RepeatedCalls, OfNumbersThatAreNotFiniteAreEqual) {
+    FunctionSampler s;
+    s.change = [](const PrimarySample& u, Draw& d) {
+        if (u.x < 0.2) d.pdf = std::numeric_limits<double>::infinity();
+        if (u.y < 0.2) d.wi.x = std::numeric_limits<double>::infinity();
+    };
+    EXPECT_FALSE(tested(s, again));  // that they are not finite is another fault
+}
+
+TEST(DrawsOnACurve, AreFound) {
+    const auto curve = [](const FunctionSampler& s) {
+        return tested(s, [](Source& source) { return draws_on_curve(source, key); });
+    };
+    EXPECT_FALSE(curve(FunctionSampler()));
+    EXPECT_FALSE(curve(power_sampler(2000)));
+    FunctionSampler twice;
+    twice.draw = [](Vec3d o, const PrimarySample& u) { return cosine_draw(o, PrimarySample(u.x, u.x)); };
+    const auto fault = curve(twice);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->family, Family::repeats);
+    FunctionSampler sum;
+    sum.draw = [](Vec3d o, const PrimarySample& u) {
+        const double x = (u.x + u.y) / 2;
+        return cosine_draw(o, PrimarySample(x, x * x));
+    };
+    EXPECT_TRUE(curve(sum));
+    FunctionSampler lobes;  // the third number chooses
+    lobes.of.numbers = 3;
+    lobes.draw = [](Vec3d o, const PrimarySample& u) { return u[2] < 0.5 ? cosine_draw(o, u) : power_draw(o, 30, u); };
+    EXPECT_FALSE(curve(lobes));
+    FunctionSampler one;  // one number is cut into two
+    one.of.numbers = 2;
+    one.draw = [](Vec3d o, const PrimarySample& u) {
+        return cosine_draw(o, PrimarySample(u.x, std::fmod(4096 * u.y, 1.0)));
+    };
+    EXPECT_FALSE(curve(one));
+}
+
 TEST(BitsOfNumbers, OfWhichFewAreUsedAreFound) {
     EXPECT_FALSE(tested(FunctionSampler(), bits));
     FunctionSampler coarse;

@@ -146,31 +146,60 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
     return out;
 }
 
+namespace {
+
+constexpr const char* not_one = "MIS weights do not sum to 1";
+constexpr const char* without_density =
+    "a sampler has MIS weight where its density is 0, so that the weights of the others sum to less than 1";
+
+/// Directions that one technique draws, with the weights of all techniques there.
+struct WeightedDraws {
+    std::vector<Pair> at;
+    std::vector<std::size_t> of;  // indices of the draws
+    std::vector<double> sum;
+    std::vector<int> empty;  // a technique whose density is 0 there; -1: none
+
+    WeightedDraws(const SamplerAdapter& adapter, Vec3d wo, const std::vector<Draw>& draws) {
+        for (std::size_t i = 0; i < draws.size(); ++i)
+            if (draws[i].pdf > 0 && draws[i].wi.z > 0) at.push_back({wo, draws[i].wi}), of.push_back(i);
+        sum.resize(at.size()), empty.assign(at.size(), -1);
+        std::vector<double> w(at.size()), p(at.size());
+        for (int k = 0; k < adapter.techniques(); ++k) {
+            adapter.mis_weight(k, at, w);
+            adapter.exact_pdf(k, at, p);
+            for (std::size_t i = 0; i < at.size(); ++i) {
+                sum[i] += w[i];
+                if (p[i] == 0) empty[i] = k;
+            }
+        }
+    }
+};
+
+}  // namespace
+
 std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key) {
     if (adapter.techniques() < 2) return {};
     const Traits traits = adapter.traits();
-    SmallFault out{Family::mis, 0, 0, 0, {}, "weights of the techniques do not sum to 1"};
+    SmallFault out{Family::mis, 0, 0, 0, {}, ""};
+    double too_small = 0;  // number of draws where a density is 0 and the weights sum to less than 1
     for (int t = 0; t < adapter.techniques(); ++t) {
         const std::vector<PrimarySample> u = first_numbers(key, 512, traits);
         std::vector<Draw> draws(u.size());
         adapter.sample(t, wo, u, draws);
-        std::vector<Pair> at;
-        std::vector<std::size_t> of;
-        for (std::size_t i = 0; i < u.size(); ++i)
-            if (draws[i].pdf > 0 && draws[i].wi.z > 0) at.push_back({wo, draws[i].wi}), of.push_back(i);
-        std::vector<double> sum(at.size()), w(at.size());
-        for (int k = 0; k < adapter.techniques(); ++k) {
-            adapter.mis_weight(k, at, w);
-            for (std::size_t i = 0; i < at.size(); ++i) sum[i] += w[i];
+        const WeightedDraws w(adapter, wo, draws);
+        out.of += static_cast<double>(w.at.size());
+        for (std::size_t i = 0; i < w.at.size(); ++i) {
+            if (std::fabs(w.sum[i] - 1) <= reciprocity_tolerance) continue;
+            note(out, u[w.of[i]], draws[w.of[i]], w.sum[i], "", wo);
+            if (!(std::fabs(w.sum[i] - 1) <= std::fabs(out.size))) out.size = w.sum[i] - 1;
+            if (w.empty[i] < 0 || !(w.sum[i] < 1)) continue;
+            if (too_small++ == 0) out.first = {u[w.of[i]], draws[w.of[i]], w.sum[i], w.empty[i] + 1.0};
         }
-        out.of += static_cast<double>(at.size());
-        for (std::size_t i = 0; i < at.size(); ++i)
-            if (!(std::fabs(sum[i] - 1) <= reciprocity_tolerance)) {
-                note(out, u[of[i]], draws[of[i]], sum[i], out.what);
-                if (std::fabs(sum[i] - 1) > std::fabs(out.size)) out.size = sum[i] - 1;
-            }
     }
-    return out.times > tolerated_breaks ? std::optional(out) : std::nullopt;
+    if (!(out.times > tolerated_breaks)) return {};
+    out.what = too_small == out.times ? without_density : not_one;
+    if (too_small < out.times) out.first.expected = 0;
+    return out;
 }
 
 }  // namespace crescent::check

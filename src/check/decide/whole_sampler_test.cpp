@@ -94,5 +94,25 @@ TEST(WeightsOfTechniques, SumToOne) {
     EXPECT_FALSE(mis_weights(FunctionSampler(), {0, 0, 1}, key));
 }
 
+/// The second technique has a density only for x > 0, and half of the weight everywhere.
+struct WeightWithoutDensity : FunctionSampler {
+    int techniques() const override { return 2; }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        FunctionSampler::pdf(0, at, out);
+        for (std::size_t i = 0; t == 1 && i < at.size(); ++i) out[i] *= at[i].wi.x > 0 ? 2 : 0;
+    }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = t == 0 || at[i].wi.x > 0 ? 0.5 : 0;
+    }
+};
+
+TEST(WeightsOfTechniques, AreZeroWhereADensityIs) {
+    const auto fault = mis_weights(WeightWithoutDensity(), {0, 0, 1}, key);
+    ASSERT_TRUE(fault);
+    EXPECT_NEAR(fault->size, -0.5, 1e-9);
+    EXPECT_EQ(fault->first.expected, 2);  // the sampler
+    EXPECT_NE(std::string(fault->what).find("where its density is 0"), std::string::npos);
+}
+
 }  // namespace whole_sampler_test
 }  // namespace crescent::check

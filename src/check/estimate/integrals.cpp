@@ -238,7 +238,7 @@ private:
                 for (double& v : h[a]) v *= p;
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
-            to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
+            to.mass.add_pair(h[0][mass], h[1][mass], k), to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
             if (source_.has_density()) add_to_bands(at, {h[0][bridge], h[1][bridge]}, second, k);
             if (of_f_) take_light(g.leaf, at, k);
         }
@@ -318,7 +318,7 @@ void scale(Integrals& x, double by) {
     for (double& v : x.even) v *= by;
     for (double& v : x.even_square) v *= by;
     for (LeafIntegral& leaf : x.leaves) {
-        leaf.bridge.scale(by);
+        leaf.mass.scale(by), leaf.bridge.scale(by);
         leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by, leaf.known_to *= by;
         leaf.rounding *= by;
     }
@@ -346,7 +346,7 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
     }
     for (std::size_t l = 0; l < to.leaves.size(); ++l) {
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
-        a.bridge.add(b.bridge);
+        a.mass.add(b.mass), a.bridge.add(b.bridge);
         a.second += b.second, a.solid_angle += b.solid_angle, a.known_to += b.known_to;
         a.rounding += b.rounding;
         a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);

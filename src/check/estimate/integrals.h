@@ -27,7 +27,7 @@ struct Estimate {
 
 /// The integrals over one leaf.
 struct LeafIntegral {
-    Estimate bridge;         // of h p
+    Estimate mass, bridge;   // of p and of h p
     double second = 0;       // integral of h^2 p: weight of one draw in the variance
     double solid_angle = 0;  // integral of h where p > 0: for draws spread uniformly
     double top = 0;          // largest p at its points

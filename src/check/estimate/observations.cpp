@@ -13,6 +13,16 @@
 
 namespace crescent::check {
 
+std::array<Vec3d, 8> neighbours(Vec3d w) {
+    std::array<Vec3d, 8> out;
+    for (int k = 0; k < 8; ++k) {
+        const double a = (k < 4 ? 2 : 8) * ulp;
+        const Vec3d v{w.x + (k & 1 ? a : -a), w.y + (k & 2 ? a : -a), w.z + ((k ^ k / 2) & 1 ? a : -a)};
+        out[static_cast<std::size_t>(k)] = v * (1 / std::sqrt(dot(v, v)));
+    }
+    return out;
+}
+
 // ---- A weight returned by the sampler has precedence over f cos / pdf.
 
 namespace {
@@ -47,17 +57,6 @@ namespace {
 
 /// Largest number of draws compared with neighbours, nine evaluations each. Of more draws only the share is used.
 constexpr std::uint64_t most_compared = 1024;
-
-/// Eight directions within a few roundings of w: moved by 2 and by 8 ulp.
-std::array<Vec3d, 8> neighbours(Vec3d w) {
-    std::array<Vec3d, 8> out;
-    for (int k = 0; k < 8; ++k) {
-        const double a = (k < 4 ? 2 : 8) * ulp;
-        const Vec3d v{w.x + (k & 1 ? a : -a), w.y + (k & 2 ? a : -a), w.z + ((k ^ k / 2) & 1 ? a : -a)};
-        out[static_cast<std::size_t>(k)] = v * (1 / std::sqrt(dot(v, v)));
-    }
-    return out;
-}
 
 std::uint64_t key_of(Vec3d w) {
     std::uint64_t a, b;
@@ -123,7 +122,7 @@ private:
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (is_direction(draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
-            else if (set < 0) ++to_.checks.nothing;
+            else if (set < 0) ++to_.checks.nothing, ++to_.checks.outside;
     }
 
     /// Restores draws below the surface whose estimated p happens to be 0, if other draws there have p > 0.

@@ -76,6 +76,7 @@ struct DrawChecks {
     // Draws with an evaluation of pdf(w); those whose pdf differs; the number of these that were compared with
     // neighbours of w.
     std::uint64_t followed = 0, differing = 0, differing_compared = 0;
+    std::uint64_t outside = 0;     // counted in `nothing`: draws below the surface with a pdf, at which p is 0
     std::uint64_t null_below = 0;  // draws below the surface at which p is 0, which the estimator ignores
 };
 
@@ -125,6 +126,10 @@ struct Observations {
     std::uint64_t unmet = 0;             // draws whose p exceeds that of every point of the leaf
     std::vector<DensityPoint> unmet_at;  // the first of them
 };
+
+/// Eight directions within a few roundings of w: moved by 2 and by 8 ulp. The range of p over them is how well p is
+/// known in single precision.
+std::array<Vec3d, 8> neighbours(Vec3d w);
 
 /// Adds the draws from the previous look up to this one. Completes the integrals where their points missed something: a
 /// draw with p > 2 top lies in a part of its leaf without points, and its contribution to both variances follows from

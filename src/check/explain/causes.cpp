@@ -135,9 +135,14 @@ Candidate candidate_of(const Hypothesis& frame) {
     Candidate out{frame, {}, enough_for_frame, -frame.place};
     out.make_cause = [name = frame.name](const Hypothesis& h) {
         return Cause{name, 0, 0,
-            h.explained < 0.9 ? fmt::format("{:.0f} % of the difference is explained by {} between draws and p.",
-                                    100 * h.explained, name)
-                              : fmt::format("Draws follow p with {}.", name + h.same)};
+            h.explained < 0.9
+                ? fmt::format(
+                      "{:.0f} % of the difference is explained by {} between draws and p.", 100 * h.explained, name)
+                : fmt::format("Draws follow p with {}.{}", name + h.same,
+                      name.starts_with("x and y exchanged") && !name.ends_with("w_i") && !name.ends_with("w_o")
+                          ? " Two parameters that belong to x and y, such as two roughnesses, have the "
+                            "same effect if they are exchanged."
+                          : "")};
     };
     return out;
 }
@@ -168,6 +173,21 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
     return out;
 }
 
+/// The frame of the surface is turned about n in sample and not in pdf, or by another angle.
+Candidate candidate_of_frame(const FoundTurn& turn) {
+    Candidate out{turn.hypothesis, {}, enough_for_frame};
+    out.make_cause = [turn](const Hypothesis& h) {
+        const Turn& t = turn.turns[0];
+        std::string text = fmt::format(
+            "Draws are those of p in a frame turned about n by {} rad: the tangent of sample is "
+            "not that of pdf.",
+            with_error(t.by.z, 1.96 * t.error));
+        if (h.explained < 0.9) text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
+        return Cause{"turned about n", t.by.z, t.error, std::move(text)};
+    };
+    return out;
+}
+
 using Candidates = std::vector<Candidate>;
 
 void add_if(Candidates& to, std::optional<Candidate> c) {
@@ -194,9 +214,11 @@ Candidates plain_candidates(std::span<const Place> places, std::span<const Leak>
 /// Causes with a fitted angle, exponent or share.
 Candidates fitted_candidates(std::span<const Place> places, std::span<const Leak> leaks) {
     Candidates out;
-    if (places[0].traits.wo == Traits::WoDomain::none)
+    if (places[0].traits.wo == Traits::WoDomain::none) {
         if (const auto turn = azimuth_hypothesis(places); turn && turn->is_clear())
             out.push_back(candidate_of(*turn, places, true));
+    } else if (const auto turn = frame_turn_hypothesis(places); turn && turn->is_clear())
+        out.push_back(candidate_of_frame(*turn));
     if (const auto turn = turn_hypothesis(places); turn && turn->is_clear())
         out.push_back(candidate_of(*turn, places, false));
     if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_errors * power->error)
@@ -282,12 +304,19 @@ std::optional<Cause> cause_from_map(std::span<const KnownRatio> ratios, std::spa
 }
 
 std::optional<Cause> explained_by(std::span<const Place> places) {
-    if (std::optional<Cause> c = cause_from_map(map_ratios(places), places)) return c;
+    if (std::optional<Cause> c = warp_cause(places)) return c;
+    const std::vector<KnownRatio> ratios = map_ratios(places);
+    if (std::optional<Cause> c = cause_from_map(ratios, places)) return c;
+    if (std::optional<Cause> c = cause_of_known_form(ratios, places)) return c;
     const std::vector<Leak> leaks = leak_hypotheses(places);
     Candidates plain = plain_candidates(places, leaks);
     bool several = false;
-    if (std::optional<Cause> c = passing(plain, places, several); c || several) return c;
+    std::optional<Cause> found = passing(plain, places, several);
+    // Two lobes with exchanged weights, one of them uniform, are a share of uniform draws too; but p has that lobe.
+    const bool is_leak = found && found->factor == "leak";
+    if ((found && !is_leak) || several) return found;
     if (std::optional<Cause> c = lobe_cause(places)) return c;
+    if (found) return found;
     Candidates fitted = fitted_candidates(places, leaks);
     if (std::optional<Cause> c = passing(fitted, places, several); c || several) return c;
     plain.insert(plain.end(), std::make_move_iterator(fitted.begin()), std::make_move_iterator(fitted.end()));
@@ -322,6 +351,7 @@ std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const Chec
     const std::vector<Place> places = places_of(check_cases, outcome, most_places, few ? draws_of_few : draws_of_many);
     if (places.empty()) return weight_cause(check_cases, outcome);
     if (unusable_draws_explain(places)) return {};
+    if (std::optional<Cause> c = delta_cause(places)) return c;
     if (std::optional<Cause> c = curve_cause(places)) return c;
     if (std::optional<Cause> c = explained_by(places)) return c;
     return unreached_cause(places);

@@ -108,6 +108,16 @@ struct FoundTurn {
 std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places);
 /// A rotation about z by the same angle at all places.
 std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places);
+/// A rotation of the frame of the surface about n, which rotates w_o and w_i, by the same angle at all places.
+std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places);
+
+// ---- Causes that the derivatives of sample(u) show without noise.
+
+/// A power of a random number is missing or once too often in sample: a root (explain/warps.cpp).
+std::optional<Cause> warp_cause(std::span<const Place> places);
+/// Ratios of the draws to p with a fitted parameter: Smith's G1 of the other direction, and the squared distance or the
+/// cosine at a light in a plane (explain/known_forms.cpp).
+std::optional<Cause> cause_of_known_form(std::span<const KnownRatio> ratios, std::span<const Place> places);
 
 // ---- Lobes selected by one random number: each is drawn separately, and p is compared with their sum.
 
@@ -138,6 +148,8 @@ struct Leak {
 std::vector<Leak> leak_hypotheses(std::span<const Place> places);
 std::string leak_sentence(const Leak& leak);
 
+/// A part of the draws has one direction: a delta part that is not declared.
+std::optional<Cause> delta_cause(std::span<const Place> places);
 /// A curve, if the numbers that change no draw leave fewer than two.
 std::optional<Cause> curve_cause(std::span<const Place> places);
 /// p is positive where there are no draws.

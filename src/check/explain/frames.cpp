@@ -126,9 +126,11 @@ public:
         for (std::size_t i = 0; i < count_; ++i) q[i] = tree.leaves()[tree.find(to_chart(rotated(place_.w[i], -by)))].q;
         return place_.mean_log(q);
     }
-    double by_p(Vec3d by) const {
+    /// with_wo: w_o is rotated too, as if the frame of the surface is.
+    double by_p(Vec3d by, bool with_wo = false) const {
+        const Vec3d wo = with_wo ? rotated(place_.check_case->wo, -by) : place_.check_case->wo;
         std::vector<Pair> at;
-        for (std::size_t i = 0; i < count_; ++i) at.push_back({place_.check_case->wo, rotated(place_.w[i], -by)});
+        for (std::size_t i = 0; i < count_; ++i) at.push_back({wo, rotated(place_.w[i], -by)});
         std::vector<double> p(count_);
         place_.adapter().exact_pdf(place_.technique(), at, p);
         for (double& v : p)
@@ -136,10 +138,11 @@ public:
         return place_.mean_log(p);
     }
     /// Standard error of the angle, from the curvature of the likelihood.
-    double error_of(Vec3d by, double step) const {
+    double error_of(Vec3d by, double step, bool with_wo = false) const {
         const double angle = std::sqrt(dot(by, by));
         const Vec3d axis = angle > 0 ? by * (1 / angle) : Vec3d{0, 0, 1};
-        const double here = by_p(by), less = by_p(by - axis * step), more = by_p(by + axis * step);
+        const double here = by_p(by, with_wo), less = by_p(by - axis * step, with_wo),
+                     more = by_p(by + axis * step, with_wo);
         const double bend = (2 * here - less - more) / (step * step);
         return bend > 0 ? 1 / std::sqrt(bend * static_cast<double>(count_)) : step;
     }
@@ -194,17 +197,18 @@ template <class L> double whole_columns(double angle, const L& likelihood) {
     return best;
 }
 
-Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& turns) {
+Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& turns, bool with_wo = false) {
     Hypothesis h;
     h.name = "turned";
     std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its rotation
     for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].check_case->wo, turns[k].by});
-    h.density = [by, at_zero = places[0].draws_at_zero()](
+    h.density = [by, with_wo, at_zero = places[0].draws_at_zero()](
                     const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
         std::vector<Pair> there(at.begin(), at.end());
         for (Pair& pair : there) {
             const auto of = std::ranges::max_element(by, {}, [&](const auto& one) { return dot(one.first, pair.wo); });
             pair.wi = rotated(pair.wi, -of->second);
+            if (with_wo) pair.wo = rotated(pair.wo, -of->second);
         }
         s.exact_pdf(technique, there, out);
         if (!at_zero) clear_where_zero(s, technique, at, out);
@@ -271,6 +275,37 @@ std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
     FoundTurn out;
     for (const Likelihood& l : fine) out.turns.push_back({{0, 0, at}, l.error_of({0, 0, at}, two_pi / angles)});
     out.hypothesis = turned_by(places, out.turns);
+    score(out.hypothesis, places);
+    return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
+}
+
+std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places) {
+    constexpr int angles = 72;
+    std::vector<Likelihood> coarse, fine;
+    for (const Place& place : places)
+        coarse.emplace_back(place, draws_to_climb), fine.emplace_back(place, place.w.size());
+    const auto sum = [](const std::vector<Likelihood>& all, double angle) {
+        double out = 0;
+        for (const Likelihood& l : all) out += l.by_p({0, 0, angle}, true);
+        return out;
+    };
+    double best = -1e300, angle = 0;
+    for (int k = 1; k < angles; ++k)
+        if (const double l = sum(coarse, k * two_pi / angles); l > best) best = l, angle = k * two_pi / angles;
+    const Vec3d axis[] = {{0, 0, 1}};
+    constexpr double step = two_pi / angles / 2;
+    angle = climb({0, 0, angle}, axis, step, step / 8, [&](Vec3d v) { return sum(coarse, v.z); }).z;
+    angle = climb({0, 0, angle}, axis, step / 8, step / 128, [&](Vec3d v) { return sum(fine, v.z); }).z;
+    // Two axes of one surface are the same after half a turn: of equal likelihoods the smaller angle is named.
+    const double opposite = angle > two_pi / 2 ? angle - two_pi / 2 : angle + two_pi / 2;
+    const auto from_zero = [](double a) { return std::min(a, two_pi - a); };
+    constexpr double equal = 1e-3;
+    if (from_zero(opposite) < from_zero(angle) && sum(fine, opposite) > sum(fine, angle) - equal) angle = opposite;
+    if (angle > two_pi / 2) angle -= two_pi;
+    FoundTurn out;
+    for (const Likelihood& l : fine) out.turns.push_back({{0, 0, angle}, l.error_of({0, 0, angle}, step / 8, true)});
+    out.hypothesis = turned_by(places, out.turns, true);
+    out.hypothesis.name = "turned about n";
     score(out.hypothesis, places);
     return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
 }

@@ -32,6 +32,25 @@ TEST(FramesOfDraws, AreTurnedByAMeasuredAngle) {
 }
 
 // The columns of a table that begin a quarter later.
+TEST(FramesOfDraws, AFrameTurnedAboutTheNormalIsNamed) {
+    // A lobe about the mirror direction, and one that is fixed to the tangent.
+    const auto about = [](Vec3d w, double angle) {
+        const math::SinCos r = math::sincos(angle);
+        return Vec3d{w.x * r.cos - w.y * r.sin, w.x * r.sin + w.y * r.cos, w.z};
+    };
+    const Vec3d axis = tilt(40, 0);
+    const auto draw = [=](Vec3d o, const PrimarySample& u) {
+        return u[2] < 0.5 ? power_draw(mirror(o), 40, u) : about(power_draw(axis, 40, u), 0.6);
+    };
+    const Explained r = explained(
+        made(
+            draw, [=](Vec3d o, Vec3d w) { return (power_pdf(mirror(o), 40, w) + power_pdf(axis, 40, w)) / 2; }, 3,
+            Traits::WoDomain::both),
+        {{20, 50}, {25, 200}});
+    expect_cause(r, "turned about n");
+    EXPECT_NEAR(std::fabs(r.cause ? r.cause->exponent : 0), 0.6, 0.02) << r.text();
+}
+
 TEST(FramesOfDraws, AnAzimuthIsFoundFromAnyAngle) {
     const Vec3d axis = tilt(60, 20), off = tilt(60, 110);
     const Explained r = checked(made([off](Vec3d, const PrimarySample& u) { return power_draw(off, 50, u); },

@@ -187,25 +187,42 @@ bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Pl
     return same >= most_of_draws * draws;
 }
 
+namespace {
+
+CheckAt checked_again(const SamplerAdapter& corrected, const Place& place, std::uint32_t seed) {
+    return check_sampler_at(corrected, place.technique(), place.check_case->wo,
+        CaseData{place.check_case->light, static_cast<std::uint16_t>(place.number), {}},
+        budget_for(*place.at, corrected.serial()), seed ^ 0x9e3779b9u);
+}
+
+}  // namespace
+
+bool follows_density(const SamplerAdapter& corrected, std::span<const Place> places, std::uint32_t seed) {
+    const auto remains = [&](const Place& place) {
+        const CheckAt c = checked_again(corrected, place, seed);
+        return difference_remains(c) &&
+            (density_is_wrong(c) || difference_remains(checked_again(corrected, place, ~seed)));
+    };
+    return std::ranges::none_of(places, remains);
+}
+
 bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed) {
     if (h.constants.empty()) h.constants.assign(places.size(), 1);
     for (std::size_t k = 0; k < places.size(); ++k) {
         const Place& place = places[k];
-        const auto check = [&] {
-            const Supposed supposed(place.check_case->adapter, h, h.constants[k]);
-            return check_sampler_at(supposed, place.technique(), place.check_case->wo,
-                CaseData{place.check_case->light, static_cast<std::uint16_t>(place.number), {}},
-                budget_for(*place.at, supposed.serial()), seed ^ 0x9e3779b9u);
+        const auto check = [&](std::uint32_t with) {
+            return checked_again(Supposed(place.check_case->adapter, h, h.constants[k]), place, with);
         };
-        CheckAt c = check();
+        CheckAt c = check(seed);
         if (difference_remains(c) && h.free) {
             const double claimed = c.integrals.sums[mass].value;
             const double drawn = c.observations.sums[mass].sum / std::max(c.observations.independent, 1.0);
             if (!(claimed > 0) || !(drawn > 0)) return false;
             h.constants[k] *= drawn / claimed;
-            c = check();
+            c = check(seed);
         }
-        if (difference_remains(c)) return false;
+        // By chance a right density has a family below `remaining_level`; not with two seeds.
+        if (difference_remains(c) && (density_is_wrong(c) || difference_remains(check(~seed)))) return false;
     }
     return !places.empty();
 }

@@ -112,5 +112,7 @@ bool is_below_map(const Hypothesis& h, std::span<const Place> places);
 bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places);
 /// Whether all tests of the density pass at all places with the supposed density in place of p. Sets free constants.
 bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed);
+/// Whether all tests of the density pass at all places for a corrected sampler.
+bool follows_density(const SamplerAdapter& corrected, std::span<const Place> places, std::uint32_t seed);
 
 }  // namespace crescent::check

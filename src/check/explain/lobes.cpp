@@ -10,6 +10,7 @@
 
 #include "check/constants.h"
 #include "math/statistics.h"
+#include "output/format.h"
 
 namespace crescent::check {
 
@@ -22,9 +23,10 @@ constexpr double one_end = 1e-4;      // in units of the number
 constexpr double steep_rim = 0x1p-7;  // a steep change at 0 or at 1 is not a jump
 constexpr double least_draws = 400;   // so that the 5 % error of a cell biases x by 0.3 % at most
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
-constexpr double fits_at = 1e-3;      // p-value of the remaining misfit
-constexpr double known_share = 0.02;  // of x, relative
-constexpr double left_out = 0.1;      // least x of a lobe that p has: others may have some density where it draws
+constexpr double fits_at = 1e-3;            // p-value of the remaining misfit
+constexpr double known_share = 0.02;        // of x, relative
+constexpr double known_probability = 0.05;  // half an interval
+constexpr double left_out = 0.1;            // least x of a lobe that p has: others may have some density where it draws
 
 bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
 
@@ -222,9 +224,12 @@ bool explains(const Shares& s) {
 std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
     std::vector<std::size_t> off;
     std::vector<std::string> drawn, claimed;
+    bool known = true;  // whether every probability of p is known as one in [0, 1]
     for (std::size_t k = 0; k < s.x.size(); ++k) {
-        drawn.push_back(fmt::format("{:.3g}", by.lobes[k].share()));
-        claimed.push_back(fmt::format("{:.3g}", s.x[k] * by.lobes[k].share()));
+        const double share = by.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
+        known = known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
+        drawn.push_back(fmt::format("{:.3g}", share));
+        claimed.push_back(with_error(of_p, half));
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);
     }
     for (std::size_t k : off)
@@ -246,7 +251,8 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
     return fmt::format(
         "The lobes that u{} chooses are drawn with {}; p has them with {}: the chooser's probability "
         "differs.",
-        by.number + 1, fmt::join(drawn, ", "), fmt::join(claimed, ", "));
+        by.number + 1, fmt::join(drawn, ", "),
+        known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 #include "check/decide/small_tests.h"
+#include "output/format.h"
 
 namespace crescent::check {
 
@@ -160,6 +162,28 @@ std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
 std::string leak_sentence(const Leak& leak) {
     return fmt::format("{:.3g} % +- {:.2g} % of the draws are spread evenly over the {}, which p does not have.",
         100 * leak.share, 196 * leak.error, leak.whole ? "sphere" : "upper half");
+}
+
+std::optional<Cause> delta_cause(std::span<const Place> places) {
+    constexpr double least_part = 0.01, same = 1e-6, in_all = 0.999;
+    for (const Place& place : places) {
+        std::vector<Vec3d> w = place.w;
+        std::ranges::sort(w, {}, [](Vec3d v) { return std::tuple(v.x, v.y, v.z); });
+        std::size_t most = 0, first = 0;
+        for (std::size_t i = 0, end = 0; i < w.size(); i = end) {
+            for (end = i + 1; end < w.size() && length(w[end] - w[i]) < same;) ++end;
+            if (end - i > most) most = end - i, first = i;
+        }
+        const double share = static_cast<double>(most) / place.of,
+                     half = 1.96 * std::sqrt(share * (1 - share) / place.of);
+        if (share < least_part) continue;
+        return Cause{"delta", share, half / 1.96,
+            fmt::format(
+                "{} of the draws have one direction, w_i = {}{}, for any u. A density does not draw it: if it is a "
+                "delta part, the sampler must declare it (delta) with its probability.",
+                share > in_all ? "All" : percent_with_error(share, half), direction_text(w[first]), place.where())};
+    }
+    return {};
 }
 
 std::optional<Cause> curve_cause(std::span<const Place> places) {

@@ -23,6 +23,16 @@ TEST(PlacesOfDraws, ANumberWithoutEffectLeavesACurve) {
     EXPECT_NE(r.text().find("u2 has no effect"), std::string::npos);
 }
 
+TEST(PlacesOfDraws, ADeltaPartThatIsNotDeclaredIsNamed) {
+    const auto mixed = [](Vec3d o, const PrimarySample& u) { return u[2] < 0.25 ? mirror(o) : cosine_draw(o, u); };
+    const Explained r = explained(made(mixed, [](Vec3d o, Vec3d w) { return 0.75 * cosine_pdf(o, w); }, 3));
+    expect_cause(r, "delta");
+    EXPECT_NEAR(r.cause ? r.cause->exponent : 0, 0.25, 0.04) << r.text();
+    const Explained one = explained(made([](Vec3d, const PrimarySample&) { return tilt(30, 10); }, cosine_pdf));
+    expect_cause(one, "delta");
+    EXPECT_NE(one.text().find("All of the draws have one direction"), std::string::npos) << one.text();
+}
+
 TEST(PlacesOfDraws, MayNotCoverWherePIsPositive) {
     const double density = 1 / (two_pi * 0.05);
     const auto draw = [](Vec3d, const PrimarySample& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };

@@ -180,14 +180,22 @@ constexpr Words accept = {"--allow-inconclusive", "crescent::IsNotAWrongSampler(
 
 std::string named(const Words& words, FrontEnd front_end) { return words[static_cast<std::size_t>(front_end)]; }
 
+/// `flag`: the name of a thorough check, which makes twelve times as many draws as a quick one.
+std::string more_draws_text(const NextStep& next, const std::string& flag) {
+    constexpr double times_of_thorough = 12;
+    const std::string needed = fmt::format("about {:.2g} times as many draws are needed", next.times);
+    if (next.thorough) return next.times > 0 ? needed + " as " + flag + " makes." : "";
+    if (!(next.times > 0)) return flag + " draws more.";
+    if (next.times <= times_of_thorough) return flag + " draws more (" + needed + ").";
+    return fmt::format("{}; {} makes only {:g} times as many.", needed, flag, times_of_thorough);
+}
+
 }  // namespace
 
 std::string next_step_text(const Verdict& v, FrontEnd front_end) {
     switch (v.next.kind) {
         case NextStep::Kind::none: return v.next_step;
-        case NextStep::Kind::more_draws:
-            return named(thorough, front_end) + " draws more" +
-                (v.next.times > 0 ? fmt::format(" (about {:.2g} times as many draws are needed).", v.next.times) : ".");
+        case NextStep::Kind::more_draws: return more_draws_text(v.next, named(thorough, front_end));
         case NextStep::Kind::more_time: return named(time, front_end) + ": the time was too short for all tests.";
         case NextStep::Kind::heavier_pdf:
             return "a pdf that falls off no faster than f; " + named(accept, front_end) + " accepts a heavy tail.";

@@ -50,8 +50,10 @@ struct Finding {
     const char* cases = "w_o";       // unit of the counts
     const Verdict* worst = nullptr;  // largest deviation in the evidence, else the first
     std::vector<std::pair<std::string, std::vector<std::string>>>
-        sentences;        // sentences that the worst verdict does not have, each with its cases
-    std::string cause{};  // of the worst, or of another wrong verdict of the arm
+        sentences;              // in another wording than those of the worst, each with its cases
+    std::string range{};        // " (75 to 89 deg)": of the w_o, if it is not found at all of them
+    std::string cause{};        // of the worst, or of another wrong verdict of the arm
+    std::string named_cause{};  // of one of its verdicts: the summary has each cause once
 };
 
 /// Wrong findings first, then errors, then inconclusive ones. Verdicts that were left out for lack of time are not

@@ -13,6 +13,7 @@ namespace crescent::check {
 namespace {
 
 constexpr double interval = 1.96;  // standard errors: 95 %
+constexpr double few_nodes = 16;   // fewer are not many places
 
 std::string u_text(const PrimarySample& u, int count) {
     std::string out = "(";
@@ -20,9 +21,9 @@ std::string u_text(const PrimarySample& u, int count) {
     return out + ")";
 }
 
-/// "first at u = (0.25, 0), w_i = (0, 0, 1)"
-std::string first_at(const Example& e, int numbers) {
-    bool any = false;
+/// "first at u = (0.25, 0), w_i = (0, 0, 1)". of_draw: whether it is a draw even if all its numbers are 0.
+std::string first_at(const Example& e, int numbers, bool of_draw = false) {
+    bool any = of_draw;
     for (int k = 0; k < numbers; ++k) any = any || e.u[k] != 0;
     std::string out = "first at ";
     if (any) out += "u = " + u_text(e.u, numbers) + ", ";
@@ -30,9 +31,29 @@ std::string first_at(const Example& e, int numbers) {
     return out + (std::isnan(w.x + w.y + w.z) ? "w_i NaN" : "w_i = " + direction_text(w));
 }
 
-std::string mass_sentence(const Answer& a) {
+/// Without a single draw at which p is positive.
+std::string empty_sentence(const DrawChecks& c, double mass) {
+    const std::uint64_t empty = c.nothing - c.outside, unused = c.tested - c.nothing;
+    std::vector<std::string> parts;
+    const auto add = [&](std::uint64_t count, const char* what) {
+        if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
+    };
+    add(c.outside, "have a direction below the surface, where pdf(w) is 0");
+    add(empty, "return no sample (their pdf is 0)");
+    add(c.deltas, "are delta parts");
+    add(unused > c.deltas ? unused - c.deltas : 0, "cannot be used");
+    return fmt::format("p integrates to {:.5g}, but no draw is a direction of p: of {} draws {}.", mass, c.tested,
+        output::listed(parts));
+}
+
+std::string mass_sentence(const CheckAt& c, const Answer& a) {
     const double drawn = a.expected + a.difference, half = interval * a.sd;
-    if (!(drawn > 0)) return fmt::format("Nothing is drawn, and p integrates to {:.5g}.", a.expected);
+    if (!(drawn > 0)) return empty_sentence(c.observations.checks, a.expected);
+    if (!(a.expected > 0))
+        return fmt::format(
+            "p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
+            "direction.",
+            c.integrals.points, output::figures(100 * drawn));
     if (drawn > 1 - 1e-9) return fmt::format("p integrates to {}. Expected 1.", with_error(a.expected, half));
     return fmt::format("p integrates to {}. Expected {:.6g}, the share of the samples that draw a direction.",
         with_error(a.expected, half), drawn);
@@ -49,22 +70,21 @@ std::pair<double, double> sums_below(const CheckAt& c, int node) {
     return {a.first + b.first, a.second + b.second};
 }
 
-/// Compares one half of a node with the expectation of p, given the draws in the whole node. It names the half with the
-/// smaller share, where the relative deviation is larger.
-std::string node_sentence(const CheckAt& c, int node, const Answer& a) {
+/// Draws over the expectation of p in one half of a node, without regard to the draws elsewhere. It names the half in
+/// which they differ by more standard errors.
+std::string node_sentence(const CheckAt& c, int node) {
     const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
-    const auto whole = sums_below(c, node), first = sums_below(c, x.child), second = sums_below(c, x.child + 1);
-    const bool of_first = first.second <= second.second;
-    const double expected = whole.first * (of_first ? first.second : second.second) / (whole.second + 1e-300);
-    const double difference = of_first ? a.difference : -a.difference;
-    const ChartRect& r = c.plan->tree.nodes()[static_cast<std::size_t>(x.child + (of_first ? 0 : 1))].rect;
-    const std::string where = fmt::format("around w_i = {}, within {:.2g} rad",
-        direction_text(from_chart(r.at(0.5, 0.5))), std::max(r.theta_width(), r.phi_width()) / 2);
-    if (!(expected > 0) || std::fabs(difference) > 9 * expected)
-        return fmt::format("Draws fall where p expects {} of them: {}.", expected > 0 ? "a tenth" : "none", where);
-    return fmt::format("{} {} draws than p expects {}.",
-        percent_with_error(std::fabs(difference) / expected, interval * a.sd / expected),
-        difference > 0 ? "more" : "fewer", where);
+    const double n = c.observations.independent;
+    const auto errors_at = [&](int child) {
+        const auto [drawn, claimed] = sums_below(c, child);
+        return std::fabs(drawn - claimed) / std::sqrt(std::max(drawn, claimed) / n + 1e-300);
+    };
+    const int half = errors_at(x.child) >= errors_at(x.child + 1) ? x.child : x.child + 1;
+    const auto [drawn, claimed] = sums_below(c, half);
+    const std::string where = region_text(c.plan->tree.nodes()[static_cast<std::size_t>(half)].rect);
+    if (!(claimed > 0)) return fmt::format("Draws fall where p expects none: {}.", where);
+    const double error = std::sqrt(std::max(drawn, 1 / n) / n) / claimed;
+    return fmt::format("Draws are {} times what p expects {}.", with_error(drawn / claimed, interval * error), where);
 }
 
 std::string band_sentence(int member, const Answer& a) {
@@ -97,26 +117,33 @@ std::string light_sentence(const Answer& a, Family family, bool of_three) {
         with_error(1 + a.difference / a.expected, half / a.expected), channel_of(a, of_three));
 }
 
+/// Sums of h = q / (p + q) weigh all directions; if the shares of all regions agree, the ratio is that of a constant.
+std::string bridge_sentence(const Answer& a) {
+    if (!(a.expected > 0)) return "Draws fall only where p is 0.";
+    const double ratio = 1 + a.difference / a.expected;
+    return fmt::format("Draws are {} times what p expects, weighted by h = q / (p + q).",
+        with_error(std::max(ratio, 0.0), interval * a.sd / a.expected));
+}
+
 /// The sentence of a whole sum.
 std::string sum_sentence(const Finding& f, const Answer& a) {
     const double half = interval * a.sd;
     switch (f.first.family) {
         case Family::slope:
         case Family::slope_sets:
-            return fmt::format("Draws are {} concentrated than p: the mean of h ln p is off by {}.",
-                a.difference > 0 ? "more" : "less", with_error(a.difference, half));
+            return fmt::format("The mean of h ln p over the draws is {} than p expects, by {}; h = q / (p + q).",
+                a.difference > 0 ? "larger" : "smaller", with_error(std::fabs(a.difference), half));
         case Family::centre:
         case Family::centre_sets:
             return fmt::format("The mean direction of the draws is off that of p by {} in {}.",
                 with_error(2 * a.difference, 2 * half), "xyz"[std::clamp(f.first.member, 0, 2)]);
         case Family::depth:
-            return fmt::format(
-                "Draws and p differ in many small places: chi^2 is {:.0f} over {:.0f} nodes of depth {}.",
-                a.difference + a.expected, a.expected, f.first.member);
-        default:
-            return fmt::format("Draws, weighted by h = q / (p + q), are {} {} than p expects.",
-                percent_with_error(std::fabs(a.difference) / a.expected, half / a.expected),
-                a.difference > 0 ? "more" : "fewer");
+            return a.expected < few_nodes
+                ? fmt::format(
+                      "Draws and p differ: chi^2 is {:.4g}, {:g} expected.", a.difference + a.expected, a.expected)
+                : fmt::format("Draws and p differ in many small places: chi^2 is {:.4g}, {:g} expected.",
+                      a.difference + a.expected, a.expected);
+        default: return bridge_sentence(a);
     }
 }
 
@@ -128,9 +155,9 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
     const int numbers = c.numbers;
     switch (f.first.family) {
         case Family::mass:
-        case Family::mass_sets: return mass_sentence(a);
+        case Family::mass_sets: return mass_sentence(c, a);
         case Family::node:
-        case Family::node_sets: return node_sentence(c, f.first.member, a);
+        case Family::node_sets: return node_sentence(c, f.first.member);
         case Family::bridge:
         case Family::bridge_sets:
         case Family::slope:
@@ -178,12 +205,14 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
 std::string sentence_of(const SmallFault& f, int numbers) {
     std::string what = f.what;
     if (!what.empty() && what[0] >= 'a' && what[0] <= 'z' && what.compare(0, 2, "p ") != 0 &&
-        what.compare(0, 4, "pdf ") != 0 && what.compare(0, 2, "f(") != 0)
+        what.compare(0, 3, "pdf") != 0 && what.compare(0, 2, "f(") != 0)
         what[0] = static_cast<char>(what[0] - 'a' + 'A');
     std::string out = fmt::format("{}: {:g} of {:g}", what, f.times, f.of);
     if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
-    else if (f.family == Family::mis) out += fmt::format(", by up to {:.3g}", std::fabs(f.size));
-    const std::string where = first_at(f.first, numbers);
+    else if (f.family == Family::mis)
+        out += fmt::format(" draws, by up to {:.3g}{}", std::fabs(f.size),
+            f.first.expected > 0 ? fmt::format(" (sampler {:g})", f.first.expected) : "");
+    const std::string where = first_at(f.first, numbers, f.family == Family::corners && !f.wo);
     if (!f.place.empty()) return fmt::format("{} rows, first at {}: {}.", out, f.place, where.substr(9));
     return out + ", " + (f.wo ? fmt::format("first at w_o = {}, {}", direction_text(*f.wo), where.substr(9)) : where) +
         ".";

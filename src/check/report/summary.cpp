@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -50,25 +51,63 @@ void add(Finding& f, const Verdict& v) {
     if (!f.worst || v.size > f.worst->size) f.worst = &v;
 }
 
-/// The sentences of a verdict that the worst verdict of its finding does not have.
-std::string without_repeats(const Verdict& v, const std::set<std::string>& already) {
+/// The begin of a sentence without its numbers: sentences of one form at several w_o are one finding.
+std::string wording_of(const std::string& sentence) {
+    constexpr std::size_t compared = 28;
     std::string out;
-    for (const std::string& sentence : sentences_of(describe(v)))
-        if (!already.contains(sentence)) out += (out.empty() ? "" : " ") + sentence;
+    for (char c : sentence) {
+        const bool digit = c >= '0' && c <= '9', in_number = !out.empty() && out.back() == '#';
+        const bool joins = in_number && (c == '.' || c == 'e' || c == '+' || c == '-');
+        if (digit && !in_number) out += '#';
+        else if (!digit && !joins) out += c;
+        if (out.size() == compared) break;
+    }
     return out;
 }
 
+/// Lists the wordings that the worst verdict does not have, each once: that of the largest size, with its cases.
 void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
-    const std::vector<std::string> of_worst = sentences_of(describe(*f.worst));
-    const std::set<std::string> already(of_worst.begin(), of_worst.end());
+    std::set<std::string> already;
+    for (const std::string& sentence : sentences_of(describe(*f.worst))) already.insert(wording_of(sentence));
+    struct Wording {
+        std::string key, message;
+        double size = 0;
+        std::vector<std::string> cases;  // first that of the message
+    };
+    std::vector<Wording> wordings;
     for (const Verdict* v : all) {
-        const std::string message = without_repeats(*v, already);
-        if (message.empty()) continue;
-        const auto same =
-            std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == message; });
-        if (same != f.sentences.end()) same->second.push_back(v->check_case);
-        else f.sentences.push_back({message, {v->check_case}});
+        for (const std::string& sentence : sentences_of(v->message)) {
+            const std::string key = wording_of(sentence);
+            if (already.contains(key) || sentence.starts_with("Expected")) continue;
+            auto same = std::ranges::find(wordings, key, &Wording::key);
+            if (same == wordings.end()) same = wordings.insert(wordings.end(), {key, sentence, v->size, {}});
+            const bool larger = !same->cases.empty() && v->size > same->size;
+            if (larger) same->message = sentence, same->size = v->size;
+            same->cases.insert(larger ? same->cases.begin() : same->cases.end(), v->check_case);
+        }
     }
+    for (Wording& w : wordings) f.sentences.emplace_back(std::move(w.message), std::move(w.cases));
+}
+
+/// Where the verdicts are wrong, if not at all w_o: "30 to 60 deg"; what their integrals are; the cause that one of
+/// them has.
+void note_range(Finding& f, const std::vector<const Verdict*>& all) {
+    double low = 1e300, high = -1e300;
+    const Verdict *least = nullptr, *most = nullptr;
+    bool every_wo = true;
+    for (const Verdict* v : all) {
+        if (f.named_cause.empty()) f.named_cause = v->cause;
+        every_wo = every_wo && v->wo;
+        if (v->wo) low = std::min(low, v->wo->first), high = std::max(high, v->wo->first);
+        if (!v->integral) continue;
+        if (!least || *v->integral < *least->integral) least = v;
+        if (!most || *v->integral > *most->integral) most = v;
+    }
+    if (every_wo && f.count < f.of && high > low) f.range = fmt::format(" ({:g} to {:g} deg)", low, high);
+    constexpr double one_value = 1.02, no_value = 0.01;
+    if (least && *most->integral > one_value * *least->integral + no_value && f.named_cause.empty())
+        f.named_cause = fmt::format("Over these {} p integrates to {:.4g} ({}) up to {:.4g} ({}).", f.cases,
+            *least->integral, least->check_case, *most->integral, most->check_case);
 }
 
 /// The cause of the worst verdict or of another wrong verdict of the same arm, preferably with the same name.
@@ -83,11 +122,18 @@ std::string cause_of(const Finding& f, const CheckResult& j) {
 
 }  // namespace
 
-std::string describe(const Verdict& v, FrontEnd front_end) {
+namespace {
+
+/// The message with a cause, which may be that of another w_o.
+std::string described(const Verdict& v, const std::string& cause, FrontEnd front_end) {
     const std::string next = next_step_text(v, front_end);
-    return v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next) +
+    return v.message + (cause.empty() ? "" : " " + cause) + (next.empty() ? "" : " Next step: " + next) +
         (v.timed_message.empty() ? "" : " " + v.timed_message);
 }
+
+}  // namespace
+
+std::string describe(const Verdict& v, FrontEnd front_end) { return described(v, v.cause, front_end); }
 
 std::vector<std::string> sentences_of(const std::string& text) {
     std::vector<std::string> out;
@@ -123,7 +169,7 @@ std::vector<Finding> findings_of(const CheckResult& j) {
         members[at->second].push_back(&v);
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
-        if (out[i].state == State::wrong) out[i].cause = cause_of(out[i], j);
+        if (out[i].state == State::wrong) out[i].cause = cause_of(out[i], j), note_range(out[i], members[i]);
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
         else
             for (const Verdict* v : members[i])
@@ -140,17 +186,18 @@ std::vector<Finding> findings_of(const CheckResult& j) {
 
 namespace {
 
-/// "at 8 of 8 w_o, worst at w_o 60 deg az 250"; "" for a sampler that is checked once, without w_o.
+/// "at 3 of 8 w_o (75 to 89 deg), worst at w_o 89 deg az 180"; "" for a sampler that is checked once, without w_o.
 std::string where_found(const Finding& f) {
+    if (f.count == 1 && !f.worst->place.empty()) return "at " + f.worst->place;
     if (f.of == 1 && f.worst->check_case == without_wo) return "";
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    return fmt::format("at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->check_case);
+    return fmt::format("at {} of {} {}{}, {} {}", f.count, f.of, f.cases, f.range, as, f.worst->check_case);
 }
 
 }  // namespace
 
 std::string describe(const Finding& f, FrontEnd front_end) {
-    const std::string message = describe(*f.worst, front_end);
+    const std::string message = described(*f.worst, f.named_cause, front_end);
     if (f.state == State::error && f.worst->check_case == before_any_case) return "error. " + message;
     if (f.state == State::error)
         return fmt::format("error: {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.of,
@@ -174,6 +221,17 @@ std::string skipped_text(const CheckResult& j) {
         check_cases.size(), cases.size(), fmt::join(check_cases, "; "), j.left_out[0].why);
 }
 
+namespace {
+
+/// The first of many cases, and how many follow.
+std::string listed_cases(const std::vector<std::string>& cases) {
+    constexpr std::size_t most = 3;
+    if (cases.size() <= most + 1) return fmt::format("{}", fmt::join(cases, "; "));
+    return fmt::format("{}; {} more", fmt::join(std::span(cases).first(most), "; "), cases.size() - most);
+}
+
+}  // namespace
+
 std::string summary_of(const CheckResult& j) {
     std::string out, details, arm;
     for (const Finding& f : findings_of(j)) {
@@ -182,7 +240,7 @@ std::string summary_of(const CheckResult& j) {
         if (f.sentences.empty()) continue;
         details += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
         for (const auto& [message, check_cases] : f.sentences)
-            details += fmt::format("  [{}] {}\n", fmt::join(check_cases, "; "), message);
+            details += fmt::format("  [{}] {}\n", listed_cases(check_cases), message);
     }
     if (const std::string left = skipped_text(j); !left.empty()) out += left + "\n";
     return out + details;
@@ -260,10 +318,16 @@ std::string unseen_text(const CheckResult& result) {
 
 std::string nothing_drawn_text(const CheckResult& result) {
     constexpr double least_share = 0.01;
-    const auto most = std::ranges::max_element(result.verdicts, {}, &Verdict::nothing);
-    if (most == result.verdicts.end() || !(most->nothing > least_share)) return "";
-    return fmt::format("Up to {:.3g} % of the draws returned no sample (pdf 0, or below the horizon): {}{}.",
-        100 * most->nothing, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
+    std::string out;
+    const auto add = [&](double Verdict::* share, const char* what) {
+        const auto most = std::ranges::max_element(result.verdicts, {}, share);
+        if (most == result.verdicts.end() || !((*most).*share > least_share)) return;
+        out += fmt::format("{}Up to {:.3g} % of the draws {}: {}{}.", out.empty() ? "" : " ", 100 * (*most).*share,
+            what, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
+    };
+    add(&Verdict::nothing, "are no sample (they have pdf 0)");
+    add(&Verdict::outside, "have a direction below the surface, where pdf(w) is 0");
+    return out;
 }
 
 // ---- The text of a density that draws imply (check/report/implied.cpp). Rings of 15 degrees are means of the finer

@@ -56,6 +56,39 @@ TEST(WhatIsWrong, HasAtMostEightLinesForManyFaults) {
     EXPECT_EQ(what_is_wrong(of_verdicts({{"valid", State::right, 0, ""}})), "");
 }
 
+TEST(Summaries, HaveEachWordingOnce) {
+    CheckResult j = of_verdicts({{"normalised", State::wrong, 30, ""}, {"normalised", State::wrong, 60, "A cause."},
+        {"normalised", State::right, 0, ""}, {"normalised", State::wrong, 89, ""}});
+    const char* message[] = {"p integrates to 1.2 +- 0.1. Expected 1.", "p integrates to 1.5 +- 0.1. Expected 1.", "",
+        "Nothing else is like it."};
+    const double size[] = {0.2, 0.5, 0, 0.1};
+    for (std::size_t i = 0; i < 4; ++i) j.verdicts[i].message = message[i], j.verdicts[i].size = size[i];
+    const auto message_lines = lines(summary_of(j));
+    EXPECT_EQ(message_lines.at(0),
+        "sampler, normalised: wrong at 3 of 4 w_o (30 to 89 deg), worst at w_o 60 deg. p integrates to 1.5 +- 0.1. "
+        "Expected 1. A cause.");
+    EXPECT_EQ(message_lines.back(), "  [w_o 89 deg] Nothing else is like it.");
+    EXPECT_EQ(summary_of(j).find("1.2"), std::string::npos);
+}
+
+TEST(Summaries, NameThePlaceOfAFaultThatIsNotAtAWo) {
+    CheckResult j = of_verdicts({{"valid", State::wrong, 0, ""}, {"valid", State::right, 30, ""}});
+    j.verdicts[0].place = "w_o = (-1, 0, 0)";
+    EXPECT_EQ(summary_of(j).find("sampler, valid: wrong at w_o = (-1, 0, 0). "), 0u) << summary_of(j);
+}
+
+TEST(NextStep, OfAThoroughCheckIsNotAnother) {
+    Verdict v;
+    v.next = {NextStep::Kind::more_draws, 4, false};
+    EXPECT_EQ(next_step_text(v).find("--full draws more"), 0u);
+    v.next.times = 300;
+    EXPECT_NE(next_step_text(v).find("only 12 times"), std::string::npos);
+    v.next.thorough = true;
+    EXPECT_EQ(next_step_text(v), "about 3e+02 times as many draws are needed as --full makes.");
+    v.next.times = 0;
+    EXPECT_EQ(next_step_text(v), "");
+}
+
 TEST(NextStep, HasTheTermsOfEachFrontEnd) {
     CheckResult j = of_verdicts({{"density", State::inconclusive, 0, ""}});
     j.verdicts[0].next = {NextStep::Kind::more_draws, 4};

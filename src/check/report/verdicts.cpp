@@ -10,6 +10,7 @@
 #include "check/decide/check_at.h"
 #include "check/verdict.h"
 #include "check/verdicts/kinds.h"
+#include "output/format.h"
 
 namespace crescent::check {
 
@@ -28,15 +29,68 @@ void add_sizes(const Sizes& s, Verdict& v) {
     add("leak", s.leak), add("cap", s.cap), add("rotation", s.rotation), add("parameter", s.parameter);
 }
 
+/// The share of the answers or tests that fail, as the size of a fault.
+double share_of(const SmallFault& f) { return std::max(std::fabs(f.size), f.times / std::max(f.of, 1.0)); }
+
+bool compares_densities(Family f) {
+    return info(f).verdict == "density" && f != Family::delta_share && f != Family::delta_scatter;
+}
+
+/// The size of a finding as a share: of the draws, of p, or of the expected value.
+double share_of(const CheckAt& c, const Answer& a) {
+    const double relative = std::fabs(a.difference) / std::max(std::fabs(a.expected), 1e-300);
+    switch (a.family) {
+        case Family::values: return std::fabs(a.difference) / std::max<double>(static_cast<double>(c.evaluations), 1);
+        case Family::repeats: return std::fabs(a.difference) / std::max(c.observations.independent, 1.0);
+        case Family::mass:
+        case Family::mass_sets:  // p over draws
+            return std::fabs(math::log(std::max(a.expected, 1e-12) / std::max(a.expected + a.difference, 1e-12)));
+        case Family::bridge:
+        case Family::bridge_sets:
+        case Family::support:
+        case Family::mean:
+        case Family::albedo: return relative;
+        case Family::slope:
+        case Family::slope_sets:
+        case Family::centre:
+        case Family::centre_sets:
+        case Family::depth: return 0;  // no share: a mean or a sum of squares
+        default: return std::fabs(a.difference);
+    }
+}
+
+/// The sentence of the worst finding. For densities: where the shares of draws and p differ most, and whether the draws
+/// are more concentrated, for any test that failed; the same wording at each w_o.
+void describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
+    const Answer& a = worst.second.sd > 0 ? worst.second : worst.first;
+    std::string sentence;
+    double size = share_of(c, a);
+    if (compares_densities(worst.first.family))
+        if (const std::optional<ShareDifference> place = largest_difference(c)) {
+            sentence = sentence_of(*place), size = std::fabs(place->difference());
+            if (const auto spread = concentration_of(c))
+                if (const std::string more = sentence_of(*spread); !more.empty()) sentence += " " + more;
+            v.evidence["largest_difference"] = {{"drawn", place->drawn}, {"drawn_error", place->drawn_error},
+                {"p", place->claimed}, {"p_error", place->claimed_error}};
+        }
+    if (sentence.empty()) sentence = sentence_of(c, worst);
+    if (a.family == Family::mass || a.family == Family::mass_sets) v.integral = a.expected;
+    v.size = std::max(v.size, size);
+    v.message += (v.message.empty() ? "" : " ") + sentence;
+}
+
 void decide_at(const CheckAt& c, Verdict& v) {
-    constexpr double beyond_chance = 1e9;  // standard errors of a count
     const DrawChecks& checks = c.observations.checks;
-    if (v.name == verdict_names[0] && checks.tested > 0)
-        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing) / static_cast<double>(checks.tested));
+    if (v.name == verdict_names[0] && checks.tested > 0) {
+        const auto of = static_cast<double>(checks.tested);
+        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing - checks.outside) / of);
+        v.outside = std::max(v.outside, static_cast<double>(checks.outside) / of);
+    }
     for (const SmallFault& f : c.small)
-        if (info(f.family).verdict == v.name)
-            v.state = State::wrong, v.size = beyond_chance * f.times / std::max(f.of, 1.0),
+        if (info(f.family).verdict == v.name) {
+            v.state = State::wrong, v.size = std::max(v.size, share_of(f));
             v.message += (v.message.empty() ? "" : " ") + sentence_of(f, c.numbers);
+        }
     const Finding* worst = nullptr;
     for (const Finding& f : c.findings)
         if (info(f.first.family).verdict == v.name) {
@@ -44,11 +98,7 @@ void decide_at(const CheckAt& c, Verdict& v) {
                 {"expected", f.second.expected}, {"sd", f.second.sd}, {"p_first", f.first.p}, {"p_again", f.second.p}};
             if (!worst || f.second.p < worst->second.p) worst = &f;
         }
-    if (worst) {
-        const Answer& a = worst->second.sd > 0 ? worst->second : worst->first;
-        v.size = std::max(v.size, std::fabs(a.difference) * (a.sd > 0 ? 1 / a.sd : beyond_chance));
-    }
-    if (worst) v.state = State::wrong, v.message += (v.message.empty() ? "" : " ") + sentence_of(c, *worst);
+    if (worst) v.state = State::wrong, describe_worst(c, *worst, v);
     for (const Answer& a : c.answers)
         if (info(a.family).verdict == v.name && v.state != State::wrong)
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
@@ -62,6 +112,26 @@ void decide_at(const CheckAt& c, Verdict& v) {
         v.state = State::inconclusive;
         v.message = "A fault ten times its target would not have been found.";
         v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
+    }
+}
+
+/// Puts the name of the technique before its sentence, if several techniques are combined. `from`: its begin.
+void name_technique(const CheckCase& check_case, const CheckAt& c, std::size_t from, Verdict& v) {
+    const int techniques = check_case.adapter->techniques();
+    if (techniques < 2 || v.message.size() <= from) return;
+    const std::string name = check_case.adapter->technique_name(c.technique);
+    v.message.insert(from > 0 ? from + 1 : 0,
+        fmt::format("Sampler {} of {}{}: ", c.technique + 1, techniques, name.empty() ? "" : ", " + name));
+}
+
+/// Faults of the sampler as a whole are reported with its first w_o, but have places of their own.
+void add_faults_of_sampler(const CheckOutcome& outcome, int numbers, Verdict& v) {
+    const bool here = v.state == State::wrong;
+    for (const SmallFault& f : outcome.small) {
+        if (info(f.family).verdict != v.name) continue;
+        v.state = State::wrong, v.size = std::max(v.size, share_of(f));
+        v.message += (v.message.empty() ? "" : " ") + sentence_of(f, numbers);
+        if (!here) v.place = f.wo ? "w_o = " + output::direction_text(*f.wo) : "pairs of directions";
     }
 }
 
@@ -103,19 +173,17 @@ std::vector<Verdict> verdicts_of(
                 continue;
             }
             for (const CheckAt& c : outcome.at[k]) {
+                const std::size_t before = v.message.size();
+                const State state = v.state;
                 decide_at(c, v);
+                if (v.message.size() > before || v.state != state) name_technique(check_case, c, before, v);
                 if (kind.add) kind.add(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
             if (name == "tail") test_tail(check_case, outcome.tails[k], v);
             if (name == "mean") test_plain_mean(outcome.tails[k], v);
             for (const CheckAt& c : outcome.at[k]) note_limits(*check_case.adapter, c, v);
-            if (k == 0)
-                for (const SmallFault& f : outcome.small)
-                    if (info(f.family).verdict == name)
-                        v.state = State::wrong,
-                        v.message +=
-                            (v.message.empty() ? "" : " ") + sentence_of(f, check_case.adapter->traits().numbers);
+            if (k == 0) add_faults_of_sampler(outcome, check_case.adapter->traits().numbers, v);
             if (v.state == State::right && v.message.empty() && !outcome.at[k].empty())
                 v.message = sentence_of_right(outcome.at[k][0], name);
             out.push_back(std::move(v));

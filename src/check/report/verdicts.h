@@ -18,6 +18,33 @@ std::string sentence_of(const SmallFault& fault, int numbers);
 /// The measurement of a right verdict; "" for a verdict without one.
 std::string sentence_of_right(const CheckAt& at, std::string_view verdict);
 
+// ---- Where draws and p differ (report/places.cpp).
+
+/// The share of the draws in a region and the share of p, with standard errors. Both are of the directions drawn and of
+/// the integral of p, so that a constant factor of p changes neither.
+struct ShareDifference {
+    ChartRect rect{};
+    double drawn = 0, drawn_error = 0, claimed = 0, claimed_error = 0;
+    double difference() const { return drawn - claimed; }
+    double errors() const;
+};
+/// The largest difference that is clear, in the smallest node that has most of it; none if no node differs clearly.
+std::optional<ShareDifference> largest_difference(const CheckAt& at);
+/// "Of the draws 12.3 % +- 0.4 % are at polar angles 0 to 30 deg, where p has 6.1 % +- 0.1 %."
+std::string sentence_of(const ShareDifference& difference);
+std::string region_text(const ChartRect& rect);
+
+/// The solid angles over which draws and p are spread: exp(entropy) over the same cells, sr. A uniform density has the
+/// solid angle of its support.
+struct Concentration {
+    enum class Compared { unknown, more, less, same } compared = Compared::unknown;
+    double drawn = 0, claimed = 0;
+    double error = 0;  // of ln(drawn / claimed)
+};
+std::optional<Concentration> concentration_of(const CheckAt& at);
+/// "" if unknown.
+std::string sentence_of(const Concentration& concentration);
+
 // ---- Tests that were not possible for a sampler at one w_o, and the reason: no pdf(w), no weights, answers that are
 // random estimates, a file of draws.
 

@@ -308,6 +308,7 @@ public:
     std::string name() const override { return arm_->name(); }
     Traits traits() const override { return arm_->traits(); }
     int techniques() const override { return arm_->techniques(); }
+    std::string technique_name(int t) const override { return arm_->technique_name(t); }
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         arm_->sample(t, wo, u, out);
     }

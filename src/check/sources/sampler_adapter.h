@@ -110,6 +110,8 @@ public:
     virtual std::string name() const = 0;
     virtual Traits traits() const { return {}; }
     virtual int techniques() const { return 1; }
+    /// The name of one of several techniques; "" if it has none.
+    virtual std::string technique_name(int /*technique*/) const { return ""; }
     virtual void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const = 0;
     virtual void pdf(int technique, std::span<const Pair> at, std::span<double> out) const = 0;
     /// The same density in double if the sampler has one, for quadrature.
@@ -235,6 +237,7 @@ public:
     std::string name() const override { return inner_->name(); }
     Traits traits() const override { return inner_->traits(); }
     int techniques() const override { return inner_->techniques(); }
+    std::string technique_name(int t) const override { return inner_->technique_name(t); }
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         inner_->sample(t, wo, u, out);
     }

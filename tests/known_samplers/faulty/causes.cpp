@@ -13,7 +13,7 @@ std::string cause_of(const std::string& fault) {
         {"missing 4(w.h)", "w_o.m"}, {"n.h for w.h in the Jacobian", "(n.m) / (w_o.m)"},
         {"missing G1 in the density of visible normals", "a constant"}, {"area measure for solid angle", "distance^2"},
         {"light's cosine left out", "cosine at the light"}, {"pdf off by 1 %", "a constant"},
-        {"lights chosen by power, weighed alike", "chooser"}, {"sqrt forgotten", "cos theta_i"},
+        {"lights chosen by power, weighed alike", "chooser"}, {"sqrt forgotten", "square root"},
         {"lobe chosen by one weight, weighed by another", "the chooser's probability"},
         {"frame mirrored for half of the azimuths", "mirrored"}, {"swapped w_o and w_i in pdf(w)", "cos theta_i"},
         {"cosine left out of the weight", "cos theta_i"}, {"BRDF scaled by 1.01", "a constant"},

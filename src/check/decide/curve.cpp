@@ -1,0 +1,81 @@
+// Draws on a curve: the derivatives of sample(u) with respect to all of its numbers are parallel. A density over solid
+// angle then cannot be right, whatever its value is.
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+#include "check/decide/small_tests.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::uint32_t tested = 32;
+constexpr std::size_t fewest = 16;  // points with known derivatives
+constexpr double most_of_points = 0.9;
+constexpr double step = 1 / 1081.0;        // of u: no period of numbers that are cut into two by a power of two
+constexpr double smooth = 0.02;            // relative change of a derivative if the step is halved
+constexpr double least_derivative = 1e-2;  // of w by u: rounding in single precision is then 1 % of it
+constexpr double parallel = 1e-3;          // sine of the angle between two derivatives
+/// The map has at least a thousand times the density p: a thin but right region has a large p there.
+constexpr double far_below = 1e-3;
+
+bool has_direction(const Draw& d) {
+    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z);
+}
+
+/// The derivatives at one u that are not 0; `known`: whether all of them are.
+struct Derivatives {
+    std::vector<Vec3d> moving;
+    bool known = true;
+
+    /// d: draws at u - step, u + step, u - step / 2 and u + step / 2, for each number.
+    Derivatives(std::span<const Draw> d, int numbers) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(numbers); ++k) {
+            const std::span<const Draw> q = d.subspan(4 * k, 4);
+            known = known && std::ranges::all_of(q, has_direction);
+            if (!known) return;
+            const Vec3d wide = (q[1].wi - q[0].wi) * (0.5 / step), narrow = (q[3].wi - q[2].wi) * (1 / step);
+            const double size = length(wide);
+            if (size == 0 && length(narrow) == 0) continue;
+            known = size > least_derivative && length(wide - narrow) < smooth * size;
+            moving.push_back(narrow);
+        }
+    }
+    bool on_curve(double p) const {
+        for (std::size_t k = 0; k < moving.size(); ++k)
+            for (std::size_t j = 0; j < k; ++j) {
+                const double area = length(cross(moving[k], moving[j]));
+                if (area > parallel * length(moving[k]) * length(moving[j]) || area * p > far_below) return false;
+            }
+        return !moving.empty();
+    }
+};
+
+}  // namespace
+
+std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
+    const int numbers = source.traits.numbers;
+    if (source.traits.own_random || !source.adapter.can_draw() || numbers < 2 || !source.has_density()) return {};
+    std::vector<PrimarySample> u = first_numbers(key, tested, source.traits), around;
+    for (PrimarySample& x : u) {
+        for (int k = 0; k < numbers; ++k) x[k] = std::clamp(x[k], 2 * step, 1 - 2 * step);
+        for (int k = 0; k < numbers; ++k)
+            for (double by : {-step, step, -step / 2, step / 2}) around.push_back(x), around.back()[k] += by;
+    }
+    std::vector<Draw> draws(around.size()), at(u.size());
+    source.draw(around, draws);
+    source.draw(u, at);
+    SmallFault out{
+        Family::repeats, 0, 0, 0, {}, "all draws lie on a curve, since no two random numbers move them apart"};
+    const auto each = static_cast<std::size_t>(4 * numbers);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const Derivatives d(std::span<const Draw>(draws).subspan(each * i, each), numbers);
+        if (!d.known || !has_direction(at[i])) continue;
+        ++out.of;
+        if (d.on_curve(at[i].pdf) && out.times++ == 0) out.first = {u[i], at[i], at[i].pdf, 0};
+    }
+    return out.of >= fewest && out.times >= most_of_points * out.of ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace crescent::check

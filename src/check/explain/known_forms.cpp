@@ -1,0 +1,181 @@
+// Ratios of draws to p with a parameter that is not stated, from the derivatives of the map, which have no noise: the
+// shadowing of the other direction, whose roughness is fitted; and the distance and cosine at a light in a plane.
+#include "check/explain/causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+#include "check/constants.h"
+#include "check/explain/hypothesis.h"
+#include "math/statistics.h"
+#include "output/format.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr double agrees = 2e-3, most_agree = 0.9;  // as in explain_ratios
+constexpr std::size_t fewest = 24;
+
+using Model = std::function<double(Vec3d wo, Vec3d wi)>;  // ratio of the draws to p
+
+/// Errors of ln ratio at the points of the map, ascending, beyond those of the derivatives.
+std::vector<double> errors_of(const Model& model, std::span<const KnownRatio> ratios) {
+    std::vector<double> out;
+    for (const KnownRatio& r : ratios) {
+        const double m = model(r.wo, r.wi);
+        out.push_back(m > 0 ? std::max(std::fabs(math::log(r.value / m)) - 2 * r.error, 0.0) : 1e3);
+    }
+    std::ranges::sort(out);
+    return out;
+}
+bool agree(const Model& model, std::span<const KnownRatio> ratios) {
+    const std::vector<double> errors = errors_of(model, ratios);
+    return errors[static_cast<std::size_t>(most_agree * static_cast<double>(errors.size() - 1))] < agrees;
+}
+
+// ---- G1 of Smith for GGX: Walter et al. 2007, (34), with the roughness along the azimuth of w.
+
+double shadowing(Vec3d w, double alpha_x, double alpha_y) {
+    const double z2 = w.z * w.z + 1e-300;
+    return 2 / (1 + std::sqrt(1 + (sqr(alpha_x * w.x) + sqr(alpha_y * w.y)) / z2));
+}
+
+struct Shadowing {
+    double alpha_x = 0.5, alpha_y = 0.5;
+    bool exchanged = true;  // p has G1(w_i) for G1(w_o); false: G1(w_i) besides it
+    double operator()(Vec3d wo, Vec3d wi) const {
+        return (exchanged ? shadowing(wo, alpha_x, alpha_y) : 1) / shadowing(wi, alpha_x, alpha_y);
+    }
+};
+
+/// The roughness of the least error of nine tenths of the ratios: a grid, then a search with steps that are halved.
+Shadowing fitted_shadowing(std::span<const KnownRatio> ratios, bool exchanged) {
+    constexpr int grid = 20;
+    constexpr double smallest = 0.02, largest = 2, least_step = 1e-5;
+    Shadowing best{.exchanged = exchanged};
+    double least = 1e300;
+    const auto attempt = [&](double x, double y) {
+        const Shadowing s{x, y, exchanged};
+        const std::vector<double> errors = errors_of(s, ratios);
+        const auto kept = static_cast<std::ptrdiff_t>(most_agree * static_cast<double>(errors.size()));
+        const double error = std::accumulate(errors.begin(), errors.begin() + kept, 0.0);
+        const bool better = error < least;
+        if (better) least = error, best = s;
+        return better;
+    };
+    const double ratio = math::exp(math::log(largest / smallest) / grid);
+    for (double x = smallest; x <= largest; x *= ratio)
+        for (double y = smallest; y <= largest; y *= ratio) attempt(x, y);
+    for (double step = ratio - 1; step > least_step;) {
+        const Shadowing s = best;
+        bool better = false;
+        for (double x : {1 - step, 1.0, 1 + step})
+            for (double y : {1 - step, 1.0, 1 + step}) better = attempt(s.alpha_x * x, s.alpha_y * y) || better;
+        if (!better) step /= 2;
+    }
+    return best;
+}
+
+/// p times the model, with a free constant.
+Hypothesis times(const Model& model, const char* name) { return check::times(Factor{name, model}, 1); }
+
+std::optional<Cause> shadowing_cause(std::span<const KnownRatio> ratios, std::span<const Place> places) {
+    if (places[0].traits.wo == Traits::WoDomain::none) return {};
+    for (bool exchanged : {true, false}) {
+        const Shadowing s = fitted_shadowing(ratios, exchanged);
+        if (!agree(s, ratios)) continue;
+        Hypothesis h = times(s, "G1");
+        if (!passes(h, places, 1)) continue;
+        const bool round = std::fabs(s.alpha_x / s.alpha_y - 1) < 0.01;
+        const std::string alpha = round ? fmt::format("alpha {:.3g}", (s.alpha_x + s.alpha_y) / 2)
+                                        : fmt::format("alpha {:.3g} and {:.3g}", s.alpha_x, s.alpha_y);
+        return Cause{"G1", s.alpha_x, 0,
+            fmt::format(
+                "By the derivatives of sample(u), draws follow p with G1(w_o) {} G1(w_i): p has the shadowing of "
+                "the other direction{} (Smith's G1 of GGX with {}).",
+                exchanged ? "in place of" : "but without", exchanged ? "" : " too", alpha)};
+    }
+    return {};
+}
+
+// ---- A light in a plane with normal n at distance d: the distance along w is d / |n.w|, and the cosine there |n.w|.
+
+struct PlanePower {
+    int power;  // of 1 / |n.w| in the ratio of the draws to p
+    const char* what;
+};
+constexpr PlanePower plane_powers[] = {{1,
+                                           "the cosine at the light is missing in p: p per solid angle is p per area "
+                                           "times r^2 / cos"},
+    {2, "the squared distance to the light, r^2, is missing in p"},
+    {3, "r^2 / cos at the light is missing in p, which is a density per area"},
+    {-1, "the cosine at the light is once too often in p"},
+    {-2, "the squared distance to the light, r^2, is once too often in p"},
+    {-3, "r^2 / cos at the light is once too often in p"}};
+
+/// The vector n for which |n.w|^-power is nearest to the ratios: least squares, without the tenth with the largest
+/// errors in a second and third round.
+std::optional<Vec3d> fitted_plane(std::span<const KnownRatio> ratios, int power) {
+    struct Row {
+        Vec3d w;
+        double y, error;
+    };
+    std::vector<Row> rows;
+    for (const KnownRatio& r : ratios) rows.push_back({r.wi, math::exp(-math::log(r.value) / power), 0});
+    std::optional<Vec3d> out;
+    for (int round = 0; round < 3; ++round) {
+        std::vector<std::vector<double>> a(3, std::vector<double>(3));
+        std::vector<double> b(3);
+        for (const Row& r : rows) {
+            const double w[] = {r.w.x, r.w.y, r.w.z}, weight = 1 / (r.y * r.y);
+            for (std::size_t i = 0; i < 3; ++i) {
+                b[i] += weight * w[i] * r.y;
+                for (std::size_t j = 0; j < 3; ++j) a[i][j] += weight * w[i] * w[j];
+            }
+        }
+        const auto n = statistics::solved(a, b, 1e-12);
+        if (!n) return {};
+        out = Vec3d{(*n)[0], (*n)[1], (*n)[2]};
+        for (Row& r : rows) r.error = std::fabs(dot(*out, r.w) / r.y - 1);
+        std::ranges::sort(rows, {}, &Row::error);
+        rows.resize(rows.size() * 9 / 10);
+    }
+    return out;
+}
+
+std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<const Place> places) {
+    for (const auto& [power, what] : plane_powers) {
+        const std::optional<Vec3d> n = fitted_plane(ratios, power);
+        if (!n || !(length(*n) > 0)) continue;
+        const Model model = [at = *n, exponent = power](Vec3d, Vec3d wi) {
+            const double c = std::fabs(dot(at, wi));
+            return c > 0 ? math::exp(-exponent * math::log(c)) : 0;
+        };
+        if (!agree(model, ratios)) continue;
+        Hypothesis h = times(model, "light in a plane");
+        if (!passes(h, places, 1)) continue;
+        return Cause{"light in a plane", static_cast<double>(power), 0,
+            fmt::format("By the derivatives of sample(u), draws over p is {} |n.w_i|^{}, with n = {}. For a light in a "
+                        "plane with this normal, {}.",
+                output::figures(math::exp(-power * math::log(length(*n))), 4), -power,
+                direction_text(*n * (1 / length(*n))), what)};
+    }
+    return {};
+}
+
+}  // namespace
+
+std::optional<Cause> cause_of_known_form(std::span<const KnownRatio> ratios, std::span<const Place> places) {
+    std::vector<KnownRatio> usable;
+    double different = 0;
+    for (const KnownRatio& r : ratios)
+        if (r.value > 0 && std::isfinite(r.value)) usable.push_back(r), different += std::fabs(r.value - 1) > 0.05;
+    if (usable.size() < fewest || different < static_cast<double>(usable.size()) / 2) return {};
+    if (std::optional<Cause> c = plane_cause(usable, places)) return c;
+    return shadowing_cause(usable, places);
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,95 @@
+// A number is warped wrongly: sample(u) draws p if one of its numbers is replaced by a power of itself, such as
+// sqrt(u1) for the radius in a disk. With v = u^a in place of a uniform u, the density of the map at v is that of p
+// times du/dv = a v^((a - 1) / a), which the derivatives of the map show without noise. The corrected sampler is then
+// checked.
+#include "check/explain/causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "check/constants.h"
+#include "check/explain/hypothesis.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// u_k replaced by its power, or 1 - u_k by the power of 1 - u_k.
+struct Warp {
+    int number = 0;
+    double power = 1;
+    bool from_one = false;
+
+    double of(double u) const {
+        const double x = from_one ? 1 - u : u, y = x > 0 ? math::exp(power * math::log(x)) : 0;
+        return std::clamp(from_one ? 1 - y : y, 0.0, 1 - ulp);
+    }
+    /// The density of the map over p where the number has the value v.
+    double ratio(double v) const {
+        const double x = std::max(from_one ? 1 - v : v, 1e-12);
+        return power * math::exp((power - 1) / power * math::log(x));
+    }
+    std::string text() const {
+        const std::string u = fmt::format("u{}", number + 1), x = from_one ? "1 - " + u : u;
+        const std::string y = power == 0.5 ? "sqrt(" + x + ")"
+            : power < 1                    ? fmt::format("({})^(1/{:g})", x, std::round(1 / power))
+            : from_one                     ? fmt::format("({})^{:g}", x, power)
+                                           : fmt::format("{}^{:g}", x, power);
+        return from_one ? "1 - " + y : y;
+    }
+};
+
+class Warped : public ForwardingAdapter {
+public:
+    Warped(std::shared_ptr<const SamplerAdapter> inner, Warp warp) : ForwardingAdapter(std::move(inner)), warp_(warp) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        std::vector<PrimarySample> v(u.begin(), u.end());
+        for (PrimarySample& x : v) x[warp_.number] = warp_.of(x[warp_.number]);
+        inner().sample(t, wo, v, out);
+    }
+    bool has_f() const override { return false; }
+    bool has_true_f() const override { return false; }
+
+private:
+    Warp warp_;
+};
+
+/// Whether the ratio of the map is that of the warp at nine of ten points, and not 1 there.
+bool explains(const Warp& warp, std::span<const Place> places) {
+    constexpr double agrees = 2e-3, most_agree = 0.9, differs = 0.1;
+    constexpr double fewest = 24;
+    double points = 0, agreeing = 0, different = 0;
+    for (const Place& place : places)
+        for (const MapDensity& m : place.map) {
+            const double off = std::fabs(math::log(m.drawn / m.p / warp.ratio(m.u[warp.number])));
+            ++points, agreeing += off < agrees + 2 * m.error;
+            different += std::fabs(math::log(m.drawn / m.p)) > differs;
+        }
+    return points >= fewest && agreeing >= most_agree * points && different > points / 2;
+}
+
+}  // namespace
+
+std::optional<Cause> warp_cause(std::span<const Place> places) {
+    for (int k = 0; k < places[0].traits.numbers; ++k)
+        for (double power : {1.0 / 2, 2.0, 1.0 / 3, 3.0})
+            for (bool from_one : {false, true}) {
+                const Warp warp{k, power, from_one};
+                if (!explains(warp, places)) continue;
+                const Warped corrected(places[0].check_case->adapter, warp);
+                if (!follows_density(corrected, places, 1)) continue;
+                return Cause{"root", power, 0,
+                    fmt::format("With {} in place of u{} the draws follow p: in sample a {} is {}{}.", warp.text(),
+                        k + 1,
+                        power == 0.5     ? "square root"
+                            : power < 1  ? "cubic root"
+                            : power == 2 ? "square root"
+                                         : "cubic root",
+                        power < 1 ? "missing" : "taken once too often",
+                        power == 0.5 ? ", as that of a radius in a disk or of a barycentric coordinate" : "")};
+            }
+    return {};
+}
+
+}  // namespace crescent::check
