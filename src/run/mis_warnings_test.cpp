@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "run/execute.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent::inline runs {
@@ -22,16 +23,21 @@ Experiment with_weights(std::vector<std::string> weights) {
     return e;
 }
 
+std::vector<std::string> warnings_of(std::vector<std::string> weights) {
+    const Experiment e = with_weights(std::move(weights));
+    return mis_warnings(e, open_external(e));
+}
+
 TEST(MisWarnings, NameTheSamplerThatHasWeightWithoutADensity) {
-    const auto warnings = mis_warnings(with_weights({"0.5", "0.5"}), {});
+    const auto warnings = warnings_of({"0.5", "0.5"});
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_THAT(warnings[0], HasSubstr("'light-area' has MIS weight where its density is 0"));
     EXPECT_THAT(warnings[0], HasSubstr("down to 0.5"));
 }
 
 TEST(MisWarnings, AreNotGivenForWeightsThatVanishWithTheDensity) {
-    EXPECT_TRUE(mis_warnings(with_weights({"p1 / (p1 + p2)", "rest"}), {}).empty());
-    EXPECT_TRUE(mis_warnings(with_weights({}), {}).empty());
+    EXPECT_TRUE(warnings_of({"p1 / (p1 + p2)", "rest"}).empty());
+    EXPECT_TRUE(warnings_of({}).empty());
 }
 
 }  // namespace mis_warnings_test
