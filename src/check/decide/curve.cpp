@@ -19,6 +19,8 @@ constexpr double least_derivative = 1e-2;  // of w by u: rounding in single prec
 constexpr double parallel = 1e-3;          // sine of the angle between two derivatives
 /// The map has at least a thousand times the density p: a thin but right region has a large p there.
 constexpr double far_below = 1e-3;
+/// The largest derivative that rounding in single precision, by 4 ulp, may hide.
+constexpr double unresolved = 4 * ulp / (2 * step);
 
 bool has_direction(const Draw& d) {
     return d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z);
@@ -27,7 +29,7 @@ bool has_direction(const Draw& d) {
 /// The derivatives at one u that are not 0; `known`: whether all of them are.
 struct Derivatives {
     std::vector<Vec3d> moving;
-    bool known = true;
+    bool known = true, rests = false;  // rests: a number moves nothing
 
     /// d: draws at u - step, u + step, u - step / 2 and u + step / 2, for each number.
     Derivatives(std::span<const Draw> d, int numbers) {
@@ -37,17 +39,22 @@ struct Derivatives {
             if (!known) return;
             const Vec3d wide = (q[1].wi - q[0].wi) * (0.5 / step), narrow = (q[3].wi - q[2].wi) * (1 / step);
             const double size = length(wide);
-            if (size == 0 && length(narrow) == 0) continue;
+            if (size == 0 && length(narrow) == 0) {
+                rests = true;
+                continue;
+            }
             known = size > least_derivative && length(wide - narrow) < smooth * size;
             moving.push_back(narrow);
         }
     }
     bool on_curve(double p) const {
-        for (std::size_t k = 0; k < moving.size(); ++k)
+        for (std::size_t k = 0; k < moving.size(); ++k) {
+            if (rests && length(moving[k]) * unresolved * p > far_below) return false;
             for (std::size_t j = 0; j < k; ++j) {
                 const double area = length(cross(moving[k], moving[j]));
                 if (area > parallel * length(moving[k]) * length(moving[j]) || area * p > far_below) return false;
             }
+        }
         return !moving.empty();
     }
 };

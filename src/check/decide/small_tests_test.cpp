@@ -146,6 +146,12 @@ TEST(DrawsOnACurve, AreFound) {
     lobes.of.numbers = 3;
     lobes.draw = [](Vec3d o, const PrimarySample& u) { return u[2] < 0.5 ? cosine_draw(o, u) : power_draw(o, 30, u); };
     EXPECT_FALSE(curve(lobes));
+    FunctionSampler narrow = power_sampler(5e5);  // in single precision a number moves nothing by a small step
+    narrow.change = [](const PrimarySample&, Draw& d) {
+        d.wi = {static_cast<double>(static_cast<float>(d.wi.x)), static_cast<double>(static_cast<float>(d.wi.y)),
+            static_cast<double>(static_cast<float>(d.wi.z))};
+    };
+    EXPECT_FALSE(curve(narrow));
     FunctionSampler one;  // one number is cut into two
     one.of.numbers = 2;
     one.draw = [](Vec3d o, const PrimarySample& u) {
