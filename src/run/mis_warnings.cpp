@@ -1,3 +1,4 @@
+// Weights are tested as `crescent check` does, at draws of each sampler at a few pixels.
 #include "run/mis_warnings.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // Draws on a curve: the derivatives of sample(u) with respect to all of its numbers are parallel. A density over solid
-// angle then cannot be right, whatever its value is.
+// angle then cannot be right, for any value that it has.
 #include <algorithm>
 #include <cmath>
 
