@@ -8,7 +8,7 @@ expect 0 "$CRESCENT" "${long[@]}" --out alone
 long+=(--out stopped)
 
 # kill_after PASSES: kills a run once it has stored that many passes of the mixture.
-passes() { cat stopped/.crescent-kept/* 2>/dev/null | grep -ao 'armgmixture' | wc -l; }
+passes() { cat stopped/.crescent-kept/* 2>/dev/null | grep -ao 'mixture' | wc -l; }
 kill_after() {
     "$CRESCENT" "${long[@]}" >/dev/null 2>&1 &
     local run=$!
