@@ -76,7 +76,7 @@ struct CheckFlags {
     double alpha = 1e-3, patience = 0;      // patience: s for a program; 0: two minutes, with --full an hour
     double timeout = 0;                     // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
-    int pixels = 0;                 // of an experiment; 0: the grid of w_o
+    int pixels = 0;  // of an experiment; 0: the grid of w_o
     bool no_code = false;
     bool light = false;  // f is the radiance of a light
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;

@@ -21,8 +21,8 @@ namespace {
     throw OutputError("cannot write " + printable(path) + ": " + why);
 }
 
-/// Returns whether the path is a stream, such as /dev/stdout, a FIFO or /dev/null. Folders below /dev, such as /dev/shm,
-/// have files; /dev/stdout and /dev/fd/1 are streams even if a file is behind them.
+/// Returns whether the path is a stream, such as /dev/stdout, a FIFO or /dev/null. Folders below /dev, such as
+/// /dev/shm, have files; /dev/stdout and /dev/fd/1 are streams even if a file is behind them.
 bool is_stream(const std::string& path) {
     struct stat s{};
     const bool in_dev = path.starts_with("/dev/") && (path.rfind('/') == 4 || path.starts_with("/dev/fd/"));

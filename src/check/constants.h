@@ -164,6 +164,9 @@ inline constexpr double missed_by_chance = 1e-4;
 
 inline constexpr double target_constant = 1e-3, target_leak = 5e-3, target_cap = 3e-3, target_rotation = 5e-3,
                         target_parameter = 2e-2;
+/// A supposed cause explains a ratio of densities within this relative difference, besides the ratio's own error: ten
+/// times the rounding of a sampler in single precision. It has to explain this share of the ratios.
+inline constexpr double agreement = 2e-3, share_in_agreement = 0.9;
 inline constexpr double inconclusive_at = 10;  // times the target
 /// The same if p is a random estimate. Chosen: an estimate with a relative standard deviation of 1 needs 10^6
 /// evaluations for a mean with an error of 0.1 %, more than a quick check through a program has.
@@ -173,5 +176,10 @@ inline constexpr double stated_power = 0.9, power_quantile = 1.2816;  // P(Z < 1
 /// has an uncertainty of 13 %, that of a standard deviation from 32 replicates. Measured by planting faults of these
 /// sizes: the least of them is found with `stated_power` only if each by itself is found with 0.98.
 inline constexpr double power_of_each = 2.05;
+
+// Evidence in sentences.
+
+inline constexpr double half_width_95 = 1.96;  // standard errors: an interval of 95 %
+inline constexpr double draws_of_cell = 100;   // a relative standard error of a tenth
 
 }  // namespace crescent::check

@@ -61,8 +61,7 @@ std::unique_ptr<Context> open_osmesa() { return std::make_unique<OsMesa>(); }
 namespace crescent::gl {
 
 std::unique_ptr<Context> open_osmesa() {
-    throw OutputError(
-        "--gl-context osmesa: this build was made without the header GL/osmesa.h (libosmesa6-dev)");
+    throw OutputError("--gl-context osmesa: this build was made without the header GL/osmesa.h (libosmesa6-dev)");
 }
 
 }  // namespace crescent::gl

@@ -1,6 +1,6 @@
-// crescent_calibration SET ...: runs cases; crescent_calibration right: checks correct samplers at random parameters and
-// counts false alarms by family; crescent_calibration table|csv FILE...: reports results; --serve: serves the sampler of
-// a case over a pipe; --list: lists sets, families and engines.
+// crescent_calibration SET ...: runs cases; crescent_calibration right: checks correct samplers at random parameters
+// and counts false alarms by family; crescent_calibration table|csv FILE...: reports results; --serve: serves the
+// sampler of a case over a pipe; --list: lists sets, families and engines.
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>

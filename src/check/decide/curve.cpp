@@ -14,7 +14,7 @@ constexpr std::uint32_t tested = 32;
 constexpr std::size_t fewest = 16;  // points with known derivatives
 constexpr double most_of_points = 0.9;
 constexpr double step = 1 / 1081.0;        // of u: no period of numbers that are cut into two by a power of two
-constexpr double smooth = 0.02;            // relative change of a derivative if the step is halved
+constexpr double largest_change = 0.02;    // relative change of a derivative if the step is halved
 constexpr double least_derivative = 1e-2;  // of w by u: rounding in single precision is then 1 % of it
 constexpr double parallel = 1e-3;          // sine of the angle between two derivatives
 /// The map has at least a thousand times the density p: a thin but right region has a large p there.
@@ -43,7 +43,7 @@ struct Derivatives {
                 rests = true;
                 continue;
             }
-            known = size > least_derivative && length(wide - narrow) < smooth * size;
+            known = size > least_derivative && length(wide - narrow) < largest_change * size;
             moving.push_back(narrow);
         }
     }

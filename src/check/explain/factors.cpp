@@ -131,9 +131,9 @@ std::string number_name(double value, double known_to, const Traits& traits) {
 
 namespace {
 
-/// A ratio agrees if its error, besides its own uncertainty, is below `agrees` and below a tenth of the typical
+/// A ratio agrees if its error, besides its own uncertainty, is below `agreement` and below a tenth of the typical
 /// distance of the ratios from 1: many factors fit ratios that are nearly constant.
-constexpr double agrees = 2e-3, part_that_agrees = 0.1, most_agree = 0.9, to_half = 0.05;
+constexpr double part_that_agrees = 0.1, to_half = 0.05;
 constexpr std::size_t fewest_ratios = 40;
 
 double median(std::vector<double> v) {
@@ -181,10 +181,10 @@ std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std
         return {};
     std::vector<double> sizes;
     for (double v : logs) sizes.push_back(std::fabs(v));
-    const double close = std::min(agrees, part_that_agrees * median(sizes));
+    const double close = std::min(agreement, part_that_agrees * median(sizes));
     RatioCause best = agreeing(logs, logs, 0, close, ratios);
     best.name = "constant";
-    if (best.explained >= most_agree) return best;
+    if (best.explained >= share_in_agreement) return best;
     bool several = false;
     for (const Factor& f : factors) {
         std::vector<double> x;
@@ -198,12 +198,12 @@ std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std
         const double b = slope_of(std::move(points)), simple = std::round(2 * b) / 2;
         if (simple == 0 || std::fabs(b - simple) > to_half) continue;
         RatioCause with = agreeing(logs, x, simple, close, ratios);
-        if (with.explained < most_agree) continue;
+        if (with.explained < share_in_agreement) continue;
         with.name = f.name;
-        several = best.explained >= most_agree && with.explained > best.explained - 0.02;
-        if (with.explained > best.explained + 0.02 || best.explained < most_agree) best = with;
+        several = best.explained >= share_in_agreement && with.explained > best.explained - 0.02;
+        if (with.explained > best.explained + 0.02 || best.explained < share_in_agreement) best = with;
     }
-    return best.explained >= most_agree && !several ? std::optional(best) : std::nullopt;
+    return best.explained >= share_in_agreement && !several ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace crescent::check

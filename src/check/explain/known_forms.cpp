@@ -16,13 +16,12 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double agrees = 2e-3, most_agree = 0.9;  // as in explain_ratios
 constexpr std::size_t fewest = 24;
 
-using Model = std::function<double(Vec3d wo, Vec3d wi)>;  // ratio of the draws to p
+using RatioModel = std::function<double(Vec3d wo, Vec3d wi)>;  // ratio of the draws to p
 
 /// Errors of ln ratio at the points of the map, ascending, beyond those of the derivatives.
-std::vector<double> errors_of(const Model& model, std::span<const KnownRatio> ratios) {
+std::vector<double> errors_of(const RatioModel& model, std::span<const KnownRatio> ratios) {
     std::vector<double> out;
     for (const KnownRatio& r : ratios) {
         const double m = model(r.wo, r.wi);
@@ -31,9 +30,9 @@ std::vector<double> errors_of(const Model& model, std::span<const KnownRatio> ra
     std::ranges::sort(out);
     return out;
 }
-bool agree(const Model& model, std::span<const KnownRatio> ratios) {
+bool agree(const RatioModel& model, std::span<const KnownRatio> ratios) {
     const std::vector<double> errors = errors_of(model, ratios);
-    return errors[static_cast<std::size_t>(most_agree * static_cast<double>(errors.size() - 1))] < agrees;
+    return errors[static_cast<std::size_t>(share_in_agreement * static_cast<double>(errors.size() - 1))] < agreement;
 }
 
 // ---- G1 of Smith for GGX: Walter et al. 2007, (34), with the roughness along the azimuth of w.
@@ -60,7 +59,7 @@ Shadowing fitted_shadowing(std::span<const KnownRatio> ratios, bool exchanged) {
     const auto attempt = [&](double x, double y) {
         const Shadowing s{x, y, exchanged};
         const std::vector<double> errors = errors_of(s, ratios);
-        const auto kept = static_cast<std::ptrdiff_t>(most_agree * static_cast<double>(errors.size()));
+        const auto kept = static_cast<std::ptrdiff_t>(share_in_agreement * static_cast<double>(errors.size()));
         const double error = std::accumulate(errors.begin(), errors.begin() + kept, 0.0);
         const bool better = error < least;
         if (better) least = error, best = s;
@@ -80,7 +79,7 @@ Shadowing fitted_shadowing(std::span<const KnownRatio> ratios, bool exchanged) {
 }
 
 /// p times the model, with a free constant.
-Hypothesis times(const Model& model, const char* name) { return check::times(Factor{name, model}, 1); }
+Hypothesis times(const RatioModel& model, const char* name) { return check::times(Factor{name, model}, 1); }
 
 std::optional<Cause> shadowing_cause(std::span<const KnownRatio> ratios, std::span<const Place> places) {
     if (places[0].traits.wo == Traits::WoDomain::none) return {};
@@ -150,7 +149,7 @@ std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<c
     for (const auto& [power, what] : plane_powers) {
         const std::optional<Vec3d> n = fitted_plane(ratios, power);
         if (!n || !(length(*n) > 0)) continue;
-        const Model model = [at = *n, exponent = power](Vec3d, Vec3d wi) {
+        const RatioModel model = [at = *n, exponent = power](Vec3d, Vec3d wi) {
             const double c = std::fabs(dot(at, wi));
             return c > 0 ? math::exp(-exponent * math::log(c)) : 0;
         };

@@ -57,16 +57,16 @@ private:
 
 /// Whether the ratio of the map is that of the warp at nine of ten points, and not 1 there.
 bool explains(const Warp& warp, std::span<const Place> places) {
-    constexpr double agrees = 2e-3, most_agree = 0.9, differs = 0.1;
+    constexpr double differs = 0.1;
     constexpr double fewest = 24;
     double points = 0, agreeing = 0, different = 0;
     for (const Place& place : places)
         for (const MapDensity& m : place.map) {
             const double off = std::fabs(math::log(m.drawn / m.p / warp.ratio(m.u[warp.number])));
-            ++points, agreeing += off < agrees + 2 * m.error;
+            ++points, agreeing += off < agreement + 2 * m.error;
             different += std::fabs(math::log(m.drawn / m.p)) > differs;
         }
-    return points >= fewest && agreeing >= most_agree * points && different > points / 2;
+    return points >= fewest && agreeing >= share_in_agreement * points && different > points / 2;
 }
 
 }  // namespace

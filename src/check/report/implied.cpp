@@ -1,5 +1,6 @@
 // The cells are nodes of the tree, cut while their halves have enough draws. A bin of a map takes its share of each
 // leaf, since both are rectangles of the same chart. Counts have binomial standard errors.
+#include "check/constants.h"
 #include "check/report/verdicts.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double draws_of_cell = 100;  // a relative standard error of a tenth
 constexpr std::size_t most_cells = 512;
 constexpr double degrees_per_ring = 5;
 

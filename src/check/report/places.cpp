@@ -12,11 +12,9 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double interval = 1.96;        // standard errors: 95 %
 constexpr double clear_errors = 6;       // of several thousand nodes none differs by as much by chance
 constexpr double part_of_largest = 0.7;  // a smaller node is named if it has this part of the largest difference
 constexpr double same_spread = 0.05;     // nats: below this difference two distributions are equally concentrated
-constexpr double draws_of_cell = 100;    // for the entropy
 constexpr double largest_error = 0.05;   // relative, of the integral of p
 constexpr double small_region = 0.3;     // rad
 
@@ -125,7 +123,7 @@ std::string region_text(const ChartRect& r) {
 
 std::string sentence_of(const ShareDifference& d) {
     const auto share = [](double x, double error) {
-        const double half = interval * error;
+        const double half = half_width_95 * error;
         if (x - half < 0) return fmt::format("at most {:.2g} %", 100 * (x + half));
         if (x + half > 1) return fmt::format("at least {:.4g} %", 100 * (x - half));
         return percent_with_error(x, half);

@@ -12,8 +12,7 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double interval = 1.96;  // standard errors: 95 %
-constexpr double few_nodes = 16;   // fewer are not many places
+constexpr double few_nodes = 16;  // fewer are not many places
 
 std::string u_text(const PrimarySample& u, int count) {
     std::string out = "(";
@@ -47,7 +46,7 @@ std::string empty_sentence(const DrawChecks& c, double mass) {
 }
 
 std::string mass_sentence(const CheckAt& c, const Answer& a) {
-    const double drawn = a.expected + a.difference, half = interval * a.sd;
+    const double drawn = a.expected + a.difference, half = half_width_95 * a.sd;
     if (!(drawn > 0)) return empty_sentence(c.observations.checks, a.expected);
     if (!(a.expected > 0))
         return fmt::format(
@@ -84,7 +83,8 @@ std::string node_sentence(const CheckAt& c, int node) {
     const std::string where = region_text(c.plan->tree.nodes()[static_cast<std::size_t>(half)].rect);
     if (!(claimed > 0)) return fmt::format("Draws fall where p expects none: {}.", where);
     const double error = std::sqrt(std::max(drawn, 1 / n) / n) / claimed;
-    return fmt::format("Draws are {} times what p expects {}.", with_error(drawn / claimed, interval * error), where);
+    return fmt::format(
+        "Draws are {} times what p expects {}.", with_error(drawn / claimed, half_width_95 * error), where);
 }
 
 std::string band_sentence(int member, const Answer& a) {
@@ -92,7 +92,7 @@ std::string band_sentence(int member, const Answer& a) {
     constexpr double degrees = 360 / two_pi;
     const bool of_phi = r.t0 == 0 && r.t1 == 2;
     return fmt::format("{} {} draws than p expects at {} from {:.4g} to {:.4g} degrees.",
-        percent_with_error(std::fabs(a.difference) / a.expected, interval * a.sd / a.expected),
+        percent_with_error(std::fabs(a.difference) / a.expected, half_width_95 * a.sd / a.expected),
         a.difference > 0 ? "more" : "fewer", of_phi ? "azimuths" : "polar angles",
         degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
 }
@@ -106,7 +106,7 @@ std::string channel_of(const Answer& a, bool of_three) {
 }
 
 std::string light_sentence(const Answer& a, Family family, bool of_three) {
-    const double half = interval * a.sd;
+    const double half = half_width_95 * a.sd;
     if (family == Family::support)
         return fmt::format("p is 0 over directions that carry {} of f L cos.",
             percent_with_error(a.difference / a.expected, half / a.expected));
@@ -122,12 +122,12 @@ std::string bridge_sentence(const Answer& a) {
     if (!(a.expected > 0)) return "Draws fall only where p is 0.";
     const double ratio = 1 + a.difference / a.expected;
     return fmt::format("Draws are {} times what p expects, weighted by h = q / (p + q).",
-        with_error(std::max(ratio, 0.0), interval * a.sd / a.expected));
+        with_error(std::max(ratio, 0.0), half_width_95 * a.sd / a.expected));
 }
 
 /// The sentence of a whole sum.
 std::string sum_sentence(const Finding& f, const Answer& a) {
-    const double half = interval * a.sd;
+    const double half = half_width_95 * a.sd;
     switch (f.first.family) {
         case Family::slope:
         case Family::slope_sets:
@@ -184,7 +184,7 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
                 c.observations.independent, a.expected);
         case Family::delta_share:
             return fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
-                with_error(a.expected + a.difference, interval * a.sd), a.expected);
+                with_error(a.expected + a.difference, half_width_95 * a.sd), a.expected);
         case Family::delta_scatter:
             return "Draws of delta parts have more than 16 directions: a distribution with a density is not a delta "
                    "part.";
@@ -232,7 +232,7 @@ std::string albedo_sentence(const CheckAt& c) {
     double most = 0, half = 0;
     for (const Answer& a : c.answers)
         if (a.family == Family::albedo && a.difference + a.expected > most)
-            most = a.difference + a.expected, half = interval * a.sd;
+            most = a.difference + a.expected, half = half_width_95 * a.sd;
     return most > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(most, half)) : "";
 }
 
@@ -240,7 +240,7 @@ std::string mean_sentence(const CheckAt& c) {
     for (const Answer& a : c.answers)
         if (a.family == Family::mean && a.expected > 0)
             return fmt::format("Weights average to {} times the integral of f L cos.",
-                with_error(1 + a.difference / a.expected, interval * a.sd / a.expected));
+                with_error(1 + a.difference / a.expected, half_width_95 * a.sd / a.expected));
     return "The weights average to the integral of f L cos.";
 }
 
@@ -252,7 +252,7 @@ std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
     if (verdict == "support")
         return fmt::format("f L cos is 0 wherever p is 0, at {:.0f} points.", c.integrals.light.points);
     if (verdict == "normalised")
-        return fmt::format("p integrates to {}.", with_error(whole.value, interval * std::sqrt(whole.variance)));
+        return fmt::format("p integrates to {}.", with_error(whole.value, half_width_95 * std::sqrt(whole.variance)));
     if (verdict == "physics") return albedo_sentence(c);
     if (verdict == "mean") return mean_sentence(c);
     if (const auto [p, families] = least_p(c, verdict); families > 0 && verdict == "density")
