@@ -131,6 +131,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         f=None if s.f is None else _arrays.asks_f(s.f, s.title(), count),
         name=s.title(),
         numbers=s.u,
+        u_bits=s.u_bits,
         channels=count,
         wo=s.wo,
         delta=delta if s.delta is None else s.delta,

@@ -68,6 +68,7 @@ class Sampler:
     f: Callable[..., Any] | None = None  #: f(wo[n,3], wi[n,3]) -> [n] or [n,3]
     name: str = ""
     u: int = 2  #: random numbers per sample, 1 to 8
+    u_bits: int = 24  #: their resolution in a check: 24 bits, as in a run, or 53
     domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 below the surface, for any result of the callables there
     wo: Asked = "upper"  #: the w_o that it supports; "none": sample(u) and pdf(wi), as for an environment light
     channels: int | None = None  #: 1 or 3; None: the number of f and the weights
@@ -101,7 +102,7 @@ class Sampler:
         if not isinstance(self.name, str):
             raise TypeError(f"name is {type(self.name).__name__}: expected a text")
         object.__setattr__(self, "u", whole("u", self.u, 1, 8, "a sample takes 1 to 8 random numbers"))
-        for what, words in (("channels", (None, 1, 3)), ("domain", _DOMAINS), ("wo", _SIDES)):
+        for what, words in (("channels", (None, 1, 3)), ("domain", _DOMAINS), ("wo", _SIDES), ("u_bits", (24, 53))):
             if getattr(self, what) not in words:
                 expected = " or ".join(repr(w) for w in words if w is not None)
                 raise ValueError(f"{what} is {getattr(self, what)!r}: expected {expected}")
@@ -121,6 +122,7 @@ class Known(TypedDict, total=False):
 
     name: str
     u: int
+    u_bits: int
     domain: Domain
     wo: Asked
     channels: int | None

@@ -97,6 +97,7 @@ def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
         "transport": ("importance", s.importance),
         "reciprocal": ("no", not s.reciprocal),
         "random": ("own", s.own_random),
+        "u_bits": ("53", s.u_bits == 53),
     }
     keys.update({key: value for key, (value, there) in given.items() if there})
     if s.eta is not None:

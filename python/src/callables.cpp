@@ -74,7 +74,10 @@ void CallableSampler::sample(int, Vec3d wo, std::span<const PrimarySample> u, st
             }
             if (delta.is_valid() && delta(i) > 0) d.delta = delta(i), d.pdf = 0;
             if (!c_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
-            if (c_.upper_only && d.wi.z <= 0) d.pdf = 0;
+            if (c_.upper_only && d.wi.z <= 0) {
+                d.pdf = 0;
+                if (d.delta == 0) d.weight.reset();  // any result of the callables is ignored there
+            }
         }
     });
     draws_ += u.size();

@@ -136,7 +136,7 @@ public:
         key.purpose = Purpose::scrambles, key.technique = static_cast<std::uint8_t>(source_.technique);
         for (int set = 0; set < replicate_sets; ++set) {
             key.part = static_cast<std::uint16_t>(set);
-            const ScrambledSobol points(key, source_.numbers(), source_.single());
+            const ScrambledSobol points(key, source_.numbers(), source_.resolution());
             for (std::uint32_t from = first; from < last; from += batch_size) {
                 u_.resize(std::min(batch_size, last - from)), draws_.assign(u_.size(), {});
                 for (std::uint32_t i = 0; i < u_.size(); ++i) u_[i] = points.at(from + i);

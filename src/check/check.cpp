@@ -137,7 +137,7 @@ std::vector<CheckCase> with_remaining_limits(std::span<const CheckCase> check_ca
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     const auto w_o =
         static_cast<std::size_t>(std::ranges::count_if(out, [](const CheckCase& t) { return !t.baseline; }));
-    const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
+    const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all) + settings.further_in_all;
     for (CheckCase& t : out)
         if (t.adapter->limited())
             t.adapter = std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_extra));
@@ -260,6 +260,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
     check::CheckSettings of_engine;
     of_engine.budget = budget_of(settings, false, checked);
     of_engine.limited = budget_of(settings, true, checked);
+    of_engine.further_in_all = settings.budget ? 0 : static_cast<double>(settings.further_in_all);
     of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_evidence = settings.pictures;
     monitor.begin("verdicts", static_cast<double>(checked));
     CheckResult out;

@@ -27,6 +27,7 @@ struct TestSettings {
     bool pictures = false;                   // store maps and weights for the HTML page
     std::size_t questions = 500000;          // queries to a sampler behind a pipe, plugin or Python at one w_o, at most
     std::size_t questions_in_all = 3600000;  // queries at all w_o of the grid together, at most
+    std::size_t further_in_all = 8000000;    // evaluations by which w_o that are not decided go on, in all
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees; empty: the grid
     bool accept_few = false;  // whether a program too slow for every w_o is checked by those that were examined
     std::optional<check::CheckBudget> budget{};  // of each w_o; empty: that of the mode, or of the queries
@@ -40,6 +41,7 @@ struct TestSettings {
         r.full = true;
         r.questions = 6000000;
         r.questions_in_all = 72000000;
+        r.further_in_all = 0;
         return r;
     }
 };

@@ -37,6 +37,14 @@ constexpr double level_at(const Levels& levels, int look, int looks) {
     return levels.first * (look == looks - 1 ? 1 - (looks - 1) * early_look : early_look);
 }
 
+/// Looks after those of the budget, while a size is too large. Each has the level of an early look, which counts as
+/// that share of a further family. Two: the first at the number of draws that the sizes require, the second at the
+/// most.
+inline constexpr int further_looks = 2;
+/// A check does not go on if this many times more draws than there may be would be needed. Chosen: sizes fall faster
+/// than the root of the number of draws where integrals dominate.
+inline constexpr double out_of_reach = 4;
+
 /// A deviation below this share of the quantity is not reported. Chosen: below every fault of the public reports (the
 /// smallest, sin(theta) evaluated at the centre of a texel, is 4e-4), and four times the error for which the integrals
 /// are designed.
@@ -54,6 +62,10 @@ inline constexpr double least_jumps = 0.3;
 /// on a few cells at an edge, and with so few degrees of freedom the critical value would be a large multiple of a
 /// number far below the floor. Cost: a tenth of the floor.
 inline constexpr double least_spread = detection_floor / 20;
+
+/// Share of the answers that are not numbers, above which the verdicts built on these answers are not given: such
+/// answers count as 0, and fewer cannot change a result by more than the detection floor.
+inline constexpr double most_invalid = detection_floor;
 
 // ---- arithmetic of the sampler
 

@@ -66,6 +66,48 @@ grep -q "expected one of u, domain, wo,.* got the unknown key 'weights'; did you
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
 grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"
 
+# Samplers without a pdf(w), with a branch of two intervals, with an f that fails at one pair, and one that never draws.
+cat >small.py <<'PY'
+import math
+import sys
+
+kind = sys.argv[1]
+keys = {
+    "no_pdf": "domain=hemisphere pdf=no weight=yes",
+    "alias": "wo=none u=3",
+    "mirror_nan": "domain=hemisphere",
+    "never": "wo=none",
+}
+print("hello 2", kind, keys[kind], flush=True) if sys.stdin.readline() else sys.exit()
+for line in sys.stdin:
+    what, *given = line.split()
+    wo, rest = [float(v) for v in given[:3]], [float(v) for v in given[3:]]
+    if kind == "never":
+        answer = {"sample": "0 0 1 0", "pdf": "0", "f": "-"}[what]
+    elif what == "sample" and kind == "alias":  # lamp 1 from 1/2 to 3/4 of the third number, else lamp 0
+        z = (1 - rest[0]) * (-1 if 0.5 <= rest[2] < 0.75 else 1)
+        r, phi = math.sqrt(1 - z * z), 2 * math.pi * rest[1]
+        answer = f"{r * math.cos(phi)!r} {r * math.sin(phi)!r} {z!r} {(3 if z > 0 else 1) / (8 * math.pi)!r}"
+    elif what == "sample":
+        r, z, phi = math.sqrt(rest[0]), math.sqrt(1 - rest[0]), 2 * math.pi * rest[1]
+        answer = f"{r * math.cos(phi)!r} {r * math.sin(phi)!r} {z!r} {z / math.pi!r}"
+        answer += " 0.5" if kind == "no_pdf" else ""
+    elif what == "pdf":
+        z = rest[2]
+        answer = "-" if kind == "no_pdf" else repr((3 if z > 0 else 1) / (8 * math.pi) if kind == "alias" else z / math.pi)
+    elif kind == "alias":
+        answer = "-"
+    else:
+        mirrored = -wo[0] * rest[0] - wo[1] * rest[1] + wo[2] * rest[2]
+        answer = "nan" if kind == "mirror_nan" and mirrored > 1 - 1e-9 else repr(0.5 / math.pi)
+    print(answer, flush=True)
+PY
+expect 0 "$CRESCENT" check --quiet --exec "python3 small.py no_pdf" --wo 45
+expect 0 "$CRESCENT" check --quiet --exec "python3 small.py alias"
+expect 1 "$CRESCENT" check --quiet --exec "python3 small.py mirror_nan" --wo 45
+grep -q "valid: wrong.*f(w) is not a number >= 0" printed || die "a NaN of f is not reported: $(cat printed)"
+expect 4 "$CRESCENT" check --quiet --exec "python3 small.py never"
+
 python3 - <<'PY'
 import math, random
 random.seed(5)

@@ -4,6 +4,7 @@
 #include "check/decide/check_at.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "base/progress.h"
@@ -72,7 +73,7 @@ class Check {
 public:
     Check(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
         std::uint32_t seed)
-        : source_(adapter, technique, wo, data.light), budget_(budget), levels_(data.levels) {
+        : source_(adapter, technique, wo, data.light), budget_(budget), levels_(data.levels), reserved_(data.reserved) {
         key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
         out_.wo = wo, out_.technique = technique;
         out_.numbers = source_.numbers(), out_.channels = source_.channels();
@@ -91,6 +92,7 @@ public:
             if (decided_by(look)) break;
             if (look == 0 && regrown()) look = -1;
         }
+        for (int k = 0; k < further_looks && goes_on(); ++k) look_further(k);
         finish();
         out_.evaluations = source_.evaluations();
         out_.seconds = watch.seconds();
@@ -102,10 +104,12 @@ private:
     const CheckBudget& budget_;
     StreamKey key_;
     Levels levels_;
+    double reserved_;
     CheckAt out_;
     Stage first_;
     std::map<Family, Least> least_;  // of first_
     double confirming_ = 0;          // evaluations of second stages
+    std::optional<ResolutionEffect> resolution_;
 
     double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
@@ -124,16 +128,47 @@ private:
         return last.divided_by(parts);
     }
 
-    bool decided_by(int look) {
-        first_.extend(source_, *out_.plan, next(look), budget_.of_f(), key_, look);
+    bool decided_by(int look) { return look_at(next(look), look, level_of(look)); }
+
+    /// The evaluations that stage 1 may have in all.
+    double most_of_first_stage() const {
+        const double further = budget_.most_evaluations + confirming_ - static_cast<double>(source_.evaluations());
+        return std::min(further, evaluations_in_time()) - budget_.cost_of_sizes() + first_.done.cost();
+    }
+    /// Half of the evaluations for which a program has time besides its other w_o. A program of 1 M evaluations per
+    /// second has time for all.
+    double evaluations_in_time() const {
+        const QueryUsage now = source_.adapter.spending();
+        if (now.allowed <= 0) return std::numeric_limits<double>::infinity();
+        const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
+        return std::max((now.allowed - now.seconds) * rate - reserved_, 0.0) / 2;
+    }
+    /// The evaluations of stage 1 that the sizes require, a third more than in proportion to their squares.
+    double needed_of_first_stage() const {
+        return 4.0 / 3 * first_.done.cost() * sqr(worst_ratio(out_.sizes) / out_.most_ratio());
+    }
+    bool goes_on() const {
+        if (!out_.inconclusive || out_.wrong() || source_.recorded()) return false;
+        const double most = most_of_first_stage();
+        return most > 1.5 * first_.done.cost() && needed_of_first_stage() < out_of_reach * most;
+    }
+    void look_further(int k) {
+        const double most = most_of_first_stage();
+        const double needed = std::max(needed_of_first_stage(), 1.5 * first_.done.cost());
+        const Look to = look_of(k + 1 < further_looks ? std::min(needed, most) : most);
+        look_at(to, budget_.looks + k, levels_.first * early_look);
+    }
+
+    bool look_at(const Look& to, int look, double level) {
+        first_.extend(source_, *out_.plan, to, budget_.of_f(), key_, look);
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
         note_answers(e);
-        const std::vector<Least> suspects = suspects_of(e, level_of(look));
+        const std::vector<Least> suspects = suspects_of(e, level);
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
         if (!budget_.stop_when_conclusive && look < budget_.looks - 1) return false;
-        out_.sizes = sizes(e, level_of(look));
+        out_.sizes = sizes(e, level);
         out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         return budget_.stop_when_conclusive && !out_.inconclusive;
     }
@@ -189,21 +224,30 @@ private:
     void confirm(const std::vector<Least>& suspects, int look) {
         const Look to = look < budget_.looks - 1 ? first_.done.times(2) : first_.done;
         const double before = static_cast<double>(source_.evaluations());
-        const bool of_f = std::ranges::any_of(suspects, [](const Least& b) { return is_of_f(b.answer.family); });
         Stage second;
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
         second.integrals.light.lost_in = first_.integrals.light.lost_in;
-        second.extend(source_, *out_.plan, to, of_f ? budget_.of_f() : 0, key, 0);
+        second.extend(source_, *out_.plan, to, budget_.of_f(), key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
             const Answer again = is_deterministic(b.answer.family) ? b.answer : retest(e, b.answer);
-            if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
+            if (again.p < levels_.second && !is_of_resolution(again, second.observations.independent))
+                out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
         confirming_ += static_cast<double>(source_.evaluations()) - before;
         if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) use_second_stage(std::move(second));
+    }
+
+    /// Whether the resolution of the random numbers may cause this deviation.
+    bool is_of_resolution(const Answer& a, double draws) {
+        if (info(a.family).verdict != "density" || a.family == Family::delta_share) return false;
+        if (!resolution_) resolution_ = resolution_effect(source_, *out_.plan, key_);
+        if (!explains(*resolution_, a, draws)) return false;
+        out_.moved_by_resolution = resolution_->share;
+        return true;
     }
 
     void note_answers(const Evidence& e) { least_ = least_of(e); }
@@ -226,19 +270,62 @@ private:
         if (fault) out_.small.push_back(*fault);
     }
 
+    /// Whether no test had anything to test: no draws, and no density.
+    bool is_nothing_drawn() const {
+        const DrawChecks& c = first_.observations.checks;
+        const bool no_density = !source_.has_density() || first_.integrals.sums[mass].value == 0;
+        return c.tested > 0 && c.nothing == c.tested && no_density && source_.invalid().pdf == 0;
+    }
+
+    /// Removes what was found from answers that are not numbers, apart from `valid`.
+    void withhold_verdicts() {
+        const auto withheld = [&](Family f) { return out_.is_withheld(info(f).verdict); };
+        std::erase_if(out_.findings, [&](const Finding& f) { return withheld(f.first.family); });
+        std::erase_if(out_.small, [&](const SmallFault& f) { return withheld(f.family); });
+        std::erase_if(out_.answers, [&](const Answer& a) { return withheld(a.family); });
+    }
+
     void finish() {
         test_delta_directions();
+        out_.invalid = source_.invalid();
+        out_.nothing_drawn = is_nothing_drawn();
         for (const auto& [family, least] : least_) {
             out_.answers.push_back(least.answer);
             out_.answers.back().p = least.p();
         }
-        if (out_.wrong()) out_.sizes = {}, out_.inconclusive = false;
+        if (out_.wrong()) {
+            out_.sizes = {}, out_.inconclusive = false;
+            const Estimate& p = first_.integrals.sums[mass];
+            if (source_.has_density() && p.value > 0) out_.sizes.integral = half_interval(p) / p.value;
+        }
         out_.integrals = std::move(first_.integrals);
         out_.observations = std::move(first_.observations);
+        withhold_verdicts();
     }
 };
 
+/// The answers on which a verdict is built.
+struct BuiltOn {
+    std::string_view verdict;
+    bool pdf, f, draws, weights;
+};
+constexpr BuiltOn built_on[] = {{"support", true, true, false, false}, {"normalised", true, false, true, false},
+    {"density", true, false, true, false}, {"identity", true, true, true, true}, {"physics", false, true, false, false},
+    {"tail", true, true, true, true}, {"mean", true, true, true, true}};
+
 }  // namespace
+
+bool CheckAt::is_withheld(std::string_view verdict) const {
+    const auto many = [](std::uint64_t invalid, std::uint64_t of) {
+        return static_cast<double>(invalid) > most_invalid * static_cast<double>(of);
+    };
+    const DrawChecks& c = observations.checks;
+    for (const BuiltOn& b : built_on)
+        if (b.verdict == verdict)
+            return (b.pdf && many(invalid.pdf, invalid.of_pdf)) || (b.f && many(invalid.f, invalid.of_f)) ||
+                (b.draws && many(c.unusable, c.tested)) || (b.weights && many(c.bad_weights, c.directions));
+    return false;
+}
 
 double CheckAt::most_ratio() const { return scatter.pdf() ? inconclusive_of_estimates : inconclusive_at; }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "check/constants.h"
@@ -23,6 +24,7 @@ namespace crescent::check {
 
 /// Empty: this kind of fault changes nothing (a rotation of a uniform density), or was not tested.
 struct Sizes {
+    std::optional<double> integral;   // relative: half the 95 % interval of the integral of p
     std::optional<double> constant;   // relative: p is (1 + e) times the density of the draws
     std::optional<double> leak;       // share of the draws that is uniform and missing in p
     std::optional<double> cap;        // mass of a cap that is never drawn
@@ -40,11 +42,16 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
 /// of a leak, that change is used.
 double worst_ratio(const Sizes& sizes);
 
+/// Half the 95 % interval of an integral: Student's t with the degrees of freedom of its variance. Infinite if these
+/// are so few that the variance is not known at all.
+double half_interval(const Estimate& integral);
+
 /// The inputs of a check at one w_o besides the sampler.
 struct CaseData {
     CaseLighting light{};
     std::uint16_t place = 0;  // index of the case in its call: selects its random streams
     Levels levels{};
+    double reserved = 0;  // evaluations of a program with a time limit that other w_o need
 };
 
 /// A test that failed at both stages, or at one if it needs no second stage (a NaN is not a matter of chance).
@@ -63,7 +70,10 @@ struct CheckAt {
     std::vector<Answer> answers;    // by family, at the last look: the least p times the number of members
     Sizes sizes;
     bool inconclusive = false;
-    EvaluationNoise scatter;  // of pdf(w) and f(w), if they are random estimates
+    InvalidAnswers invalid;          // of pdf(w) and f(w)
+    double moved_by_resolution = 0;  // share of the draws, if their numbers are too coarse for a test of the density
+    bool nothing_drawn = false;      // no draw is a direction or a delta part, and p is 0 at every point
+    EvaluationNoise scatter;         // of pdf(w) and f(w), if they are random estimates
     int looks = 0;
     std::uint64_t evaluations = 0;
     double seconds = 0;
@@ -73,6 +83,8 @@ struct CheckAt {
     /// The ratio of a size to its target above which a verdict is inconclusive.
     double most_ratio() const;
     bool wrong() const { return !findings.empty() || !small.empty(); }
+    /// Whether the verdict is built on answers of which too many are not numbers, so that it is not given.
+    bool is_withheld(std::string_view verdict) const;
 };
 
 CheckAt check_sampler_at(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data,

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "check/constants.h"
+#include "math/functions.h"
+#include "tests/support/function_sampler.h"
 
 namespace crescent::check {
 namespace check_at_test {
@@ -169,6 +171,97 @@ TEST(CheckAtOneWo, FindsNaNAtACornerOfU) {
         }
     };
     EXPECT_TRUE(has(check_sampler_at(AtZero{}, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1), "valid"));
+}
+
+/// A sampler whose draws have no weight: the mean of f cos / pdf is that of a render.
+TEST(CheckAtOneWo, MeasuresTheMeanOfWeightsWhateverTheDensitySays) {
+    const auto mean = [](double factor) {
+        FunctionSampler s;
+        s.p = [factor](Vec3d o, Vec3d w) { return factor * cosine_pdf(o, w); };
+        s.f_value = lambert(1);
+        return check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    };
+    const CheckAt dark = mean(3.1415926535), right = mean(1);
+    EXPECT_TRUE(has(dark, "normalised"));
+    const auto found = std::ranges::find(dark.findings, Family::mean, [](const Finding& f) { return f.first.family; });
+    ASSERT_NE(found, dark.findings.end());
+    EXPECT_NEAR(1 + found->second.difference / found->second.expected, 1 / 3.1415926535, 0.01);
+    EXPECT_FALSE(right.wrong());
+    EXPECT_TRUE(std::ranges::any_of(right.answers, [](const Answer& a) { return a.family == Family::mean; }));
+}
+
+TEST(CheckAtOneWo, NeverRequestsADensityThatTheSamplerDoesNotHave) {
+    FunctionSampler s;
+    s.of.has_pdf = false;
+    s.p = [](Vec3d, Vec3d) { return 1.0; };  // of a draw
+    s.f_value = lambert(0.5);
+    s.weights = [](Vec3d, Vec3d) { return Vec3d{0.5, 0.5, 0.5}; };
+    struct WithoutPdf : FunctionSampler {
+        using FunctionSampler::FunctionSampler;
+        void pdf(int, std::span<const Pair>, std::span<double>) const override { ADD_FAILURE() << "pdf is requested"; }
+    } quiet;
+    static_cast<FunctionSampler&>(quiet) = s;
+    const CheckAt c = check_sampler_at(quiet, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    EXPECT_FALSE(c.wrong());
+}
+
+TEST(CheckAtOneWo, GivesNoVerdictOnAnswersThatAreNotNumbers) {
+    FunctionSampler s;
+    s.f_value = [](Vec3d, Vec3d w) { return w.x > 0.8 ? std::nan("") : lambert(0.5)({}, w); };
+    const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    EXPECT_TRUE(has(c, "valid"));
+    EXPECT_EQ(c.invalid.first, InvalidAnswers::Function::f);
+    EXPECT_GT(c.invalid.wi.x, 0.8);
+    for (const char* verdict : {"support", "identity", "physics", "mean", "tail"}) EXPECT_TRUE(c.is_withheld(verdict));
+    for (const char* verdict : {"valid", "normalised", "density"}) EXPECT_FALSE(c.is_withheld(verdict));
+    FunctionSampler none;
+    none.p = [](Vec3d, Vec3d) { return std::nan(""); };
+    const CheckAt d = check_sampler_at(none, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    EXPECT_TRUE(has(d, "valid"));
+    for (const char* verdict : {"normalised", "density", "identity"}) EXPECT_TRUE(d.is_withheld(verdict));
+    EXPECT_FALSE(has(d, "identity"));
+}
+
+TEST(CheckAtOneWo, HasNoFiniteIntervalForAnInfiniteIntegral) {
+    const auto integral = [](double power) {
+        FunctionSampler s;
+        s.of.wo = Traits::WoDomain::none;
+        s.draw = [](Vec3d, const PrimarySample& u) { return from_chart({2 * u.x, two_pi * u.y}); };
+        s.p = [power](Vec3d, Vec3d w) {
+            return 1 / (2 * two_pi) + 1e-3 * math::exp(-power * math::log(std::max(std::fabs(w.z), 1e-15)));
+        };
+        return check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    };
+    for (double power : {1.0, 2.0}) {
+        const CheckAt c = integral(power);
+        EXPECT_TRUE(has(c, "normalised") || *c.sizes.integral > inconclusive_at * target_constant) << power;
+    }
+    EXPECT_LT(*integral(-1).sizes.integral, inconclusive_at * target_constant);
+}
+
+TEST(CheckAtOneWo, DrawsOfALightBelowTheHorizonNeedADensityThere) {
+    FunctionSampler s;
+    s.draw = [](Vec3d o, const PrimarySample& u) { return -1.0 * cosine_draw(o, u); };
+    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 0.3; };
+    s.of.wo = Traits::WoDomain::none;
+    EXPECT_TRUE(has(check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1), "identity"));
+}
+
+/// A budget that leaves open faults more than ten times their targets.
+TEST(CheckAtOneWo, GoesOnWhileASizeIsTooLarge) {
+    FunctionSampler s;
+    s.of.wo = Traits::WoDomain::none;
+    s.draw = [](Vec3d, const PrimarySample& u) { return from_chart({2 * u.x, two_pi * u.y}); };
+    s.p = [](Vec3d, Vec3d) { return 1 / (2 * two_pi); };
+    CheckBudget small = CheckBudget::limited(3e4), further = small;
+    further.most_evaluations = 1e6;
+    const CheckAt open = check_sampler_at(s, 0, {0, 0, 1}, {}, small, 1),
+                  decided = check_sampler_at(s, 0, {0, 0, 1}, {}, further, 1);
+    EXPECT_TRUE(open.inconclusive);
+    EXPECT_FALSE(decided.inconclusive);
+    EXPECT_FALSE(decided.wrong());
+    EXPECT_GT(decided.looks, open.looks);
+    EXPECT_LE(decided.evaluations, 1000000u);
 }
 
 }  // namespace check_at_test

@@ -62,8 +62,7 @@ void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSetti
     };
     if (takes_any_wo(check_cases, out)) {
         std::vector<Vec3d> ordinary;
-        for (std::size_t i : out.check_cases)
-            if (ordinary.size() < 3) ordinary.push_back(check_cases[i].wo);
+        for (std::size_t i : out.check_cases) ordinary.push_back(check_cases[i].wo);
         for (int t = 0; t < adapter.techniques(); ++t) add(special_places(adapter, t, ordinary));
         if (const std::optional<SmallFault> fault = reciprocity(adapter, key))
             if (!estimates_f(check_cases[out.check_cases[0]], out, key)) add(fault);
@@ -117,7 +116,9 @@ public:
             o.at.resize(o.check_cases.size()), o.cut.resize(o.check_cases.size()), o.tails.resize(o.check_cases.size());
             for (std::size_t k = 0; k < o.check_cases.size(); ++k) jobs_.push_back({&o, k});
         }
-        const double families = static_cast<double>(Family::families);
+        further_ = settings.further_in_all;
+        const double looks = 1 + (further_ > 0 ? further_looks * early_look : 0);
+        const double families = static_cast<double>(Family::families) * looks;
         levels_ = levels_of(settings.alpha, std::max(settings.cases, static_cast<double>(jobs_.size())) * families);
     }
 
@@ -142,6 +143,8 @@ private:
     std::vector<CheckOutcome> outcomes_;
     std::vector<Job> jobs_;
     Levels levels_;
+    double further_ = 0;         // evaluations that are left for going on
+    std::size_t jobs_left_ = 0;  // of a serial check
 
     std::size_t index_of(const Job& job) const { return job.outcome->check_cases[job.index]; }
     const CheckCase& case_of(const Job& job) const { return check_cases_[index_of(job)]; }
@@ -149,20 +152,36 @@ private:
     void check(const Job& job) {
         monitor_.check();
         const CheckCase& check_case = case_of(job);
-        CheckBudget budget = check_case.adapter->limited() && settings_.limited ? *settings_.limited : settings_.budget;
+        CheckBudget budget = check_case.adapter->limited() ? settings_.budget_of_limited() : settings_.budget;
         if (check_case.theory.wrong)
             budget.stop_when_conclusive = false;  // a known fault is searched with the full budget
+        const double techniques = check_case.adapter->techniques();
+        budget.most_evaluations =
+            std::min(settings_.most_at_one, budget.evaluations + further_for_one(check_case)) / techniques;
+        const double reserved = static_cast<double>(jobs_left_) * budget.evaluations;
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {
             for (int t = 0; t < check_case.adapter->techniques(); ++t)
                 at.push_back(check_sampler_at(*check_case.adapter, t, check_case.wo,
-                    {check_case.light, static_cast<std::uint16_t>(index_of(job)), levels_}, budget, settings_.seed));
+                    {check_case.light, static_cast<std::uint16_t>(index_of(job)), levels_, reserved}, budget,
+                    settings_.seed));
         });
+        if (check_case.adapter->serial())
+            for (const CheckAt& c : at)
+                further_ -= std::max(static_cast<double>(c.evaluations) - budget.evaluations, 0.0);
         if (cut) at.clear();
         job.outcome->tails[job.index] = tail_of(at);
         for (CheckAt& c : at) release_unused(c, check_case.adapter->traits().has_pdf);
         monitor_.advance(1);
+    }
+
+    /// The evaluations by which one w_o may go on: what is left, in the order of a serial check; an equal share if w_o
+    /// are checked in any order, so that the result does not depend on it.
+    double further_for_one(const CheckCase& check_case) const {
+        if (!(settings_.further_in_all > 0) || check_case.theory.wrong) return 0;
+        if (check_case.adapter->serial()) return std::max(further_, 0.0);
+        return settings_.further_in_all / static_cast<double>(jobs_.size());
     }
 
     /// Frees memory that neither the explanation nor the report needs, several megabytes at each w_o. A right w_o keeps
@@ -228,6 +247,7 @@ private:
         check_whole();
         std::uint64_t largest_cost = 0;
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
+            jobs_left_ = jobs_.size() - j - 1;
             std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
             if (cut) {
                 monitor_.advance(1);

@@ -20,10 +20,13 @@ struct CheckSettings {
     CheckBudget budget = CheckBudget::quick();
     /// For samplers whose answers are expensive; empty: `budget`.
     std::optional<CheckBudget> limited{};
+    const CheckBudget& budget_of_limited() const { return limited ? *limited : budget; }
     std::uint32_t seed = 1;
     double alpha = 1e-3;
     /// Samplers times w_o in the whole call; beyond `questions_covered` families the second level is divided.
     double cases = 1;
+    /// Evaluations in all by which the checks of w_o that are not decided may go on, and the most at one w_o.
+    double further_in_all = 0, most_at_one = 4e6;
     bool keep_evidence = false;  // also of right w_o, with the weights: for pictures
 };
 
@@ -57,7 +60,7 @@ std::vector<CheckOutcome> check_samplers(
 
 /// Directions on axes and planes, and directions one rounding of single precision next to them.
 std::vector<Vec3d> special_directions();
-/// Draws at special w_o, pdf and f at special w_i, for one technique.
+/// Draws at special w_o, pdf and f at special w_i and at the directions of a smooth boundary, for one technique.
 std::optional<SmallFault> special_places(const SamplerAdapter& adapter, int technique, std::span<const Vec3d> ordinary);
 /// f(a, b) against f(b, a), with eta^2 across the surface.
 std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key);

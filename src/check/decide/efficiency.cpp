@@ -36,7 +36,7 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
         for (std::uint32_t from = 0; from < n; from += batch_size) {
             u.resize(std::min(batch_size, n - from));
             for (std::uint32_t i = 0; i < u.size(); ++i)
-                u[i] = numbers_at(draws, from + i, source.numbers(), source.single());
+                u[i] = numbers_at(draws, from + i, source.numbers(), source.resolution());
             std::vector<Draw> batch(u.size());
             source.draw(u, batch);
             std::vector<std::size_t> at;
@@ -119,7 +119,7 @@ void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, s
     constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
     std::vector<PrimarySample> u(most);
     const StreamKey key{seed, 0, 0, 1, Purpose::light, 4};
-    for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, PrimarySample::most, true);
+    for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, PrimarySample::most, Resolution::single);
     std::vector<std::vector<double>> times(all.size());
     std::vector<Draw> draws(most);
     for (std::size_t turn = 0; turn < turns; ++turn)

@@ -1,8 +1,8 @@
-// Compares p with the derivatives of the sampling map at a few points of u. Near w(u) a sampler with two numbers draws
-// with density at least 1 / |dw/du| (other u may map to the same direction), so p |dw/du| >= 1 if p is the density of
-// the draws. With three numbers, one of which only selects a branch, p |dw/du| is at least the length of the interval
-// of that branch. The test detects parameters that differ between sample and pdf by less than the draws of a quick
-// check can show.
+// Compares p with the derivatives of the sampling map at a few points of u. p at a direction is the sum of 1 / |dw/du|
+// over all u that lead to it, so that each u gives a lower bound: with two numbers p |dw/du| >= 1. With three numbers,
+// one of which only selects a branch, p |dw/du| is at least the measure of the values of that number that select this
+// branch. They may be several intervals, such as those of an alias table. The test detects parameters that differ
+// between sample and pdf by less than the draws of a quick check can show.
 #include <algorithm>
 #include <cmath>
 
@@ -17,14 +17,18 @@ constexpr std::uint32_t points = 64;
 constexpr int coarsest = 6;  // steps from 2^-6 to 2^-21
 constexpr std::size_t steps = 16;
 constexpr double smooth = 1.1;  // largest ratio of pdf values within a difference
-constexpr int bisections = 24;  // for the ends of a branch, to 2^-24
+constexpr int probes = 16;      // values of the choosing number at which a branch is looked for
+constexpr int bisections = 21;  // for the ends of an interval between two probes, to 2^-24
+constexpr double least_branch = 1e-3;
+/// Draws at which the intervals of all suspected points of a round are confirmed.
+constexpr double most_confirming = 20000;
 
 struct Point {
     PrimarySample u;
-    double branch = 1;          // probability of the branch that contains u
-    int first = 0, second = 1;  // the numbers that move w
-    Vec3d w{};
+    Draw draw;
+    int first = 0, second = 1;   // the numbers that move w
     double area = 0, error = 1;  // |dw/du| and its relative error
+    Branch branch{};
 };
 
 bool drawn(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
@@ -39,28 +43,87 @@ std::vector<Draw> draws_at(Source& source, const std::vector<PrimarySample>& u) 
     return out;
 }
 
-/// The length of the interval of number k about u in which the draw does not change, by bisection.
-std::vector<double> branch_lengths(
-    Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at, int k) {
-    std::vector<double> length(u.size());
-    for (double end : {0.0, 1.0}) {
-        std::vector<double> inside(u.size()), outside(u.size(), end);
-        for (std::size_t i = 0; i < u.size(); ++i) inside[i] = u[i][k];
-        std::vector<PrimarySample> v = u;
-        for (int step = 0; step <= bisections; ++step) {
-            for (std::size_t i = 0; i < u.size(); ++i)
-                v[i][k] = std::clamp(step == 0 ? end : (inside[i] + outside[i]) / 2, ulp, 1 - ulp);
-            const std::vector<Draw> d = draws_at(source, v);
-            for (std::size_t i = 0; i < u.size(); ++i) {
-                const bool same = same_direction(d[i], at[i]);
-                if (step == 0 && same) inside[i] = outside[i] = end;
-                else if (step > 0 && inside[i] != outside[i])
-                    (same ? inside[i] : outside[i]) = (inside[i] + outside[i]) / 2;
-            }
-        }
-        for (std::size_t i = 0; i < u.size(); ++i) length[i] += std::fabs(inside[i] - u[i][k]);
+/// A value of the choosing number, and whether it selects the branch of the draw at u.
+struct Probe {
+    double x = 0;
+    bool same = false;
+};
+
+/// One end of an interval: between `inside`, which selects the branch, and `outside`.
+struct IntervalEnd {
+    std::size_t point = 0;
+    double inside = 0, outside = 0;
+};
+
+/// Whether each of these draws has the direction of its point if number k is replaced by x.
+std::vector<bool> selects_branch(
+    Source& source, const std::vector<Point>& all, int k, const std::vector<std::pair<std::size_t, double>>& values) {
+    std::vector<PrimarySample> u;
+    for (const auto& [i, x] : values) {
+        u.push_back(all[i].u);
+        u.back()[k] = std::clamp(x, ulp, 1 - ulp);
     }
-    return length;
+    const std::vector<Draw> d = draws_at(source, u);
+    std::vector<bool> out;
+    for (std::size_t j = 0; j < d.size(); ++j) out.push_back(same_direction(d[j], all[values[j].first].draw));
+    return out;
+}
+
+/// Random values of number k for each point, one in each of `probes` equal parts, with both ends of [0, 1] and u.
+std::vector<std::vector<Probe>> probe_branches(
+    Source& source, const std::vector<Point>& all, int k, const StreamKey& key) {
+    Stream stream(key);
+    std::vector<std::pair<std::size_t, double>> values;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        values.emplace_back(i, 0.0);
+        for (int n = 0; n < probes; ++n) values.emplace_back(i, (n + stream.number()) / probes);
+        values.emplace_back(i, 1.0);
+    }
+    const std::vector<bool> same = selects_branch(source, all, k, values);
+    std::vector<std::vector<Probe>> out(all.size());
+    for (std::size_t j = 0; j < values.size(); ++j) out[values[j].first].push_back({values[j].second, same[j]});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        out[i].push_back({all[i].u[k], true});
+        std::ranges::sort(out[i], {}, &Probe::x);
+    }
+    return out;
+}
+
+/// Adds one interval for each run of probes that select the branch; its ends are located by bisection. An interval
+/// within the gap between two probes is not found, which `confirm` allows for.
+void find_branches(Source& source, std::vector<Point>& all, int k, const StreamKey& key) {
+    const std::vector<std::vector<Probe>> probed = probe_branches(source, all, k, key);
+    std::vector<IntervalEnd> ends;
+    struct Run {
+        std::size_t point;
+        double from, to;                               // probes
+        std::optional<std::size_t> low_end, high_end;  // indices into `ends`
+    };
+    std::vector<Run> runs;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::vector<Probe>& of = probed[i];
+        std::vector<Run> mine;
+        for (std::size_t j = 0; j < of.size(); ++j) {
+            if (!of[j].same) continue;
+            Run run{i, of[j].x, of[j].x, {}, {}};
+            const std::size_t first = j;
+            while (j + 1 < of.size() && of[j + 1].same) ++j;
+            run.to = of[j].x;
+            if (first > 0) run.low_end = ends.size(), ends.push_back({i, run.from, of[first - 1].x});
+            if (j + 1 < of.size()) run.high_end = ends.size(), ends.push_back({i, run.to, of[j + 1].x});
+            mine.push_back(run);
+        }
+        runs.insert(runs.end(), mine.begin(), mine.end());
+    }
+    for (int step = 0; step < bisections; ++step) {
+        std::vector<std::pair<std::size_t, double>> values;
+        for (const IntervalEnd& e : ends) values.emplace_back(e.point, (e.inside + e.outside) / 2);
+        const std::vector<bool> same = selects_branch(source, all, k, values);
+        for (std::size_t j = 0; j < ends.size(); ++j) (same[j] ? ends[j].inside : ends[j].outside) = values[j].second;
+    }
+    for (const Run& run : runs)
+        all[run.point].branch.intervals.emplace_back(
+            run.low_end ? ends[*run.low_end].inside : run.from, run.high_end ? ends[*run.high_end].inside : run.to);
 }
 
 /// The one of three numbers that only selects a branch; none if every number moves w.
@@ -141,20 +204,51 @@ void differentiate(Source& source, std::vector<Point>& all) {
         }
 }
 
+/// Whether random values of the choosing number within the intervals of a branch all select it. If a share g of the
+/// intervals does not, none of 9 / g values shows it with probability 1.2e-4; g is the shortfall of p that it explains.
+bool is_confirmed(Source& source, const MapDensity& x, double shortfall, Stream& stream) {
+    std::vector<Point> one(1);
+    one[0].u = x.u, one[0].draw = x.draw;
+    const double length = x.branch.length();
+    std::vector<std::pair<std::size_t, double>> values(static_cast<std::size_t>(std::ceil(9 / shortfall)));
+    for (auto& [point, value] : values) {
+        double along = length * stream.number();
+        for (const auto& [from, to] : x.branch.intervals) {
+            value = from + std::max(along, 0.0);
+            if ((along -= to - from) < 0) break;
+        }
+    }
+    return std::ranges::all_of(selects_branch(source, one, x.branch.number, values), [](bool same) { return same; });
+}
+
 struct Round {
     int tested = 0, broken = 0;
     double worst = 1;
     Example first{};
 };
 
+/// A point fails if p is below its bound and, where a number chooses a branch, the intervals of that branch are
+/// confirmed, the largest shortfalls first.
 Round test_points(Source& source, const StreamKey& key) {
     Round out;
-    for (const MapDensity& x : map_densities(source, key)) {
+    std::vector<std::pair<double, const MapDensity*>> suspects;  // p over its bound
+    const std::vector<MapDensity> all = map_densities(source, key);
+    for (const MapDensity& x : all) {
         ++out.tested;
         const double ratio = x.p / x.drawn;
-        if (ratio >= 1 - jacobian_tolerance - 4 * x.error) continue;
-        if (out.broken++ == 0) out.first = {x.u, x.draw, x.p, x.drawn};
-        out.worst = std::min(out.worst, ratio);
+        if (ratio < 1 - jacobian_tolerance - 4 * x.error) suspects.emplace_back(ratio, &x);
+    }
+    std::ranges::sort(suspects, {}, &std::pair<double, const MapDensity*>::first);
+    StreamKey confirming = key;
+    confirming.part = static_cast<std::uint16_t>(key.part + 32);
+    Stream stream(confirming);
+    double cost = 0;
+    for (const auto& [ratio, x] : suspects) {
+        if (x->branch.number >= 0) {
+            if ((cost += 9 / (1 - ratio)) > most_confirming) break;
+            if (!is_confirmed(source, *x, 1 - ratio, stream)) continue;
+        }
+        if (out.broken++ == 0) out.first = {x->u, x->draw, x->p, x->drawn}, out.worst = ratio;
     }
     return out;
 }
@@ -167,28 +261,35 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
         source.traits.numbers > 3)
         return out;
     const std::vector<PrimarySample> u = first_numbers(key, points, source.traits);
-    const std::vector<Draw> at = draws_at(source, u);
-    std::vector<double> branch(u.size(), 1.0);
+    const std::vector<Draw> draws = draws_at(source, u);
+    std::optional<int> choosing;
     int first = 0, second = 1;
     if (source.traits.numbers == 3) {
-        const std::optional<int> k = chooser(source, u, at);
-        if (!k) return out;
-        first = *k == 0 ? 1 : 0, second = *k == 2 ? 1 : 2;
-        branch = branch_lengths(source, u, at, *k);
+        choosing = chooser(source, u, draws);
+        if (!choosing) return out;
+        first = *choosing == 0 ? 1 : 0, second = *choosing == 2 ? 1 : 2;
     }
     std::vector<Point> all;
-    std::vector<Draw> of;
-    std::vector<Vec3d> w;
     for (std::size_t i = 0; i < u.size(); ++i)
-        if (drawn(at[i]))
-            all.push_back({u[i], branch[i], first, second, at[i].wi}), w.push_back(at[i].wi), of.push_back(at[i]);
+        if (drawn(draws[i])) all.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
     differentiate(source, all);
+    std::erase_if(all, [](const Point& x) { return !(x.error < jacobian_error); });
+    if (choosing) {
+        StreamKey of_probes = key;
+        of_probes.part = static_cast<std::uint16_t>(key.part + 16);
+        find_branches(source, all, *choosing, of_probes);
+    }
+    std::vector<Vec3d> w;
+    for (const Point& x : all) w.push_back(x.draw.wi);
     std::vector<double> p(w.size());
     source.density(w, p);
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Point& x = all[i];
-        if (!(x.error < jacobian_error) || !(p[i] > 0) || !(x.branch > 1e-3)) continue;
-        out.push_back({x.u, of[i], p[i], x.branch / x.area, x.error});
+        const double length = choosing ? x.branch.length() : 1;
+        if (!(p[i] > 0) || !(length > least_branch)) continue;
+        out.push_back(
+            {.u = x.u, .draw = x.draw, .p = p[i], .drawn = length / x.area, .error = x.error, .branch = x.branch});
+        if (choosing) out.back().branch.number = *choosing;
     }
     return out;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "check/constants.h"
 #include "check/verdicts/statistics.h"
@@ -544,6 +545,8 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     const std::vector<SumTest> whole = whole_sums(e, level);
     const std::vector<NodeSums> sums = node_sums(e);
     const std::vector<NodeTest> nodes = node_tests(e, sums, level);
+    const Estimate& whole_p = e.integrals.sums[mass];
+    if (whole_p.value > 0) out.integral = half_interval(whole_p) / whole_p.value;
     for (const SumTest& t : whole)
         if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
     out.leak = leak_of(e, whole, sums, nodes);
@@ -555,11 +558,18 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     return out;
 }
 
+double half_interval(const Estimate& integral) {
+    const double nu = freedom(integral.variance, integral.doubt);
+    if (!(nu >= 1) || !std::isfinite(integral.variance)) return std::numeric_limits<double>::infinity();
+    return statistics::student_two_sided_quantile(std::min(nu, 1e6), 0.05) * std::sqrt(integral.variance);
+}
+
 double worst_ratio(const Sizes& s) {
     double worst = 0;
     const auto look = [&](const std::optional<double>& size, double target, double changed) {
         if (size) worst = std::max(worst, std::min(*size / target, *size * changed / target_leak));
     };
+    look(s.integral, target_constant, 1e300);
     look(s.constant, target_constant, 1e300), look(s.cap, target_cap, 1e300), look(s.leak, target_leak, s.by_leak);
     look(s.rotation, target_rotation, s.by_rotation), look(s.parameter, target_parameter, s.by_parameter);
     return worst;

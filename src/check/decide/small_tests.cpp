@@ -16,12 +16,16 @@ std::optional<const char*> fault_of(const Draw& d) {
     if (d.pdf < 0) return "pdf is negative";
     if (std::isinf(d.pdf)) return "pdf is infinite";
     if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
-    if (d.pdf == 0 && d.delta == 0) return {};
+    const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
+    if (d.pdf == 0 && d.delta == 0) {
+        if (!finite_weight) return "pdf is 0 and the weight is not finite";
+        return {};
+    }
     if (!(d.delta >= 0 && d.delta <= 1)) return "a delta part is chosen with a probability outside (0, 1]";
     if (d.delta > 0 && !d.weight) return "a draw of a delta part comes without its weight";
     if (!(std::fabs(std::sqrt(dot(d.wi, d.wi)) - 1) <= unit_length)) return "the direction is not of length 1";
     if (!d.weight) return {};
-    if (!std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z)) return "the weight is not finite";
+    if (!finite_weight) return "the weight is not finite";
     if (std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight)
         return "the weight is negative";
     return {};

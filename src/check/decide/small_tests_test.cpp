@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <vector>
 
 #include "check/constants.h"
 #include "tests/support/function_sampler.h"
@@ -47,6 +48,8 @@ TEST(UsableDraws, HaveNumbersThatMeanSomething) {
     EXPECT_FALSE(is_usable(0, n, 0.5));  // a delta part without its weight
     EXPECT_FALSE(is_usable(1, n, 0, -1));
     EXPECT_FALSE(is_usable(1, n, 0, nan));
+    EXPECT_FALSE(is_usable(0, n, 0, nan));  // no sample, and yet a weight that spoils a mean
+    EXPECT_TRUE(is_usable(0, n, 0, 3));
 }
 
 TEST(CornersOfU, AreTestedForEveryPairOfNumbers) {
@@ -211,6 +214,94 @@ TEST(MapOfU, ADensityBelowThatOfTheMapIsFound) {
     EXPECT_NEAR(fault->size, -0.1, 2e-3);
     EXPECT_EQ(fault->times, fault->of);
     EXPECT_FALSE(tested(high, map));  // other u may map to the same direction
+}
+
+/// An alias table over lamps of these powers, each an equal band of z; the third number chooses an entry and then the
+/// entry itself or its alias.
+FunctionSampler alias_lamps(std::vector<double> powers) {
+    const std::size_t n = powers.size();
+    double sum = 0;
+    for (double v : powers) sum += v;
+    std::vector<double> rest, share(n, 1);
+    std::vector<std::size_t> alias(n), small, large;
+    for (std::size_t i = 0; i < n; ++i) {
+        rest.push_back(powers[i] / sum * static_cast<double>(n)), alias[i] = i;
+        (rest[i] < 1 ? small : large).push_back(i);
+    }
+    while (!small.empty() && !large.empty()) {
+        const std::size_t low = small.back(), high = large.back();
+        small.pop_back();
+        share[low] = rest[low], alias[low] = high, rest[high] -= 1 - rest[low];
+        if (rest[high] < 1) large.pop_back(), small.push_back(high);
+    }
+    FunctionSampler s;
+    s.of.numbers = 3, s.of.wo = Traits::WoDomain::none;
+    s.draw = [=](Vec3d, const PrimarySample& u) {
+        const double at = u[2] * static_cast<double>(n);
+        const auto entry = std::min(static_cast<std::size_t>(at), n - 1);
+        const std::size_t lamp = at - static_cast<double>(entry) < share[entry] ? entry : alias[entry];
+        return from_chart({2 * (static_cast<double>(lamp) + u[0]) / static_cast<double>(n), two_pi * u[1]});
+    };
+    s.p = [=](Vec3d, Vec3d w) {
+        const double band = (1 - w.z) / 2 * static_cast<double>(n);
+        const auto lamp = std::min(static_cast<std::size_t>(std::max(band, 0.0)), n - 1);
+        return powers[lamp] / sum * static_cast<double>(n) / (2 * two_pi);
+    };
+    return s;
+}
+
+TEST(MapOfU, ABranchMayBeSeveralIntervalsOfTheChoosingNumber) {
+    const FunctionSampler two = alias_lamps({3, 1});  // [0, 1/2) and [3/4, 1), and [1/2, 3/4)
+    const std::vector<MapDensity> all = tested(two, [](Source& source) { return map_densities(source, key); });
+    EXPECT_GT(all.size(), 20u);
+    for (const MapDensity& m : all) EXPECT_NEAR(m.drawn / m.p, 1, 1e-3);
+    EXPECT_FALSE(tested(two, map));
+    FunctionSampler low = two;  // and a p that is too low is still found
+    low.p = [p = two.p](Vec3d o, Vec3d w) { return 0.98 * p(o, w); };
+    const auto fault = tested(low, map);
+    ASSERT_TRUE(fault);
+    EXPECT_NEAR(fault->size, -0.02, 2e-3);
+}
+
+TEST(MapOfU, AliasTablesOfAnySizeAreRight) {
+    for (std::size_t n = 2; n <= 512; n = n < 8 ? n + 1 : 2 * n) {
+        std::vector<double> many, alternating;
+        for (std::size_t i = 0; i < n; ++i) {
+            many.push_back(0.05 + std::fmod(0.618 * static_cast<double>(i * i + 1), 1.0));
+            alternating.push_back(i % 2 == 0 ? 3 : 1);
+        }
+        EXPECT_FALSE(tested(alias_lamps(many), map)) << n;
+        EXPECT_FALSE(tested(alias_lamps(alternating), map)) << n;
+    }
+}
+
+/// Two lamps that alternate over many intervals, most of which no probe of a branch meets.
+TEST(MapOfU, ShortIntervalsOfOtherBranchesAreAllowedFor) {
+    FunctionSampler s = alias_lamps({1, 1});
+    s.draw = [](Vec3d, const PrimarySample& u) {
+        const bool below = std::fmod(u[2] * 400, 1.0) < 0.05;
+        return from_chart({below ? 1 + u[0] : u[0], two_pi * u[1]});
+    };
+    s.p = [](Vec3d, Vec3d w) { return (w.z < 0 ? 0.05 : 0.95) / two_pi; };
+    EXPECT_FALSE(tested(s, map));
+}
+
+TEST(ResolutionOfNumbers, IsTheShareOfTheDrawsOnAStep) {
+    FunctionSampler s;
+    const auto effect = [](const FunctionSampler& sampler) {
+        Source source(sampler, 0, {0, 0, 1}, uniform_light);
+        const Plan plan = make_plan(source, CheckBudget::limited(1e5), {});
+        return resolution_effect(source, plan, key);
+    };
+    EXPECT_EQ(effect(s).share, 0);
+    s.draw = [](Vec3d o, const PrimarySample& u) {  // 2^16 pieces of the first number, in another order
+        const double at = u.x * 65536, piece = std::floor(at);
+        return cosine_draw(o, PrimarySample((std::fmod(piece * 40503, 65536) + at - piece) / 65536, u.y));
+    };
+    EXPECT_NEAR(effect(s).share, 1 / 256.0, 4 / std::sqrt(4096 * 256.0));
+    EXPECT_GT(effect(s).sums[bridge], 0);
+    s.of.u_bits = 53;
+    EXPECT_EQ(effect(s).share, 0);
 }
 
 }  // namespace small_tests_test

@@ -12,6 +12,8 @@ namespace crescent::check {
 
 namespace {
 
+constexpr std::size_t most_ordinary = 3;  // w_o at which every special w_i is tested
+
 bool answers_for(const Traits& traits, Vec3d wo) { return traits.wo != Traits::WoDomain::upper || wo.z > 0; }
 
 /// Some u at each special w_o: the centre, and others spread over the cube.
@@ -50,8 +52,28 @@ std::vector<Vec3d> special_directions() {
     for (double a : {-1.0, 1.0})
         for (double tilt : {1e-5, 5e-4}) out.insert(out.end(), {{tilt, 0, a}, {0, -tilt, a}, {c * tilt, s * tilt, a}});
     for (Vec3d& w : out) w = w * (1 / std::sqrt(dot(w, w)));
+    // Lengths one step of single precision off 1, along axes and oblique: sqrt(1 - z^2) fails there.
+    for (Vec3d w : {Vec3d{0, 0, 1}, Vec3d{0, 0, -1}, Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0.48, 0.36, 0.8},
+             Vec3d{0.48, -0.36, -0.8}})
+        for (double length : {1 + 2 * ulp, 1 - ulp}) out.push_back(w * length);
     return out;
 }
+
+namespace {
+
+/// Directions into which a smooth boundary sends w_o: the mirror direction, straight on, and those of the index.
+std::vector<Vec3d> smooth_directions(const Traits& traits, Vec3d wo) {
+    std::vector<Vec3d> out = {{-wo.x, -wo.y, wo.z}};
+    if (traits.delta) out.push_back(-wo);
+    for (int c = 0; traits.eta && c < 3; ++c) {
+        const double e = wo.z > 0 ? channel_of(*traits.eta, c) : 1 / channel_of(*traits.eta, c);
+        const double rest = 1 - (sqr(wo.x) + sqr(wo.y)) / sqr(e);
+        if (rest > 0) out.push_back({-wo.x / e, -wo.y / e, wo.z > 0 ? -std::sqrt(rest) : std::sqrt(rest)});
+    }
+    return out;
+}
+
+}  // namespace
 
 std::optional<SmallFault> special_places(
     const SamplerAdapter& adapter, int technique, std::span<const Vec3d> ordinary) {
@@ -72,8 +94,14 @@ std::optional<SmallFault> special_places(
             else if (draws[i].pdf > 0) pairs.push_back({wo, draws[i].wi});
         }
     }
-    for (Vec3d wo : ordinary)
-        for (Vec3d wi : special) pairs.push_back({wo, wi});
+    for (std::size_t i = 0; i < std::min(most_ordinary, ordinary.size()); ++i)
+        for (Vec3d wi : special) pairs.push_back({ordinary[i], wi});
+    if (traits.wo != Traits::WoDomain::none) {
+        for (Vec3d wo : special)
+            if (answers_for(traits, wo)) pairs.push_back({wo, {-wo.x, -wo.y, wo.z}});
+        for (Vec3d wo : ordinary)
+            for (Vec3d wi : smooth_directions(traits, wo)) pairs.push_back({wo, wi});
+    }
     std::vector<double> p(pairs.size()), f(pairs.size());
     if (traits.has_pdf) adapter.pdf(technique, pairs, p);
     if (adapter.has_f()) adapter.f(pairs, f);
@@ -82,7 +110,7 @@ std::optional<SmallFault> special_places(
         Draw at;
         at.wi = pairs[i].wi;
         if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0", pairs[i].wo);
-        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f is not a number >= 0", pairs[i].wo);
+        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f(w) is not a number >= 0", pairs[i].wo);
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }

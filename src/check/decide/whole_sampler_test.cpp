@@ -15,13 +15,17 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(SpecialDirections, AreUnitAndBesideTheAxes) {
     const std::vector<Vec3d> all = special_directions();
-    int axes = 0, beside = 0;
+    int axes = 0, beside = 0, longer = 0, shorter = 0;
     for (const Vec3d w : all) {
-        EXPECT_NEAR(dot(w, w), 1, 1e-15);
+        EXPECT_NEAR(dot(w, w), 1, 5 * ulp);
         axes += std::fabs(w.z) == 1;
         beside += w.z > 0 && w.z < 1e-7;
+        longer += dot(w, w) > 1 + ulp;
+        shorter += dot(w, w) < 1 - ulp;
     }
     EXPECT_EQ(axes, 2);
+    EXPECT_EQ(longer, 6);
+    EXPECT_EQ(shorter, 6);
     EXPECT_EQ(beside, 8);  // one ulp above the horizon, from the axes and diagonals on it
 }
 
@@ -41,6 +45,20 @@ TEST(SpecialPlaces, FindDivisionsByZero) {
     EXPECT_EQ(of_draws->wo->x, 0);
     s.of.wo = Traits::WoDomain::none;  // w_o has no meaning
     EXPECT_FALSE(special_places(s, 0, {}));
+}
+
+TEST(SpecialPlaces, AreAlsoTheDirectionsOfASmoothBoundary) {
+    const Vec3d ordinary[] = {tilt(40, 30), tilt(10), tilt(20), tilt(70, 200)};
+    FunctionSampler s;
+    s.f_value = [last = ordinary[3]](Vec3d o, Vec3d w) {
+        return dot(o, last) > 1 - 1e-12 && dot(w, Vec3d{-o.x, -o.y, o.z}) > 1 - 1e-12 ? nan : 0.1;
+    };
+    const auto fault = special_places(s, 0, ordinary);  // of the last w_o, at its mirror direction alone
+    ASSERT_TRUE(fault);
+    EXPECT_NEAR(fault->first.draw.wi.x, -ordinary[3].x, 1e-12);
+    FunctionSampler unit;  // fails if rounding makes w_i longer than 1
+    unit.f_value = [](Vec3d, Vec3d w) { return std::isnan(std::sqrt(1 - w.z * w.z)) ? nan : 0.1; };
+    EXPECT_TRUE(special_places(unit, 0, ordinary));
 }
 
 TEST(Reciprocity, IsOfFAndScaledByTheIndex) {

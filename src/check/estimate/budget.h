@@ -47,6 +47,8 @@ struct CheckBudget {
     /// Whether to stop also at the first look at which every target is met within the limit of an inconclusive verdict
     /// (inconclusive_at).
     bool stop_when_conclusive = false;
+    /// Up to so many evaluations a check goes on after its looks, as long as a size is too large (`further_looks`).
+    double most_evaluations = 0;
 
     /// A look whose only evaluations are draws and points.
     Look look(int i) const { return look_of(0.75 * evaluations).divided_by(1u << 3 * (looks - 1 - i)); }

@@ -44,7 +44,7 @@ void append_weights(
     if (source.adapter.techniques() > 1) source.mis_weights(directions.wi, mis);
     for (std::size_t k = 0; k < directions.at.size(); ++k) {
         const Draw& d = batch[directions.at[k]];
-        if (!is_direction(d, directions.p[k])) continue;
+        if (!is_direction(source.traits, d, directions.p[k])) continue;
         const double x = own_weight(source, d, directions.f_cos.empty() ? nullptr : &directions.f_cos[k]);
         if (std::isfinite(x)) to[first + directions.at[k]] = mis[k] * x * source.radiance(d.wi);
     }
@@ -121,8 +121,8 @@ private:
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (is_direction(draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
-            else if (set < 0) ++to_.checks.nothing, ++to_.checks.outside;
+            if (is_direction(source_.traits, draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
+            else if (set < 0) ++to_.checks.nothing, to_.checks.outside += source_.traits.wo != Traits::WoDomain::none;
     }
 
     /// Restores draws below the surface whose estimated p happens to be 0, if other draws there have p > 0.
@@ -150,16 +150,19 @@ private:
         if (std::isnan(d.pdf) || d.pdf < 0 || std::isinf(d.pdf) || (d.pdf > 0 && !std::isfinite(squared)) ||
             std::isnan(squared)) {
             c.invalid.add({u, d, 0, 0});
+            if (set < 0) ++c.unusable;
             return false;
         }
+        const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
         if (!(d.pdf > 0)) {
+            if (!finite_weight) c.invalid.add({u, d, 0, 0});
             if (set < 0) ++c.nothing;
             return false;
         }
-        const bool bad_weight = d.weight &&
-            !(std::isfinite(*d.weight) && std::isfinite(d.weights.x + d.weights.y + d.weights.z) &&
-                std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) >= -negative_weight);
+        const bool bad_weight = !finite_weight ||
+            (d.weight && std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight);
         if (!(std::fabs(squared - 1) <= 2 * unit_length) || bad_weight) c.invalid.add({u, d, 0, 0});
+        if (set < 0) c.bad_weights += bad_weight;
         return squared > 0;
     }
 
@@ -196,7 +199,8 @@ private:
             const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
             const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
             const double high = std::max({*std::max_element(first, last), p_[k], stated[j]});
-            const bool null_below = d.wi.z <= 0 && high == 0;  // no density there
+            const bool no_surface = source_.traits.wo == Traits::WoDomain::none;
+            const bool null_below = d.wi.z <= 0 && high == 0 && !no_surface;  // no density there
             to_.checks.null_below += null_below;
             if (null_below) continue;
             // At an edge beyond which p is 0 the density may have a pole, such as that of a sphere sampled by area.
@@ -205,7 +209,7 @@ private:
                 to_.checks.pointwise.add({u[at_[k]], d, p_[k], 0});
             if (p_[k] > 0) continue;
             if (high == 0) to_.checks.zero.add({u[at_[k]], d, 0, 0});
-            else if (d.wi.z > 0) p_[k] = d.pdf;
+            else if (d.wi.z > 0 || no_surface) p_[k] = d.pdf;
         }
     }
 
@@ -221,7 +225,7 @@ private:
         if (set < 0) to_.weighted_draws += static_cast<double>(u.size());
         for (std::size_t k = 0; k < w_.size(); ++k) {
             const Draw& d = draws_[at_[k]];
-            if (!is_direction(d, p_[k])) continue;
+            if (!is_direction(source_.traits, d, p_[k])) continue;
             if (!evaluated && d.f) f_[k] = Vec3d{1, 1, 1} * (*d.f * std::fabs(d.wi.z));
             if (!d.weight && (!source_.has_density() || !(evaluated || d.f))) {
                 ++to_.weightless;
@@ -339,7 +343,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         StreamKey scramble = key;
         scramble.purpose = Purpose::scrambles;
         scramble.part = static_cast<std::uint16_t>(set);
-        const ScrambledSobol points(scramble, source.numbers(), source.single());
+        const ScrambledSobol points(scramble, source.numbers(), source.resolution());
         for (std::uint32_t from = first; from < last; from += batch_size) {
             u.resize(std::min(batch_size, last - from));
             for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = points.at(from + i);
@@ -402,7 +406,7 @@ Vec3d through_holes(Source& source) {
     Source slanted(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
     std::vector<PrimarySample> u;
     const StreamKey key{1, 0, 0, 1, Purpose::light, 1};
-    for (std::uint32_t i = 0; i < tried; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    for (std::uint32_t i = 0; i < tried; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.resolution()));
     std::vector<Draw> draws(tried);
     slanted.draw(u, draws);
     for (const Draw& d : draws) {

@@ -67,11 +67,13 @@ struct Count {
 /// Tests of each draw, for independent draws; `invalid` for all.
 struct DrawChecks {
     std::uint64_t tested = 0, directions = 0, deltas = 0, nothing = 0;
-    Count invalid;      // not finite, negative, not unit
-    Count pointwise;    // pdf with the draw against pdf(w)
-    Count zero;         // p is 0 at and around a draw
-    Count weight;       // weight against f cos / pdf
-    Count reference_f;  // f against its reference value
+    std::uint64_t unusable = 0;     // pdf or direction is not a number
+    std::uint64_t bad_weights = 0;  // of directions
+    Count invalid;                  // not finite, negative, not unit
+    Count pointwise;                // pdf with the draw against pdf(w)
+    Count zero;                     // p is 0 at and around a draw
+    Count weight;                   // weight against f cos / pdf
+    Count reference_f;              // f against its reference value
     std::uint64_t weights = 0;
     // Draws with an evaluation of pdf(w); those whose pdf differs; the number of these that were compared with
     // neighbours of w.

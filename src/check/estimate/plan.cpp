@@ -312,17 +312,33 @@ namespace {
 struct Pilot {
     std::vector<DensityPoint> points;
     std::vector<Vec3d> directions;
-    std::vector<PrimarySample> u;  // of the first of them
-    std::array<double, 3> weight{};
+    std::vector<PrimarySample> u;    // of the first of them
+    std::array<double, 3> weight{};  // mean
     std::uint32_t of = 0;
 };
+
+/// The mean weight f cos / pdf by channel of draws that come without one, from the directions among the first draws.
+/// pdf: that of each draw.
+std::array<double, 3> weights_from_f(
+    Source& source, std::span<const Vec3d> wi, std::span<const double> pdf, std::uint32_t draws) {
+    std::array<double, 3> out{};
+    std::vector<Vec3d> f(wi.size());
+    source.f_cos(wi, f);
+    for (std::size_t i = 0; i < wi.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const double x = channel_of(f[i], c) / pdf[i];
+            if (std::isfinite(x)) out[static_cast<std::size_t>(c)] += x / draws;
+        }
+    return out;
+}
 
 Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key) {
     Pilot out;
     std::vector<PrimarySample> u;
     std::vector<Draw> draws;
     std::vector<Vec3d> w;
-    std::vector<double> p;
+    std::vector<double> p, unweighted_pdf;
+    std::vector<Vec3d> unweighted;  // directions without a weight, among the first batch
     out.of = source.available(key, budget.pilot());
     for (std::uint32_t from = 0; from < out.of; from += batch_size) {
         const std::uint32_t n = std::min(batch_size, out.of - from);
@@ -339,17 +355,25 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
         p.resize(w.size());
         source.density(w, p);
         for (std::size_t i = 0; i < w.size(); ++i) {
-            if (!is_direction(*of[i], p[i])) continue;
+            if (!is_direction(source.traits, *of[i], p[i])) continue;
             out.points.push_back({to_chart(w[i]), p[i]});
             out.directions.push_back(w[i]);
             if (out.u.size() < budget.of_steps()) out.u.push_back(u[static_cast<std::size_t>(of[i] - draws.data())]);
-            if (!of[i]->weight) continue;
+            if (!of[i]->weight) {
+                if (from == 0) unweighted.push_back(w[i]), unweighted_pdf.push_back(of[i]->pdf);
+                continue;
+            }
             const Vec3d x =
                 source.channels() == 3 ? of[i]->weights : Vec3d{*of[i]->weight, *of[i]->weight, *of[i]->weight};
             for (int c = 0; c < 3; ++c)
                 if (std::isfinite(channel_of(x, c)))
                     out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.of;
         }
+    }
+    if (source.has_f() && source.has_density() && !unweighted.empty()) {
+        const std::array<double, 3> x =
+            weights_from_f(source, unweighted, unweighted_pdf, std::min(batch_size, out.of));
+        for (std::size_t c = 0; c < 3; ++c) out.weight[c] += x[c];
     }
     return out;
 }

@@ -84,7 +84,7 @@ TEST(CheckPlan, FindsTheStepOfALattice) {
 TEST(CheckPlan, StepOfDirectionsIsAnAngle) {
     std::vector<Vec3d> single, exact;
     for (std::uint32_t i = 0; i < 1u << 14; ++i) {
-        const Vec3d w = cosine_draw({}, numbers_at({1}, i, 2, false));
+        const Vec3d w = cosine_draw({}, numbers_at({1}, i, 2, Resolution::standard));
         const auto rounded = [](double v) { return static_cast<double>(static_cast<float>(v)); };
         exact.push_back(w), single.push_back({rounded(w.x), rounded(w.y), rounded(w.z)});
     }

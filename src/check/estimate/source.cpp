@@ -20,10 +20,10 @@ std::span<const Pair> Source::pairs_of(Vec3d from, std::span<const Vec3d> wi) {
     return pairs_;
 }
 
-double Source::checked(double value) {
-    if (std::isfinite(value) && value >= 0) return value;
-    ++invalid_;
-    return 0;
+void Source::note_invalid(InvalidAnswers::Function function, Vec3d wi, double value) {
+    ++(function == InvalidAnswers::Function::pdf ? invalid_.pdf : invalid_.f);
+    if (invalid_.first != InvalidAnswers::Function::none) return;
+    invalid_.first = function, invalid_.wi = wi, invalid_.value = value;
 }
 
 void Source::draw(std::span<const PrimarySample> u, std::span<Draw> out) {
@@ -52,7 +52,7 @@ std::uint32_t Source::available(const StreamKey& key, std::uint32_t wanted) cons
 
 void Source::draw(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, std::span<Draw> out) {
     if (!recorded_) {
-        for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = numbers_at(key, from + i, numbers(), single());
+        for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = numbers_at(key, from + i, numbers(), resolution());
         return draw(u, out);
     }
     const std::span<const std::uint32_t> rows = rows_for(key);
@@ -68,7 +68,12 @@ void Source::density(std::span<const Vec3d> wi, std::span<double> out) {
         return;
     }
     adapter.exact_pdf(technique, pairs_of(wi), out);
-    for (std::size_t i = 0; i < wi.size(); ++i) out[i] = checked(out[i]);
+    invalid_.of_pdf += wi.size();
+    for (std::size_t i = 0; i < wi.size(); ++i) {
+        if (std::isfinite(out[i]) && out[i] >= 0) continue;
+        note_invalid(InvalidAnswers::Function::pdf, wi[i], out[i]);
+        out[i] = 0;
+    }
 }
 
 double Source::density(Vec3d wi) {
@@ -78,6 +83,7 @@ double Source::density(Vec3d wi) {
 }
 
 void Source::density_from(Vec3d other_wo, std::span<const Vec3d> wi, std::span<double> out) {
+    if (!has_density()) return std::fill(out.begin(), out.end(), 1.0);
     adapter.exact_pdf(technique, pairs_of(other_wo, wi), out);
 }
 
@@ -94,7 +100,10 @@ void Source::mis_weights(std::span<const Vec3d> wi, std::span<double> out) {
     adapter.mis_weight(technique, pairs_of(wi), out);
 }
 
-void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) { adapter.pdf(technique, pairs_of(wi), out); }
+void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) {
+    if (!has_density()) return std::fill(out.begin(), out.end(), 1.0);
+    adapter.pdf(technique, pairs_of(wi), out);
+}
 
 void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) {
     const std::span<const Pair> at = pairs_of(wi);
@@ -105,9 +114,15 @@ void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) 
         truth ? adapter.reference_f(at, y) : adapter.f(at, y);
         for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
+    invalid_.of_f += wi.size();
+    const auto usable = [](double v) { return std::isfinite(v) && v >= 0; };
     for (std::size_t i = 0; i < wi.size(); ++i) {
+        const Vec3d v = out[i];
         const double c = std::fabs(wi[i].z);
-        out[i] = {checked(out[i].x) * c, checked(out[i].y) * c, checked(out[i].z) * c};
+        if (!usable(v.x) || !usable(v.y) || !usable(v.z))
+            note_invalid(InvalidAnswers::Function::f, wi[i], !usable(v.x) ? v.x : !usable(v.y) ? v.y : v.z);
+        const auto by_channel = [&](double x) { return usable(x) ? x * c : 0; };
+        out[i] = {by_channel(v.x), by_channel(v.y), by_channel(v.z)};
     }
 }
 

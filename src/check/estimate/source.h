@@ -11,6 +11,17 @@
 
 namespace crescent::check {
 
+/// Answers of pdf(w) and f(w) that are not finite or negative, and the first of them.
+struct InvalidAnswers {
+    std::uint64_t pdf = 0, f = 0;        // directions
+    std::uint64_t of_pdf = 0, of_f = 0;  // directions that were evaluated
+    enum class Function { none, pdf, f };
+    Function first = Function::none;
+    Vec3d wi{};
+    double value = 0;
+    std::uint64_t count() const { return pdf + f; }
+};
+
 /// For one thread. `sampler` and `light` must outlive it.
 class Source {
 public:
@@ -33,6 +44,7 @@ public:
     const RecordedSampler* recorded() const { return recorded_; }
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
+    Resolution resolution() const { return resolution_of(traits); }
     bool has_density() const { return traits.has_pdf && !by_draws; }
     bool has_f() const { return adapter.has_f(); }
     int channels() const { return traits.channels == 3 ? 3 : 1; }
@@ -64,21 +76,24 @@ public:
     /// Counts calls that go directly to the sampler.
     void count(std::size_t evaluations) { evaluations_ += evaluations; }
     /// Answers of density() and f_cos() that were not finite or negative.
-    std::uint64_t invalid() const { return invalid_; }
+    const InvalidAnswers& invalid() const { return invalid_; }
 
 private:
-    std::uint64_t evaluations_ = 0, invalid_ = 0;
+    std::uint64_t evaluations_ = 0;
+    InvalidAnswers invalid_;
     std::vector<Pair> pairs_;
     const RecordedSampler* recorded_ = dynamic_cast<const RecordedSampler*>(&adapter);
     std::span<const Pair> pairs_of(std::span<const Vec3d> wi) { return pairs_of(wo, wi); }
     std::span<const Pair> pairs_of(Vec3d from, std::span<const Vec3d> wi);
-    double checked(double value);
+    void note_invalid(InvalidAnswers::Function function, Vec3d wi, double value);
 };
 
 /// Whether the draw is a direction of the tested density: not a delta part, and not an empty draw. p: the density
-/// there. Below the surface a draw counts only if p is positive; otherwise the estimator ignores it.
-inline bool is_direction(const Draw& d, double p) {
-    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && (d.wi.z > 0 || p > 0);
+/// there. Below the surface a draw counts only if p is positive; otherwise the estimator ignores it. A sampler that
+/// does not depend on w_o, such as that of a light, has no surface.
+inline bool is_direction(const Traits& traits, const Draw& d, double p) {
+    const bool no_surface = traits.wo == Traits::WoDomain::none;
+    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && (d.wi.z > 0 || p > 0 || no_surface);
 }
 
 // ---- Whether pdf(w) and f(w) are random estimates that are right only in the mean, such as those of layered surfaces.

@@ -25,12 +25,12 @@ TEST(CheckSource, UnusableAnswersAreZeroAndCounted) {
     EXPECT_EQ(p[0], 0.25);
     EXPECT_EQ(p[1], 0);
     EXPECT_EQ(p[2], 0);
-    EXPECT_EQ(source.invalid(), 2u);
+    EXPECT_EQ(source.invalid().count(), 2u);
     EXPECT_EQ(source.evaluations(), 3u);
     double stated[3];
     source.stated_pdf(wi, stated);
     EXPECT_EQ(stated[1], -1);
-    EXPECT_EQ(source.invalid(), 2u);  // numbers are returned unchanged here
+    EXPECT_EQ(source.invalid().count(), 2u);  // numbers are returned unchanged here
 }
 
 TEST(CheckSource, WithoutADensityItIsOne) {
@@ -89,13 +89,17 @@ TEST(CheckSource, NoRowOfAFileIsUsedTwice) {
 }
 
 TEST(CheckSource, ADrawBelowCountsIfThereIsADensity) {
-    EXPECT_TRUE(is_direction({{0, 0, 1}, 1}, 0));
-    EXPECT_FALSE(is_direction({{0, 0, -1}, 1}, 0));
-    EXPECT_TRUE(is_direction({{0, 0, -1}, 1}, 0.1));
-    EXPECT_FALSE(is_direction({{0, 0, 1}, 0}, 1));
+    const Traits surface;
+    EXPECT_TRUE(is_direction(surface, {{0, 0, 1}, 1}, 0));
+    EXPECT_FALSE(is_direction(surface, {{0, 0, -1}, 1}, 0));
+    EXPECT_TRUE(is_direction(surface, {{0, 0, -1}, 1}, 0.1));
+    EXPECT_FALSE(is_direction(surface, {{0, 0, 1}, 0}, 1));
+    Traits light;
+    light.wo = Traits::WoDomain::none;
+    EXPECT_TRUE(is_direction(light, {{0, 0, -1}, 1}, 0));
     Draw delta{{0, 0, 1}, 1};
     delta.delta = 0.5;
-    EXPECT_FALSE(is_direction(delta, 1));
+    EXPECT_FALSE(is_direction(surface, delta, 1));
 }
 
 // ---- Answers that are random estimates, functions that are reciprocal, and steps of single precision.
@@ -156,7 +160,7 @@ TEST(LocalSteps, AreThoseOfSinglePrecision) {
         s.p = [](Vec3d, Vec3d) { return 1.0; };
         Source source(s, 0, {0, 0, 1}, uniform_light);
         std::vector<PrimarySample> u;
-        for (std::uint32_t i = 0; i < 64; ++i) u.push_back(numbers_at({1}, i, 2, true));
+        for (std::uint32_t i = 0; i < 64; ++i) u.push_back(numbers_at({1}, i, 2, Resolution::single));
         std::vector<Draw> draws(u.size());
         source.draw(u, draws);
         std::vector<Vec3d> w;

@@ -42,6 +42,19 @@ inline double single_number(double u) {
     return static_cast<double>(static_cast<std::uint32_t>(u * 0x1p24) | 1u) * 0x1p-24;
 }
 
+/// The resolution of random numbers: odd multiples of 2^-24, for a sampler in single precision; 32 bits; or odd
+/// multiples of 2^-53, for a sampler that asks for them.
+enum class Resolution { single, standard, fine };
+inline Resolution resolution_of(const Traits& traits) {
+    return traits.u_bits == 53 ? Resolution::fine : traits.bits == 24 ? Resolution::single : Resolution::standard;
+}
+/// From 32 bits, and 32 more that only a fine number uses.
+inline double number_of_bits(std::uint32_t bits, std::uint32_t more, Resolution resolution) {
+    if (resolution == Resolution::standard) return unit_number(bits);
+    if (resolution == Resolution::single) return single_number(unit_number(bits));
+    return static_cast<double>((std::uint64_t{bits} << 21 | more >> 11) | 1u) * 0x1p-53;
+}
+
 /// Numbers of a stream in order.
 class Stream {
 public:
@@ -65,22 +78,26 @@ inline Vec3d random_direction(Stream& stream, bool below, double least_z) {
     return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
 }
 
-/// The random numbers of sample i of a stream, by position: blocks 2 i and 2 i + 1.
-inline PrimarySample numbers_at(const StreamKey& key, std::uint32_t i, int count, bool single) {
+/// The random numbers of sample i of a stream, by position: blocks 2 i and 2 i + 1; the further bits of fine numbers
+/// are in the blocks from 2^31 on.
+inline PrimarySample numbers_at(const StreamKey& key, std::uint32_t i, int count, Resolution resolution) {
     PrimarySample out;
     for (int half = 0; half < (count > 4 ? 2 : 1); ++half) {
-        const Vec4u<std::uint32_t> b = key.block(2 * i + static_cast<std::uint32_t>(half));
-        const std::uint32_t lanes[4] = {b.x, b.y, b.z, b.w};
-        for (int k = 0; k < 4; ++k)
-            out[4 * half + k] = single ? single_number(unit_number(lanes[k])) : unit_number(lanes[k]);
+        const std::uint32_t block = 2 * i + static_cast<std::uint32_t>(half);
+        const Vec4u<std::uint32_t> b = key.block(block),
+                                   c = resolution == Resolution::fine ? key.block(block | 1u << 31)
+                                                                      : Vec4u<std::uint32_t>{};
+        const std::uint32_t lanes[4] = {b.x, b.y, b.z, b.w}, more[4] = {c.x, c.y, c.z, c.w};
+        for (int k = 0; k < 4; ++k) out[4 * half + k] = number_of_bits(lanes[k], more[k], resolution);
     }
     return out;
 }
 
-/// The first `count` of them, in the precision of the sampler.
+/// The first `count` of them, in the resolution of the sampler.
 inline std::vector<PrimarySample> first_numbers(const StreamKey& key, std::uint32_t count, const Traits& traits) {
     std::vector<PrimarySample> u(count);
-    for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, std::max(traits.numbers, 1), traits.bits == 24);
+    for (std::uint32_t i = 0; i < count; ++i)
+        u[i] = numbers_at(key, i, std::max(traits.numbers, 1), resolution_of(traits));
     return u;
 }
 
@@ -149,15 +166,18 @@ constexpr std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
 class ScrambledSobol {
 public:
     /// `key` selects the set.
-    ScrambledSobol(const StreamKey& key, int count, bool single) : count_(count), single_(single) {
+    ScrambledSobol(const StreamKey& key, int count, Resolution resolution) : count_(count), resolution_(resolution) {
         Stream stream(key);
         for (std::uint32_t& s : seeds_) s = stream.bits();
     }
     PrimarySample at(std::uint32_t i) const {
         PrimarySample out;
         for (int d = 0; d < count_; ++d) {
-            const double u = unit_number(owen_scrambled(sobol(i, d), seeds_[static_cast<std::size_t>(d)]));
-            out[d] = single_ ? single_number(u) : u;
+            const std::uint32_t seed = seeds_[static_cast<std::size_t>(d)];
+            const std::uint32_t more = resolution_ == Resolution::fine
+                ? pcg4d(Vec4u<std::uint32_t>{i, static_cast<std::uint32_t>(d), seed, 0}).x
+                : 0;
+            out[d] = number_of_bits(owen_scrambled(sobol(i, d), seed), more, resolution_);
         }
         return out;
     }
@@ -165,7 +185,7 @@ public:
 private:
     std::array<std::uint32_t, PrimarySample::most> seeds_{};
     int count_;
-    bool single_;
+    Resolution resolution_;
 };
 
 }  // namespace crescent::check

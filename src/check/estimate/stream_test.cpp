@@ -73,5 +73,24 @@ TEST(CheckChart, AreaIsSolidAngle) {
     EXPECT_NEAR(cap.theta_width(), 0.3, 1e-14);
 }
 
+TEST(RandomNumbers, HaveTheirResolution) {
+    const StreamKey key{5};
+    bool finer = false;
+    for (std::uint32_t i = 0; i < 100; ++i) {
+        const PrimarySample single = numbers_at(key, i, 5, Resolution::single),
+                            standard = numbers_at(key, i, 5, Resolution::standard),
+                            fine = numbers_at(key, i, 5, Resolution::fine);
+        for (int k = 0; k < 5; ++k) {
+            EXPECT_EQ(std::fmod(single[k] * 0x1p24, 2), 1);
+            EXPECT_NEAR(fine[k], standard[k], 0x1p-31);
+            EXPECT_EQ(std::fmod(std::floor(fine[k] * 0x1p53), 2), 1);
+            finer = finer || std::fmod(fine[k] * 0x1p33, 1) != 0;
+        }
+    }
+    EXPECT_TRUE(finer);
+    const ScrambledSobol points({7}, 2, Resolution::fine);
+    EXPECT_NE(std::fmod(points.at(1)[0] * 0x1p33, 1), 0);
+}
+
 }  // namespace stream_test
 }  // namespace crescent::check

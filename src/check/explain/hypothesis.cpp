@@ -68,7 +68,7 @@ void draw_at(Place& place, std::uint32_t count) {
     source.density(w, p);
     const CheckAt& c = *place.at;
     for (std::size_t i = 0; i < w.size(); ++i) {
-        if (!is_direction(*of[i], p[i])) continue;
+        if (!is_direction(source.traits, *of[i], p[i])) continue;
         place.w.push_back(w[i]), place.p.push_back(p[i]);
         const std::size_t l = c.plan->tree.find(to_chart(w[i]));
         const double claimed = c.integrals.leaves[l].bridge.value, n = c.observations.independent;

@@ -109,7 +109,7 @@ LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, st
     for (std::uint32_t from = 0; from < count; from += batch_size) {
         std::vector<PrimarySample> u(std::min(batch_size, count - from));
         for (std::uint32_t i = 0; i < u.size(); ++i) {
-            u[i] = numbers_at(key, from + i, source.numbers(), source.single());
+            u[i] = numbers_at(key, from + i, source.numbers(), source.resolution());
             u[i][by.number] = by.lobes[lobe].from + by.lobes[lobe].share() * u[i][by.number];
         }
         std::vector<Draw> draws(u.size());
@@ -121,7 +121,7 @@ LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, st
         std::vector<double> p(w.size());
         source.density(w, p);
         for (std::size_t i = 0; i < w.size(); ++i) {
-            if (!is_direction(*of[i], p[i])) continue;
+            if (!is_direction(source.traits, *of[i], p[i])) continue;
             const std::size_t l = plan.tree.find(to_chart(w[i]));
             const double h = plan.values(plan.tree.leaves()[l], w[i], p[i])[bridge];
             out.sum[l] += h, out.square[l] += h * h;
@@ -261,7 +261,7 @@ std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
     if (source.traits.own_random || !source.adapter.can_draw() || source.traits.numbers < 2) return {};
     std::vector<PrimarySample> others;
     for (std::uint32_t i = 0; others.size() < settings_of_others && i < 1000; ++i) {
-        const PrimarySample u = numbers_at(key, i, source.numbers(), source.single());
+        const PrimarySample u = numbers_at(key, i, source.numbers(), source.resolution());
         if (std::min(u.x, u.y) > 0.1 && std::max(u.x, u.y) < 0.9) others.push_back(u);
     }
     std::optional<LobeChooser> out;

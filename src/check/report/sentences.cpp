@@ -147,6 +147,12 @@ std::string sum_sentence(const Finding& f, const Answer& a) {
     }
 }
 
+std::string invalid_sentence(const InvalidAnswers& a) {
+    const bool of_pdf = a.first == InvalidAnswers::Function::pdf;
+    return fmt::format("{} is not a number >= 0 at {} of {} directions, first {:g} at w_i = {}.",
+        of_pdf ? "pdf(w)" : "f(w)", of_pdf ? a.pdf : a.f, of_pdf ? a.of_pdf : a.of_f, a.value, direction_text(a.wi));
+}
+
 }  // namespace
 
 std::string sentence_of(const CheckAt& c, const Finding& f) {
@@ -198,7 +204,7 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
                 return fmt::format("{:g} answers cannot be used: {}, {}.", a.difference,
                     fault_of(checks.invalid.first.draw).value_or("the pdf or the weight is not a number >= 0"),
                     first_at(checks.invalid.first, numbers));
-            return fmt::format("{:g} answers of pdf(w) or f cannot be used.", a.difference);
+            return invalid_sentence(c.invalid);
     }
 }
 
@@ -228,6 +234,14 @@ std::pair<double, int> least_p(const CheckAt& c, std::string_view verdict) {
     return out;
 }
 
+/// With none among n draws, a share of 3 / n would have been found with a probability of 95 %.
+std::string valid_sentence(const CheckAt& c) {
+    const double draws = c.observations.independent + c.observations.scrambled;
+    std::string out = fmt::format("{} evaluations can be used.", c.evaluations);
+    if (draws > 0) out += fmt::format(" NaN in one of {:.2g} draws would have been found.", draws / 3);
+    return out;
+}
+
 std::string albedo_sentence(const CheckAt& c) {
     double most = 0, half = 0;
     for (const Answer& a : c.answers)
@@ -241,24 +255,57 @@ std::string mean_sentence(const CheckAt& c) {
         if (a.family == Family::mean && a.expected > 0)
             return fmt::format("Weights average to {} times the integral of f L cos.",
                 with_error(1 + a.difference / a.expected, half_width_95 * a.sd / a.expected));
-    return "The weights average to the integral of f L cos.";
+    return "";
 }
 
 }  // namespace
 
 std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
     const Estimate& whole = c.integrals.sums[mass];
-    if (verdict == "valid") return fmt::format("{} evaluations can be used.", c.evaluations);
+    if (verdict == "valid") return valid_sentence(c);
     if (verdict == "support")
         return fmt::format("f L cos is 0 wherever p is 0, at {:.0f} points.", c.integrals.light.points);
     if (verdict == "normalised")
-        return fmt::format("p integrates to {}.", with_error(whole.value, half_width_95 * std::sqrt(whole.variance)));
+        return fmt::format("p integrates to {}.", with_error(whole.value, half_interval(whole)));
     if (verdict == "physics") return albedo_sentence(c);
     if (verdict == "mean") return mean_sentence(c);
     if (const auto [p, families] = least_p(c, verdict); families > 0 && verdict == "density")
         return fmt::format("Draws follow p in {} families of tests; the least p-value is {:.2g}.", families, p);
     if (verdict == "identity") return "The functions of the sampler agree.";
     return "";
+}
+
+std::string sentence_of_open(const CheckAt& c, std::string_view verdict) {
+    struct Open {
+        const char* what;
+        double size, target, ratio;
+    };
+    const Sizes& s = c.sizes;
+    const Estimate& whole = c.integrals.sums[mass];
+    if (verdict == "normalised" && s.integral && *s.integral > c.most_ratio() * target_constant)
+        return fmt::format(
+            "{:.0f} points do not determine the integral of p to {:g} %: they give about {:.2g}, and a "
+            "pole of p may have any integral.",
+            c.integrals.points, 100 * c.most_ratio() * target_constant, whole.value);
+    std::vector<Open> open;
+    const auto add = [&](const char* what, std::optional<double> Sizes::* size, double target) {
+        Sizes only;
+        only.by_leak = s.by_leak, only.by_rotation = s.by_rotation, only.by_parameter = s.by_parameter;
+        only.*size = s.*size;
+        if (s.*size) open.push_back({what, *(s.*size), target, worst_ratio(only)});
+    };
+    if (verdict == "normalised") {
+        add("relative constant factor of p", &Sizes::constant, target_constant);
+    } else {
+        add("share of draws spread evenly", &Sizes::leak, target_leak);
+        add("share of p in a cap that is never drawn", &Sizes::cap, target_cap);
+        add("rotation in radians", &Sizes::rotation, target_rotation);
+        add("relative change of an exponent", &Sizes::parameter, target_parameter);
+    }
+    if (open.empty()) return "";
+    const Open& worst = *std::ranges::max_element(open, {}, &Open::ratio);
+    return fmt::format("The least {} that would have been found is {:.2g}. Right requires at most {:g}.", worst.what,
+        worst.size, c.most_ratio() * worst.target);
 }
 
 // ---- Without pdf(w) only the weights of the draws are compared with f; if there are no weights either, the draws
@@ -283,13 +330,20 @@ void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
 void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     const bool tested = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
     if (tested) return;
+    const bool dark = c.integrals.light.points > 0 && c.integrals.light.all[0].value == 0 &&
+        c.integrals.light.all[1].value == 0 && c.integrals.light.all[2].value == 0;
     if (c.observations.weightless > 0) {
         v.state = State::skipped;
         v.message = "The draws come with neither a pdf nor a weight.";
+    } else if (dark) {
+        v.message = fmt::format("f is 0 at all {:.0f} points.", c.integrals.light.points);
     } else if (has_all_weights(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
         v.state = State::inconclusive;
         v.message = "The weights have a heavy tail: their mean has no known error.";
         v.next_step = "Draws whose weights are bounded.";
+    } else {
+        v.state = State::inconclusive;
+        v.message = "The mean of the weights was not measured.";
     }
 }
 

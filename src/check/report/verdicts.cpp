@@ -104,13 +104,22 @@ void decide_at(const CheckAt& c, Verdict& v) {
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
     if (v.state == State::wrong) return;
     add_sizes(c.sizes, v);
-    if (c.inconclusive && (v.name == "density" || v.name == "normalised")) {
+    if (v.name == "density" && c.moved_by_resolution > 0) {
+        v.state = State::inconclusive;
+        v.message = fmt::format(
+            "A step of 2^-24 of one random number moves {:.2g} % of the draws to another place. The "
+            "draws differ from p by no more than that.",
+            100 * c.moved_by_resolution);
+        v.next_step = "Random numbers of 53 bits (u_bits=53).";
+        return;
+    }
+    if (v.name == "density" || v.name == "normalised") {
         Sizes only;
-        v.name == "normalised" ? void(only.constant = c.sizes.constant) : void(only = c.sizes);
-        if (v.name == "density") only.constant.reset();
+        if (v.name == "normalised") only.constant = c.sizes.constant, only.integral = c.sizes.integral;
+        else only = c.sizes, only.constant.reset(), only.integral.reset();
         if (worst_ratio(only) <= c.most_ratio()) return;
         v.state = State::inconclusive;
-        v.message = "A fault ten times its target would not have been found.";
+        v.message = sentence_of_open(c, v.name);
         v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
     }
 }
@@ -133,6 +142,31 @@ void add_faults_of_sampler(const CheckOutcome& outcome, int numbers, Verdict& v)
         v.message += (v.message.empty() ? "" : " ") + sentence_of(f, numbers);
         if (!here) v.place = f.wo ? "w_o = " + output::direction_text(*f.wo) : "pairs of directions";
     }
+
+/// Whether the sampler draws at another w_o.
+bool draws_elsewhere(const CheckOutcome& outcome) {
+    return std::ranges::any_of(outcome.at, [](const std::vector<CheckAt>& techniques) {
+        return std::ranges::any_of(techniques, [](const CheckAt& c) { return !c.nothing_drawn; });
+    });
+}
+
+/// A verdict at a w_o where nothing is drawn and p is 0 everywhere: nothing was tested. It is skipped if the sampler
+/// has nothing to draw there or draws elsewhere.
+void note_nothing_drawn(const CheckAt& c, bool elsewhere, bool has_f, Verdict& v) {
+    if (v.name == "valid" || v.name == "physics" || v.state == State::wrong) return;
+    const bool dark = has_f && c.integrals.light.lit.value == 0;
+    v.state = elsewhere || dark ? State::skipped : State::inconclusive;
+    v.message = fmt::format(
+        "Not tested: none of {} samples is a direction, and p is 0 everywhere.", c.observations.checks.tested);
+    v.next = {};
+    if (v.state == State::inconclusive) v.next_step = "A sampler that draws directions.";
+}
+
+void withhold(const CheckAt& c, Verdict& v) {
+    if (!c.is_withheld(v.name)) return;
+    v.state = State::skipped;
+    v.message = "Not given, since too many of the answers are not numbers: see valid.";
+    v.next = {}, v.next_step.clear();
 }
 
 /// Adds the cause to one verdict: a constant to `normalised`, another density to `density`, otherwise to the verdict of
@@ -183,6 +217,9 @@ std::vector<Verdict> verdicts_of(
             if (name == "tail") test_tail(check_case, outcome.tails[k], v);
             if (name == "mean") test_plain_mean(outcome.tails[k], v);
             for (const CheckAt& c : outcome.at[k]) note_limits(*check_case.adapter, c, v);
+            for (const CheckAt& c : outcome.at[k]) withhold(c, v);
+            if (!outcome.at[k].empty() && std::ranges::all_of(outcome.at[k], &CheckAt::nothing_drawn))
+                note_nothing_drawn(outcome.at[k][0], draws_elsewhere(outcome), check_case.adapter->has_f(), v);
             if (k == 0) add_faults_of_sampler(outcome, check_case.adapter->traits().numbers, v);
             if (v.state == State::right && v.message.empty() && !outcome.at[k].empty())
                 v.message = sentence_of_right(outcome.at[k][0], name);

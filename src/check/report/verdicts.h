@@ -18,6 +18,9 @@ std::string sentence_of(const SmallFault& fault, int numbers);
 /// The measurement of a right verdict; "" for a verdict without one.
 std::string sentence_of_right(const CheckAt& at, std::string_view verdict);
 
+/// What a verdict lacks that was not decided: the size, and how small it has to be.
+std::string sentence_of_open(const CheckAt& at, std::string_view verdict);
+
 // ---- Where draws and p differ (report/places.cpp).
 
 /// The share of the draws in a region and the share of p, with standard errors. Both are of the directions drawn and of

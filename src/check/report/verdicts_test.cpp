@@ -47,5 +47,47 @@ TEST(CheckReport, ConstantFactorIsWrongNormalisationWithItsCause) {
     EXPECT_EQ(named(all, "identity").state, State::right);
 }
 
+/// Draws and has a density only for w_o on one side.
+struct OneSided : Uniform {
+    bool never = false;
+    OneSided() : Uniform(1) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        if (!never && wo.z > 0) return Uniform::sample(t, wo, u, out);
+        for (Draw& d : out) d = {{0, 0, 1}, 0};
+    }
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        Uniform::pdf(t, pairs, out);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            if (never || pairs[i].wo.z <= 0) out[i] = 0;
+    }
+    Traits traits() const override {
+        Traits t;
+        t.wo = Traits::WoDomain::both;
+        return t;
+    }
+};
+
+TEST(CheckReport, WhatDrawsNothingIsNeverRight) {
+    for (bool never : {false, true}) {
+        const auto sampler = std::make_shared<OneSided>();
+        sampler->never = never;
+        CheckCase above, below;
+        above.arm = below.arm = "one-sided", above.adapter = below.adapter = sampler;
+        above.wo = {0, 0, 1}, below.wo = {0, 0, -1};
+        const CheckCase both[] = {above, below};
+        CheckSettings settings;
+        settings.budget = CheckBudget::limited(1e5);
+        ProgressMonitor monitor;
+        const auto outcome = check_samplers(both, settings, monitor);
+        const auto all = verdicts_of(both, outcome.at(0), {});
+        for (const char* name : {"normalised", "density", "identity"}) {
+            const auto first = std::ranges::find(all, name, &Verdict::name),
+                       second = std::find_if(first + 1, all.end(), [&](const Verdict& v) { return v.name == name; });
+            EXPECT_EQ(second->state, never ? State::inconclusive : State::skipped) << name;
+            EXPECT_EQ(first->state == State::inconclusive, never) << name;
+        }
+    }
+}
+
 }  // namespace verdicts_test
 }  // namespace crescent::check

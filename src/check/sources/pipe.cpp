@@ -24,8 +24,13 @@ namespace crescent::inline sources {
 
 namespace {
 
-/// A multiple of 2^-24, which single precision represents exactly.
-double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1 - 0x1p-24); }
+/// A multiple of 2^-24, which single precision represents exactly: u itself, or else an odd one, the middle of an
+/// interval of 2^-23. Multiples rounded down would favour one side of every threshold within the sampler.
+double for_float(double u) {
+    const double in_steps = u * 0x1p24, below = std::floor(in_steps);
+    const double nearest = below == in_steps ? below : below + (std::fmod(below, 2) == 0 ? 1 : 0);
+    return std::min(nearest * 0x1p-24, 1 - 0x1p-24);
+}
 
 class PipeSampler : public ProgramSampler {
 public:
@@ -140,7 +145,7 @@ private:
             for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
         };
     }
-    double number_for(double u) const { return hello_.protocol == 1 ? u : for_float(u); }
+    double number_for(double u) const { return hello_.protocol == 1 || hello_.traits.u_bits == 53 ? u : for_float(u); }
     std::size_t columns_of_sample(std::size_t lights) const {
         return 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights);
     }
@@ -202,7 +207,11 @@ private:
         Draw d{{a[0], a[1], a[2]}, a[3]};
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
         const bool nothing = !delta && d.pdf == 0;
+        const auto weight = a.subspan(4);
+        const bool finite = std::ranges::all_of(weight, [](double v) { return std::isfinite(v); });
+        if (nothing && !finite) return {{0, 0, 1}, 0, std::nan("")};
         if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
+        if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
         if (delta) d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen, d.pdf = 0;
         if (weights() == 1) d.weight = a[4];
         if (weights() == 3) d.weights = {a[4], a[5], a[6]}, d.weight = luminance(d.weights);
@@ -265,26 +274,43 @@ private:
         connection_.finish_handshake();
         probe_f();
     }
-    /// Determines whether there is a BRDF: `-`, or NaN in a block, means none.
+    /// Determines whether there is a BRDF: none if the answers to all of these pairs of directions are `-`, or NaN in
+    /// a block. At w_o = w_i = n alone a BRDF may fail.
     void probe_f() {
-        const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
-        std::vector<double> normal = {0, 0, 1, 0, 0, 1};
-        normal.insert(normal.end(), example_.begin(), example_.end());
-        std::vector<double> answer(columns);
-        if (hello_.blocks) {
-            query_block("f___", "f", 1, normal.size(), columns, normal, answer, example_lights);
-            has_f_ = !std::isnan(answer[0]);
-            return;
+        std::vector<Pair> oblique;  // on no axis or plane, and of which none mirrors another
+        for (int k = 0; k < 8; ++k) {
+            const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1, z = k & 4 ? -1 : 1;
+            oblique.push_back({tilt(35 + k, 17 + 40 * k), normalize(Vec3d{0.48 * x, 0.36 * y, 0.8 * z})});
         }
-        connection_.lines(1,
+        has_f_ = answers_f({{{0, 0, 1}, {0, 0, 1}}}) || answers_f(oblique);
+    }
+    /// Whether f is a number at one of these pairs.
+    bool answers_f(const std::vector<Pair>& pairs) {
+        const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
+        std::vector<double> in;
+        for (const Pair& pair : pairs) {
+            for (Vec3d v : {wo_to_send(pair.wo), pair.wi}) in.insert(in.end(), {v.x, v.y, v.z});
+            in.insert(in.end(), example_.begin(), example_.end());
+        }
+        const std::size_t given = in.size() / pairs.size();
+        std::vector<double> answer(pairs.size() * columns);
+        bool any = false;
+        if (hello_.blocks) {
+            query_block("f___", "f", pairs.size(), given, columns, in, answer, example_lights);
+            for (std::size_t i = 0; i < pairs.size(); ++i) any = any || !std::isnan(answer[i * columns]);
+            return any;
+        }
+        connection_.lines(pairs.size(),
             columns == 1 ? "one number, or '-' where there is no BRDF"
                          : "three numbers, one a channel, or '-' where there is no BRDF",
-            writer("f", normal.size(), normal), [&](std::size_t, std::string_view s) {
-                has_f_ = s != "-";
-                for (std::size_t k = 0; has_f_ && k < columns; ++k)
-                    if (!take_float(s, answer[k])) return false;
-                return !has_f_ || blank(s);
+            writer("f", given, in), [&](std::size_t i, std::string_view s) {
+                if (s == "-") return true;
+                any = true;
+                for (std::size_t k = 0; k < columns; ++k)
+                    if (!take_float(s, answer[i * columns + k])) return false;
+                return blank(s);
             });
+        return any;
     }
 };
 
@@ -335,9 +361,9 @@ struct HandshakeKey {
     std::function<bool(std::string_view, Handshake&)> read;
 };
 
-const std::array<HandshakeKey, 15>& keys() {
+const std::array<HandshakeKey, 16>& keys() {
     using S = std::string_view;
-    static const std::array<HandshakeKey, 15> all = {{
+    static const std::array<HandshakeKey, 16> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
         {"domain", "hemisphere or sphere",
@@ -371,6 +397,11 @@ const std::array<HandshakeKey, 15>& keys() {
             [](S v, Handshake& g) {
                 g.traits.bits = v == "f32" ? 24 : 53;
                 return v == "f32" || v == "f64";
+            }},
+        {"u_bits", "24 or 53",
+            [](S v, Handshake& g) {
+                g.traits.u_bits = v == "53" ? 53 : 24;
+                return v == "53" || v == "24";
             }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
         {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas, after 'hello 3'",

@@ -64,7 +64,7 @@ TEST(Greetings, SayWhatAProgramIs) {
     Handshake g;
     EXPECT_EQ(
         read_handshake("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
-                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
+                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64 u_bits=53",
             g)
             .got,
         "");
@@ -76,6 +76,7 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_EQ(g.traits.wo, Traits::WoDomain::both);
     EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
     EXPECT_EQ(g.traits.bits, 24);
+    EXPECT_EQ(g.traits.u_bits, 53);
 }
 
 TEST(Greetings, SayWhatAProgramUsesOfTheSurface) {
@@ -110,11 +111,12 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     EXPECT_EQ(fault("hello 1 x y=z"), "") << "protocol 1 has no keys: that is its name";
 }
 
-/// The response to f is a block of one NaN; then an error, and a block of another size.
+/// The responses to f are blocks of one NaN and of eight; then an error, and a block of another size.
 TEST(Greetings, BlocksThatSayAnErrorAreTold) {
+    const std::string nan = "printf '\\000\\000\\000\\000\\000\\000\\370\\177'; ";
     const std::string start =
-        "read hello; echo hello 2 x block=f64; head -c 56 >/dev/null; printf "
-        "'\\001\\000\\000\\000\\000\\000\\000\\000\\000\\000\\370\\177'; ";
+        "read hello; echo hello 2 x block=f64; head -c 56 >/dev/null; printf '\\001\\000\\000\\000'; " + nan +
+        "head -c 392 >/dev/null; printf '\\010\\000\\000\\000'; for k in 1 2 3 4 5 6 7 8; do " + nan + "done; ";
     EXPECT_NE(
         fault_of(
             start + "head -c 408 >/dev/null; printf '\\000\\000\\000\\000\\007\\000\\000\\000no luck'; sleep 3", 2, 10)
@@ -123,6 +125,36 @@ TEST(Greetings, BlocksThatSayAnErrorAreTold) {
     EXPECT_NE(fault_of(start + "head -c 408 >/dev/null; printf '\\003\\000\\000\\000'; sleep 3", 2, 10)
                   .find("got a block of 3 rows for one of 10"),
         std::string::npos);
+}
+
+/// The program returns its number as x of a direction.
+TEST(PipeNumbers, AreOddMultiplesOfTheirResolution) {
+    const auto received = [](const std::string& key, double u) {
+        const auto pipe = start_pipe("read hello; echo 'hello 2 echo u=1 " + key +
+            "'; while read what a b c d; do case $what in sample) echo $d 0 1 1;; *) echo -;; esac; done");
+        const PrimarySample one(u, 0);
+        Draw out;
+        pipe->sample(0, {0, 0, 1}, {&one, 1}, {&out, 1});
+        return out.wi.x;
+    };
+    const double third = 1.0 / 3;
+    EXPECT_EQ(received("", third), (std::floor(third * 0x1p23) * 2 + 1) * 0x1p-24);
+    EXPECT_EQ(received("", 0), 0);  // a corner is sent as it is
+    EXPECT_EQ(received("", 1 - 0x1p-24), 1 - 0x1p-24);
+    EXPECT_EQ(received("u_bits=53", third), third);
+}
+
+/// f fails at w_o = w_i = n, where it is requested first.
+TEST(Greetings, FindAnFThatFailsAlongTheNormal) {
+    const auto has_f = [](const std::string& along_n, const std::string& otherwise) {
+        return start_pipe(
+            "read hello; echo hello 2 x; while read what a b c d e f; do if [ \"$a$b$d$e\" = 0000 ]; then echo " +
+            along_n + "; else echo " + otherwise + "; fi; done")
+            ->has_f();
+    };
+    EXPECT_TRUE(has_f("-", "0.1"));
+    EXPECT_TRUE(has_f("nan", "0.1"));
+    EXPECT_FALSE(has_f("-", "-"));
 }
 
 TEST(PipeNumbers, AreReadAndWrittenExactly) {

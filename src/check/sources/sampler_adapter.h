@@ -76,6 +76,7 @@ struct Traits {
     Index eta{};              // index below over above
     bool importance = false;  // f is scaled by eta^2 as importance is, not as radiance
     int bits = 0;             // precision of its arithmetic: 24, 53; 0: determined from the answers
+    int u_bits = 24;          // of its random numbers: 24, or 53 if it asks for them
 };
 
 /// A direction and its density; pdf 0: no sample. weight: f cos / p if the sampler returns it.

@@ -46,7 +46,7 @@ void test_counts(const Evidence& e, const Visit& visit) {
     const double followed = static_cast<double>(c.followed);
     // All rows of a file were tested before.
     const std::uint64_t of_draws = e.source.recorded() ? 0 : c.invalid.times;
-    const double invalid = static_cast<double>(of_draws + e.source.invalid());
+    const double invalid = static_cast<double>(of_draws + e.source.invalid().count());
     visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
     const double per =
         static_cast<double>(c.differing) / static_cast<double>(std::max<std::uint64_t>(c.differing_compared, 1));

@@ -1,0 +1,68 @@
+// The effect of the resolution of random numbers. A threshold within a sampler, such as that between two entries of an
+// alias table, lies between two multiples of 2^-24, and a draw on that step belongs to one side only. The chance of a
+// draw to be on such a step bounds the share of the draws that the resolution can move.
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+#include "check/decide/small_tests.h"
+#include "math/functions.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::uint32_t moved_draws = 4096;
+/// Radians. Derived: in single precision a step of u moves a direction at an axis by up to 7e-4 (`one_direction`).
+constexpr double least_jump = 0x1p-10;
+
+Values values_at(Source& source, const Plan& plan, Vec3d w) {
+    const double p = source.density(w);
+    if (!(p > 0)) return {};
+    return plan.values(plan.tree.leaves()[plan.tree.find(to_chart(w))], w, p);
+}
+
+}  // namespace
+
+ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey key) {
+    ResolutionEffect out;
+    if (source.traits.u_bits != 24 || source.traits.own_random || !source.adapter.can_draw()) return out;
+    key.purpose = Purpose::corners, key.part = 24;
+    const std::vector<PrimarySample> u = first_numbers(key, moved_draws, source.traits);
+    std::vector<Draw> here(u.size()), there(u.size());
+    source.draw(u, here);
+    for (int k = 0; k < source.traits.numbers; ++k) {
+        std::vector<PrimarySample> v = u;
+        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? ulp : -ulp;
+        source.draw(v, there);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            if (!(here[i].pdf > 0) || !(there[i].pdf > 0)) continue;
+            const Vec3d off = here[i].wi - there[i].wi;
+            if (!(dot(off, off) > least_jump * least_jump)) continue;
+            out.share += 1.0 / moved_draws;
+            const Values a = values_at(source, plan, here[i].wi), b = values_at(source, plan, there[i].wi);
+            for (std::size_t q = 0; q < integrands; ++q) out.sums[q] += std::fabs(a[q] - b[q]) / moved_draws;
+        }
+    }
+    return out;
+}
+
+bool explains(const ResolutionEffect& r, const Answer& a, double draws) {
+    const double d = std::fabs(a.difference) - 3 * a.sd;
+    switch (a.family) {
+        case Family::bridge:
+        case Family::bridge_sets: return d <= r.sums[bridge];
+        case Family::slope:
+        case Family::slope_sets: return d <= r.sums[slope];
+        case Family::centre:
+        case Family::centre_sets: return d <= r.sums[static_cast<std::size_t>(centre_x + a.member)];
+        // As many draws leave a part as the share says, and as many come.
+        case Family::node:
+        case Family::node_sets:
+        case Family::band: return d <= 2 * r.share * a.expected;
+        case Family::depth: return d <= 4 * r.share * r.share * draws;
+        default: return false;
+    }
+}
+
+}  // namespace crescent::check
