@@ -56,15 +56,17 @@ struct Seen {
     std::uint64_t most = 0;  // at one w_o
 };
 
-/// Every w_o is checked by a call of its own.
-Seen checked(const std::vector<CheckCase>& check_cases) {
+/// Every w_o is checked by a call of its own. going_on: evaluations by which a check that is not decided goes on.
+Seen checked(const std::vector<CheckCase>& check_cases, std::size_t going_on = 0) {
     Seen out;
     for (const CheckCase& t : check_cases) {
         const auto program = std::make_shared<Counted>(t.adapter);
         CheckCase one = t;
         one.adapter = program;
         ProgressMonitor monitor;
-        const CheckResult j = run_checks({&one, 1}, TestSettings::quick(), monitor);
+        TestSettings settings = TestSettings::quick();
+        settings.further_in_all = going_on;
+        const CheckResult j = run_checks({&one, 1}, settings, monitor);
         for (const Verdict& v : j.verdicts) out.result.verdicts.push_back(v);
         out.most = std::max(out.most, program->spending().answers);
     }

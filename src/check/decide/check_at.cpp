@@ -220,15 +220,17 @@ private:
     }
 
     /// Repeats the tests on as many fresh draws and points. After an early look it uses twice as many: a clear fault is
-    /// then explained from them.
+    /// then explained from them, and the verdicts on f come from them too.
     void confirm(const std::vector<Least>& suspects, int look) {
-        const Look to = look < budget_.looks - 1 ? first_.done.times(2) : first_.done;
+        const bool early = look < budget_.looks - 1;
+        const Look to = early ? first_.done.times(2) : first_.done;
+        const bool of_f = std::ranges::any_of(suspects, [](const Least& b) { return is_of_f(b.answer.family); });
         const double before = static_cast<double>(source_.evaluations());
         Stage second;
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
         second.integrals.light.lost_in = first_.integrals.light.lost_in;
-        second.extend(source_, *out_.plan, to, budget_.of_f(), key, 0);
+        second.extend(source_, *out_.plan, to, of_f || early ? budget_.of_f() : 0, key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
@@ -277,6 +279,19 @@ private:
         return c.tested > 0 && c.nothing == c.tested && no_density && source_.invalid().pdf == 0;
     }
 
+    /// Whether the sampler draws at a w_o on either side.
+    bool draws_elsewhere() const {
+        if (source_.traits.wo == Traits::WoDomain::none || source_.recorded()) return false;
+        const std::vector<PrimarySample> u = first_numbers(key_, 64, source_.traits);
+        std::vector<Draw> draws(u.size());
+        for (double theta : {40.0, 140.0}) {
+            if (theta > 90 && source_.traits.wo != Traits::WoDomain::both) continue;
+            source_.adapter.sample(source_.technique, tilt(theta, 25), u, draws);
+            if (std::ranges::any_of(draws, [](const Draw& d) { return d.pdf > 0 || d.delta > 0; })) return true;
+        }
+        return false;
+    }
+
     /// Removes what was found from answers that are not numbers, apart from `valid`.
     void withhold_verdicts() {
         const auto withheld = [&](Family f) { return out_.is_withheld(info(f).verdict); };
@@ -289,6 +304,7 @@ private:
         test_delta_directions();
         out_.invalid = source_.invalid();
         out_.nothing_drawn = is_nothing_drawn();
+        out_.draws_elsewhere = out_.nothing_drawn && draws_elsewhere();
         for (const auto& [family, least] : least_) {
             out_.answers.push_back(least.answer);
             out_.answers.back().p = least.p();

@@ -146,7 +146,7 @@ void add_faults_of_sampler(const CheckOutcome& outcome, int numbers, Verdict& v)
 /// Whether the sampler draws at another w_o.
 bool draws_elsewhere(const CheckOutcome& outcome) {
     return std::ranges::any_of(outcome.at, [](const std::vector<CheckAt>& techniques) {
-        return std::ranges::any_of(techniques, [](const CheckAt& c) { return !c.nothing_drawn; });
+        return std::ranges::any_of(techniques, [](const CheckAt& c) { return !c.nothing_drawn || c.draws_elsewhere; });
     });
 }
 

@@ -274,15 +274,15 @@ private:
         connection_.finish_handshake();
         probe_f();
     }
-    /// Determines whether there is a BRDF: none if the answers to all of these pairs of directions are `-`, or NaN in
-    /// a block. At w_o = w_i = n alone a BRDF may fail.
+    /// Determines whether there is a BRDF: none if the answer is `-` or, in blocks, NaN at all of these pairs of
+    /// directions. At w_o = w_i = n alone a BRDF may fail.
     void probe_f() {
         std::vector<Pair> oblique;  // on no axis or plane, and of which none mirrors another
         for (int k = 0; k < 8; ++k) {
             const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1, z = k & 4 ? -1 : 1;
             oblique.push_back({tilt(35 + k, 17 + 40 * k), normalize(Vec3d{0.48 * x, 0.36 * y, 0.8 * z})});
         }
-        has_f_ = answers_f({{{0, 0, 1}, {0, 0, 1}}}) || answers_f(oblique);
+        has_f_ = answers_f({{{0, 0, 1}, {0, 0, 1}}}) || (hello_.blocks && answers_f(oblique));
     }
     /// Whether f is a number at one of these pairs.
     bool answers_f(const std::vector<Pair>& pairs) {

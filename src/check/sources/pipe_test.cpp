@@ -146,15 +146,12 @@ TEST(PipeNumbers, AreOddMultiplesOfTheirResolution) {
 
 /// f fails at w_o = w_i = n, where it is requested first.
 TEST(Greetings, FindAnFThatFailsAlongTheNormal) {
-    const auto has_f = [](const std::string& along_n, const std::string& otherwise) {
-        return start_pipe(
-            "read hello; echo hello 2 x; while read what a b c d e f; do if [ \"$a$b$d$e\" = 0000 ]; then echo " +
-            along_n + "; else echo " + otherwise + "; fi; done")
-            ->has_f();
+    const auto has_f = [](const std::string& answer) {
+        return start_pipe("read hello; echo hello 2 x; while read what; do echo " + answer + "; done")->has_f();
     };
-    EXPECT_TRUE(has_f("-", "0.1"));
-    EXPECT_TRUE(has_f("nan", "0.1"));
-    EXPECT_FALSE(has_f("-", "-"));
+    EXPECT_TRUE(has_f("0.1"));
+    EXPECT_TRUE(has_f("nan"));
+    EXPECT_FALSE(has_f("-"));
 }
 
 TEST(PipeNumbers, AreReadAndWrittenExactly) {
