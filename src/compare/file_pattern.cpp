@@ -16,7 +16,7 @@ namespace crescent::inline comparison {
 
 namespace {
 
-using Kind = PatternPiece::Kind;
+using PieceKind = PatternPiece::Kind;
 using Pieces = std::vector<PatternPiece>;
 
 constexpr std::string_view view_field = "{view}";
@@ -27,7 +27,7 @@ std::size_t byte_of(char c) { return static_cast<unsigned char>(c); }
 /// Reads what stands between [ and ]. Throws InputError.
 PatternPiece set_of(std::string_view inside, std::string_view pattern, const SourceLocation& at) {
     PatternPiece out;
-    out.kind = Kind::set;
+    out.kind = PieceKind::set;
     const bool negated = inside.size() > 1 && inside[0] == '!';
     if (negated) inside.remove_prefix(1);
     for (std::size_t i = 0; i < inside.size(); ++i) {
@@ -52,25 +52,25 @@ std::size_t digits_length(std::string_view text) {
 }
 
 void add_text(Pieces& to, std::string_view text) {
-    if (to.empty() || to.back().kind != Kind::text) to.emplace_back();
+    if (to.empty() || to.back().kind != PieceKind::text) to.emplace_back();
     to.back().text += text;
 }
 
 /// Reads a part of a pattern without '/'.
 Pieces pieces_of(std::string_view part, std::string_view pattern, const SourceLocation& at, bool has_views) {
     Pieces out;
-    const auto add = [&](Kind kind) { out.emplace_back().kind = kind; };
+    const auto add = [&](PieceKind kind) { out.emplace_back().kind = kind; };
     while (!part.empty()) {
         std::size_t length = 1;
         const std::size_t end = part[0] == '[' ? part.find(']', 2) : std::string_view::npos;
         if (has_views && part.starts_with(view_field)) {
             length = view_field.size();
-            add(Kind::view);
-        } else if (part[0] == '*') add(Kind::characters);
-        else if (part[0] == '?') add(Kind::one);
+            add(PieceKind::view);
+        } else if (part[0] == '*') add(PieceKind::characters);
+        else if (part[0] == '?') add(PieceKind::one);
         else if (const std::size_t digits = digits_length(part); digits > 0) {
             length = digits;
-            add(Kind::digits);
+            add(PieceKind::digits);
         } else if (end != std::string_view::npos) {
             length = end + 1;
             const std::string_view inside = part.substr(1, end - 1);
@@ -90,7 +90,7 @@ struct Match {
 
 /// Returns whether the name is hidden from a part that begins with a wildcard.
 bool is_hidden(const Pieces& part, std::string_view name) {
-    return name.starts_with('.') && part[0].kind != Kind::text;
+    return name.starts_with('.') && part[0].kind != PieceKind::text;
 }
 
 /// Matches the pieces of one part of a path, or of all parts and the slashes between them.
@@ -119,14 +119,14 @@ private:
     bool alternatives(std::size_t piece, std::size_t from, Match& out) {
         const PatternPiece& p = pieces_[piece];
         const std::size_t left = std::min(text_.find('/', from), text_.size()) - from;
-        if (p.kind == Kind::text)
+        if (p.kind == PieceKind::text)
             return text_.substr(from).starts_with(p.text) && rest(piece + 1, from + p.text.size(), out);
-        if (p.kind == Kind::view) return view(piece, from, left, out);
-        if (p.kind == Kind::one || p.kind == Kind::set) {
-            const bool fits = left > 0 && (p.kind == Kind::one || p.set[byte_of(text_[from])]);
+        if (p.kind == PieceKind::view) return view(piece, from, left, out);
+        if (p.kind == PieceKind::one || p.kind == PieceKind::set) {
+            const bool fits = left > 0 && (p.kind == PieceKind::one || p.set[byte_of(text_[from])]);
             return fits && wildcard(piece, from, 1, out);
         }
-        if (p.kind == Kind::digits) {
+        if (p.kind == PieceKind::digits) {
             std::size_t most = 0;
             while (most < left && text_[from + most] >= '0' && text_[from + most] <= '9') ++most;
             for (std::size_t length = most; length > 0; --length)
@@ -169,7 +169,7 @@ private:
     std::vector<bool> failed_;
 };
 
-bool is_text(const Pieces& part) { return part.size() == 1 && part[0].kind == Kind::text; }
+bool is_text(const Pieces& part) { return part.size() == 1 && part[0].kind == PieceKind::text; }
 
 std::vector<std::string_view> split_at_slashes(std::string_view text) {
     std::vector<std::string_view> out;
@@ -205,7 +205,7 @@ FilePattern::FilePattern(std::string pattern, SourceLocation at, bool has_views)
     std::size_t wildcards = 0;
     for (const std::string_view part : split_at_slashes(text_)) {
         parts_.push_back(pieces_of(part, text_, at_, has_views));
-        for (const PatternPiece& piece : parts_.back()) wildcards += piece.kind != Kind::text;
+        for (const PatternPiece& piece : parts_.back()) wildcards += piece.kind != PieceKind::text;
     }
     if (wildcards > wildcards_most)
         throw InputError(at_,
@@ -215,7 +215,7 @@ FilePattern::FilePattern(std::string pattern, SourceLocation at, bool has_views)
 
 bool FilePattern::has_view() const {
     return std::any_of(parts_.begin(), parts_.end(), [](const Pieces& part) {
-        return std::any_of(part.begin(), part.end(), [](const PatternPiece& p) { return p.kind == Kind::view; });
+        return std::any_of(part.begin(), part.end(), [](const PatternPiece& p) { return p.kind == PieceKind::view; });
     });
 }
 
@@ -243,7 +243,7 @@ std::optional<MatchedFile> FilePattern::match(const std::string& path) const {
     for (std::size_t k = 0; k < names.size(); ++k) {
         if (is_hidden(parts_[k], names[k])) return {};
         if (k > 0) {
-            pieces.push_back({Kind::text, "/", {}});
+            pieces.push_back({PieceKind::text, "/", {}});
             text += '/';
         }
         pieces.insert(pieces.end(), parts_[k].begin(), parts_[k].end());
@@ -270,8 +270,8 @@ std::optional<std::string> FilePattern::path(const std::string& view, const std:
     for (std::size_t k = 0; k < parts_.size(); ++k) {
         if (k > 0) out += '/';
         for (const PatternPiece& piece : parts_[k]) {
-            if (piece.kind == Kind::text) out += piece.text;
-            else if (piece.kind == Kind::view) out += view;
+            if (piece.kind == PieceKind::text) out += piece.text;
+            else if (piece.kind == PieceKind::view) out += view;
             else if (next < wildcards.size()) out += wildcards[next++];
             else return {};
         }
