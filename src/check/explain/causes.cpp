@@ -307,7 +307,6 @@ std::optional<Cause> explained_by(std::span<const Place> places) {
     if (std::optional<Cause> c = warp_cause(places)) return c;
     const std::vector<KnownRatio> ratios = map_ratios(places);
     if (std::optional<Cause> c = cause_from_map(ratios, places)) return c;
-    if (std::optional<Cause> c = cause_of_known_form(ratios, places)) return c;
     const std::vector<Leak> leaks = leak_hypotheses(places);
     Candidates plain = plain_candidates(places, leaks);
     bool several = false;
@@ -315,6 +314,8 @@ std::optional<Cause> explained_by(std::span<const Place> places) {
     // Two lobes with exchanged weights, one of them uniform, are a share of uniform draws too; but p has that lobe.
     const bool is_leak = found && found->factor == "leak";
     if ((found && !is_leak) || several) return found;
+    // A fitted parameter explains more than a factor without one, which is therefore tried first.
+    if (std::optional<Cause> c = cause_of_known_form(ratios, places)) return c;
     if (std::optional<Cause> c = lobe_cause(places)) return c;
     if (found) return found;
     Candidates fitted = fitted_candidates(places, leaks);
