@@ -142,6 +142,7 @@ void add_faults_of_sampler(const CheckOutcome& outcome, int numbers, Verdict& v)
         v.message += (v.message.empty() ? "" : " ") + sentence_of(f, numbers);
         if (!here) v.place = f.wo ? "w_o = " + output::direction_text(*f.wo) : "pairs of directions";
     }
+}
 
 /// Whether the sampler draws at another w_o.
 bool draws_elsewhere(const CheckOutcome& outcome) {
