@@ -46,6 +46,12 @@ foreach(isa ${isas})
   if(isa IN_LIST selected_isas)
     set(template kernel_isa.cpp.in)
     list(TRANSFORM features_of_${isa} PREPEND -m OUTPUT_VARIABLE flags)
+    # See math/simd/scalar.h. Without optimisation, nothing but what must be inlined is.
+    if(family STREQUAL "X86" AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND NOT CRESCENT_SANITIZE)
+      foreach(flag -DCRESCENT_INLINE_HINTS -mllvm -inlinehint-threshold=100000)
+        list(APPEND flags $<$<CONFIG:Release>:${flag}>)
+      endforeach()
+    endif()
     # ASan instruments the kernels in the scalar and AVX2 builds, UBSan in the scalar one, where they cost the least to
     # compile.
     if(CRESCENT_SANITIZE)
