@@ -269,6 +269,29 @@ TEST_F(Publishing, IsForOneRunAtATimeAndNoChildKeepsTheLock) {
     waitpid(child, nullptr, 0);
 }
 
+TEST_F(Publishing, IsForOneProcessAtATime) {
+    int pipe_ends[2];
+    ASSERT_EQ(pipe(pipe_ends), 0);
+    const pid_t child = fork();  // before the first run: it knows of that run's lock by the file alone
+    if (child == 0) {
+        char byte = 0;
+        if (read(pipe_ends[0], &byte, 1) != 1) ::_exit(2);
+        try {
+            Staging second(out_);
+        } catch (const OutputError&) { ::_exit(0); }
+        ::_exit(1);
+    }
+    int status = 0;
+    {
+        Staging first(out_);
+        EXPECT_EQ(::write(pipe_ends[1], "x", 1), 1);
+        waitpid(child, &status, 0);
+    }
+    close(pipe_ends[0]), close(pipe_ends[1]);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0) << "1: the second process got the lock";
+}
+
 TEST_F(Publishing, NamesTheFileThatCannotBeWritten) {
     put(out_, "a file");
     EXPECT_THROW(Staging{out_.string()}, OutputError);

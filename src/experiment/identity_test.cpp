@@ -203,6 +203,21 @@ TEST(Identity, ChangesWithWhatCodeChanges) {
     EXPECT_NE(hash(e.with_s(3)), hash(e));
 }
 
+TEST(Identity, ChangesWithTheFileOfASampler) {
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + "_sampler.py");
+    Experiment e = with_everything();
+    e.arms[0].python = file.string() + ":sampler";
+    const auto hash_with = [&](const char* code) {
+        std::ofstream(file) << code;
+        return hash(e);
+    };
+    const std::uint64_t before = hash_with("x = 1\n");
+    EXPECT_NE(hash_with("x = 2\n"), before);
+    EXPECT_EQ(hash_with("x = 1\n"), before);
+    std::filesystem::remove(file);
+}
+
 TEST(Identity, ReadsBackAsItself) {
     for (const char* name : {"gallery", "two-lamps", "empty-room", "three-glosses"}) {
         const Experiment e = load(folder + name + ".toml");
