@@ -3,25 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "experiment/experiment.h"
+#include "tests/support/scene_text.h"
 
 namespace crescent::inline experiment {
 namespace derived_values_test {
 
 using testing::ElementsAre;
 
-constexpr const char* area_lights = R"(
-[image]
-width = 8
-height = 8
-[camera]
-eye = [0, 1, 3]
-target = [0, 0, 0]
-vfov_deg = 40
-[shapes.floor]
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-rho_d = [0.5, 0.5, 0.5]
+const std::string area_lights = test::view_text + test::floor_text + R"(
 [disks.key]
 center = [0, 2, 0]
 normal = [0, -1, 0]

@@ -8,6 +8,7 @@
 #include "experiment/experiment.h"
 #include "experiment/parser.h"
 #include "experiment/schema.h"
+#include "tests/support/scene_text.h"
 
 namespace crescent::inline experiment {
 namespace experiment_test {
@@ -53,19 +54,7 @@ TEST(Experiments, ShapesStandInFileOrder) {
 }
 
 TEST(Skies, HaveAPairedReference) {
-    const std::string scene = R"(
-[image]
-width = 8
-height = 8
-[camera]
-eye = [0, 1, 5]
-target = [0, 1, 0]
-vfov_deg = 40
-[shapes.ball]
-kind = "sphere"
-center = [0, 1, 0]
-radius = 1
-rho_d = [0.5, 0.5, 0.5]
+    const std::string scene = test::view_text + test::ball_text + R"(
 [sky]
 file = "images/sky.exr"
 rotation = 45
@@ -162,11 +151,7 @@ TEST(AnotherS, ChangesTheShapeAndAllThatInheritIt) {
 }
 
 TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
-    const std::string room =
-        "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = "
-        "40\n[fill]\nradiance = "
-        "[1, 1, 1]\n"
-        "[shapes.floor]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nrho_d = [0.5, 0.5, 0.5]\n";
+    const std::string room = test::view_text + test::fill_text + test::floor_text;
     EXPECT_EQ(parse(room + "[arms.cosine]\nn = 4\n", "room").s(), 0);
     EXPECT_THROW((void)parse(room + "[arms.phong]\nn = 4\n", "room"), InputError);
 }
@@ -264,11 +249,9 @@ TEST(PublishedFigures, AreLookedUpByArmNSAndMeter) {
 }
 
 TEST(Overrides, GiveATextThatIsReadTheSame) {
-    const std::string text =
-        "title = \"a \\\"b\\\" \\\\\"\nn = 4\n[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\n"
-        "target = [0, 1, 0]\nvfov_deg = 40\n[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\n"
-        "radius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\n"
-        "[arms.uniform]\n[plates.hero]\nkind = \"hero\"\nruns = [{arm = \"cosine\"}]\n";
+    const std::string text = "title = \"a \\\"b\\\" \\\\\"\nn = 4\n" + test::view_text + test::ball_text +
+        test::fill_text +
+        "[arms.cosine]\n[arms.uniform]\n[plates.hero]\nkind = \"hero\"\nruns = [{arm = \"cosine\"}]\n";
     const std::vector<std::string> changes = {
         "n=16", "ball.radius=0.1", "arms.uniform.n=[1, 2]", "fill.radiance=[1, 2, 3e-3]"};
     const std::string changed = text_with_overrides(text, "a.toml", changes);

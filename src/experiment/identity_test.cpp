@@ -7,16 +7,14 @@
 
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
+#include "tests/support/scene_text.h"
 
 namespace crescent::inline experiment {
 namespace identity_test {
 
 const std::string folder = std::string(CRESCENT_SOURCE_DIR) + "/experiments/";
 
-const std::string room =
-    "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n"
-    "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n"
-    "[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n";
+const std::string& room = test::room_text;
 
 /// Returns a room with an element of every section and a shape of every kind.
 Experiment with_everything() {

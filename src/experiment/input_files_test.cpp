@@ -7,6 +7,7 @@
 
 #include "experiment/experiment.h"
 #include "tests/support/meshes.h"
+#include "tests/support/scene_text.h"
 
 namespace crescent::inline experiment {
 namespace input_files_test {
@@ -28,16 +29,7 @@ protected:
     }
 
     const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "crescent_mesh_files";
-    const std::string text_ = R"(
-[image]
-width = 8
-height = 8
-[camera]
-eye = [0, 0, 5]
-target = [0, 0, 0]
-vfov_deg = 40
-[fill]
-radiance = [1, 1, 1]
+    const std::string text_ = test::view_text + test::fill_text + R"(
 [meshes.a]
 file = "ball.mesh"
 rho_d = [0.5, 0.5, 0.5]
