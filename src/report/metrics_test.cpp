@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "output/format.h"
 #include "tests/support/sample_report.h"
+#include "tests/support/scene_text.h"
 #include "tests/support/wellformed.h"
 
 namespace crescent::testing {
@@ -39,11 +40,7 @@ TEST(MetricsJson, ReadsBackEveryNumberExactly) {
 
 TEST(MetricsJson, IsReadBackToTheSameBytes) {
     Sample s;
-    s.experiment = parse(
-        "seeds = 3\nseed = 7\n[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg "
-        "= 40\n[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\n"
-        "radiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n",
-        "a.toml", {"ball.radius=0.9"});
+    s.experiment = parse("seeds = 3\nseed = 7\n" + test::room_text, "a.toml", {"ball.radius=0.9"});
     s.experiment.figures.emplace();
     s.experiment.figures->source = "elsewhere", s.experiment.figures->seed = 7;
     s.experiment.figures->runs[{"cosine", 4, 1, "rmse.H"}] = 0.1 + 0.2;
