@@ -52,28 +52,37 @@ struct AllSides {
 
 std::string why_not(const BiasPair& sides, std::size_t region) {
     if (sides.all.regions[region].pixels.empty()) return "no pixel is finite in every render";
-    if (sides.a.files.size() < 2 || (sides.other && sides.b.files.size() < 2))
+    if (!sides.pools() && (sides.a.files.size() < 2 || (sides.other && sides.b.files.size() < 2)))
         return "two renders or more of each arm are needed";
     if (sides.pairs && sides.pairs->size() < 2) return "two pairs or more are needed";
+    const std::string heavy = sides.heavy_in(region);
+    return heavy.empty() ? "" : "heavy tail: " + heavy;
+}
+
+/// Returns how many renders a region with a heavy tail needs; "" if its tail is not heavy.
+std::string renders_needed_text(const BiasPair& sides, std::size_t region) {
     const std::string heavy = sides.heavy_in(region);
     for (const ArmResult* arm : {&sides.arm, sides.other}) {
         if (!arm || arm->name != heavy) continue;
         const auto& needed = arm->regions[region].renders_needed;
-        return "heavy tail: " + heavy +
-            (needed ? fmt::format("; about {:.0f} renders are needed", *needed)
-                    : "; how many renders are needed is unknown");
+        if (!needed) return "; how many renders are needed is unknown";
+        if (*needed >= renders_beyond) return "; more than a million renders are needed";
+        return fmt::format("; about {:.0f} renders are needed", *needed);
     }
-    return heavy.empty() ? "" : "heavy tail: " + heavy;
+    return "";
 }
 
 MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     const Values a = sides.region_means(sides.a, r), b = sides.region_means(sides.b, r);
     const PixelSet& set = sides.all.regions[r];
     MeanTest t;
-    t.region = quantity_names[sides.quantity], t.paired = sides.in_pairs();
+    t.region = quantity_names[sides.quantity], t.paired = sides.in_pairs(), t.pooled = sides.pools();
     t.a = mean_and_error(a).mean, t.b = mean_and_error(b).mean;
     t.why = why_not(sides, r);
-    if (!t.why.empty()) return t;
+    if (!t.why.empty()) {
+        t.needed = renders_needed_text(sides, r);
+        return t;
+    }
     const SetVariance noise = sides.noise_of(set);
     t.welch = sides.test(a, b, noise, false);
     const double undetectable =
@@ -284,6 +293,7 @@ std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides
     out.shared = shared_seeds(sides.all, sides.a, sides.b);
     out.all_shared = all_paired(out.shared, sides.a, sides.b);
     if (plan.pair && !sides.referred) return pairs_of(sides.a, sides.b);
+    if (!plan.find_pairs) return {};
     std::vector<RenderPair> pairs;
     if (sharper_in_pairs(out.shared, sides.a, sides.b, level))
         for (const SeedPair& p : out.shared) pairs.emplace_back(p.a, p.b);

@@ -100,10 +100,10 @@ std::string why_inconclusive(const ComparePlan& plan, const BiasResult& bias) {
             bias.a, bias.b, bias.non_finite.undecided);
     for (const MeanTest& t : bias.regions) {
         if (!t.caveat.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.caveat);
-        if (!t.why.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.why);
+        if (!t.why.empty()) return fmt::format("{} and {} in {}: {}{}", bias.a, bias.b, t.region, t.why, t.needed);
         for (const MeanTest& c : t.channels)
             if (!c.why.empty())
-                return fmt::format("{} of {} and {} in {}: {}", c.region, bias.a, bias.b, t.region, c.why);
+                return fmt::format("{} of {} and {} in {}: {}{}", c.region, bias.a, bias.b, t.region, c.why, c.needed);
         if (!(t.smallest <= plan.smallest))
             return fmt::format(
                 "{} and {} in {}: a difference of {:.2g} % would have been found, {:.2g} % is required; more "

@@ -121,7 +121,8 @@ void costs(const MetricValue& var, const Cost& cost, RegionResult& out) {
 std::optional<double> needed(const RegionResult& r, double renders) {
     const double k = r.tail ? std::max(0.5, r.tail->k) : 0.5;
     if (!(k < 1)) return {};
-    return std::ceil(renders * math::pow(std::max(1.0, r.largest_share / 0.05), 1 / (1 - k)));
+    const double count = std::ceil(renders * math::pow(std::max(1.0, r.largest_share / 0.05), 1 / (1 - k)));
+    return std::min(count, renders_beyond);
 }
 
 void tail_of(const ArmStats& arm, std::size_t region, RegionResult& out) {

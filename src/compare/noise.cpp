@@ -204,7 +204,9 @@ std::string order_text(const std::vector<Ranked>& order) {
         if (apart(better, worse))
             out.push_back(fmt::format("{} before {} ({} times the variance)", order[k].arm, order[k + 1].arm,
                 figures(*worse.value / *better.value, 3)));
-        else out.push_back(fmt::format("no difference between {} and {}", order[k].arm, order[k + 1].arm));
+        else
+            out.push_back(
+                fmt::format("no difference between {} and {} in noise was found", order[k].arm, order[k + 1].arm));
     }
     return fmt::format("{}", fmt::join(out, "; "));
 }
@@ -222,7 +224,7 @@ std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, 
     Ranking out;
     out.region = result.arms[0].regions[region].region, out.measure = by.words;
     for (const Ranked& r : order) out.order.push_back(r.arm);
-    out.sentence = fmt::format("In {}, {}: {}.", out.region, by.words, order_text(order));
+    out.sentence = fmt::format("Noise in {}, {}: {}.", out.region, by.words, order_text(order));
     return out;
 }
 

@@ -34,6 +34,8 @@ struct BiasPair {
     BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& measured, std::size_t a,
         std::size_t b, std::size_t quantity = 0, const PairedRenders* paired = nullptr);
 
+    /// Whether the noise of both sides is estimated together, see test().
+    bool pools() const;
     bool lone_reference() const { return referred && b.files.size() < 2; }
     bool in_pairs() const { return differences != nullptr; }
     double mean_a(std::size_t i) const { return a.film.of(quantity).mean[i]; }
@@ -54,6 +56,9 @@ struct BiasPair {
     /// Welch's test of a mean over a set, where `va` and `vb` are the means of each render; the paired test if there
     /// are pairs. The spread over few renders may be small by chance: with `floored` it is at least the one that
     /// follows from the spread of the pixels.
+    /// If `shared_noise` and one side has at most half as many renders as the other, Student's test with the noise of
+    /// both sides: the ratio of their variances is that of their pixels, which is known well; 1 if a side is one
+    /// render.
     Welch test(
         const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const;
 
@@ -73,7 +78,7 @@ struct BiasPair {
     const ArmResult& arm;
     const ArmResult* other = nullptr;  // null: the reference
     double brightest = 0;              // the largest possible value of a pixel of one render; 0: unknown
-    bool referred = false, dependent = false;
+    bool referred = false, dependent = false, shared_noise = false;
     bool count_pixel_p = true;   // see ComparePlan
     double low_frequencies = 1;  // power of the noise at low frequencies over that at high ones
     std::size_t quantity = 0;    // see renders.h
@@ -86,6 +91,8 @@ private:
     /// Returns the largest deviation by events on the brighter side.
     double rare_event(double difference) const;
     double renders_of(const ArmStats& side) const;
+    std::optional<Welch> pooled_test(
+        const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const;
 };
 
 /// Estimates the squared error per pixel of a reference that is one file and does not state it: the variation between

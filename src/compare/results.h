@@ -18,8 +18,9 @@
 namespace crescent::inline comparison {
 
 inline constexpr const char* the_reference = "the reference";
-inline constexpr double confidence = 0.95;  // of every interval
-inline constexpr double heavy_share = 0.5;  // one squared error with half of their sum decides the mean
+inline constexpr double confidence = 0.95;     // of every interval
+inline constexpr double renders_beyond = 1e6;  // numbers of renders that are needed are not told apart from here on
+inline constexpr double heavy_share = 0.5;     // one squared error with half of their sum decides the mean
 
 /// A metric of one arm in one region. `why`: the reason if there is no value or no interval.
 struct MetricValue {
@@ -60,8 +61,10 @@ struct MeanTest {
     Welch welch;
     bool differs = false;            // in this quantity
     bool paired = false;             // over the differences of pairs of renders
+    bool pooled = false;             // with the noise of both sides together
     double smallest = 0;             // the relative difference that would have been found with a probability of 90 %
     std::string why;                 // why it was not tested; "" if it was
+    std::string needed;              // how many renders are needed for a test; "" if `why` says it
     std::string caveat;              // a cause other than a bias for a small p; "" if there is none
     std::vector<MeanTest> channels;  // R, G, B
     double joint_p = std::nan("");   // of "no difference in any of them", see renders.h

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "base/errors.h"
+#include "math/simd/random.h"
 #include "math/statistics.h"
 
 namespace crescent::inline comparison {
@@ -50,10 +53,46 @@ Correlation correlation(const std::vector<float>& a, const std::vector<float>& b
         product += sum;
         if (sum != 0) blocks.push_back(sum);
     }
-    if (blocks.size() < blocks_least || !(squares_a > 0) || !(squares_b > 0)) return {};
+    if (!(squares_a > 0) || !(squares_b > 0)) return {};
+    const double r = product / std::sqrt(squares_a * squares_b);
+    if (blocks.size() < blocks_least) return {r, false};
     const MeanInterval mean = mean_interval(blocks, 0.95);
     const double limit = student_quantile(1 - level, static_cast<double>(blocks.size() - 1));
-    return {product / std::sqrt(squares_a * squares_b), mean.mean > limit * mean.se};
+    return {r, mean.mean > limit * mean.se};
+}
+
+using Correlations = std::vector<std::vector<double>>;  // [render of a][render of b]
+
+/// Tests whether the renders with the same numbers in their names share seeds: by a permutation test, which is exact
+/// for any noise, also in few pixels, because independent renders of one side can be exchanged. The probability of a
+/// false alarm is 1/4001 + 1/K!.
+bool shares_seeds(const Correlations& r, const std::vector<RenderPair>& pairs) {
+    constexpr std::size_t pairs_least = 7, permutations = 4000;
+    if (pairs.size() < pairs_least) return false;
+    std::vector<std::size_t> order(pairs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto sum = [&] {
+        double out = 0;
+        for (std::size_t k = 0; k < pairs.size(); ++k) out += r[pairs[k].first][pairs[order[k]].second];
+        return out;
+    };
+    const double stated = sum();
+    std::uint32_t state = 0x5eed;
+    for (std::size_t n = 0; n < permutations; ++n) {
+        for (std::size_t k = order.size() - 1; k > 0; --k) {  // Fisher and Yates
+            state = seed_of(state, static_cast<std::uint32_t>(k));
+            std::swap(order[k], order[state % (k + 1)]);
+        }
+        if (!std::is_sorted(order.begin(), order.end()) && sum() >= stated) return false;
+    }
+    return true;
+}
+
+/// Returns the pairs of renders with the same numbers in their names; none unless every render has a partner.
+std::vector<RenderPair> named_pairs(const ArmStats& a, const ArmStats& b) {
+    try {
+        return pairs_of(a, b);
+    } catch (const InputError&) { return {}; }
 }
 
 /// Returns the deviations of one render of each pair from the mean of those renders, in the units of the renders, one
@@ -116,16 +155,23 @@ std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, co
     const SeedSamples at = seed_samples(all);
     const double level = shared_seed_level / static_cast<double>(a.files.size() * b.files.size());
     std::vector<SeedPair> found;
+    Correlations all_r(a.files.size(), std::vector<double>(b.files.size()));
     double largest = 0;
     for (std::size_t i = 0; i < a.files.size(); ++i)
         for (std::size_t j = 0; j < b.files.size(); ++j) {
             const Correlation c = correlation(a.sampled[i], b.sampled[j], at, level);
+            all_r[i][j] = c.r;
             if (c.found) found.push_back({i, j, c.r}), largest = std::max(largest, c.r);
         }
     std::erase_if(found, [&](const SeedPair& p) { return p.correlation < largest / 2; });
     std::vector<std::size_t> partners_a(a.files.size()), partners_b(b.files.size());
     for (const SeedPair& p : found) ++partners_a[p.a], ++partners_b[p.b];
     std::erase_if(found, [&](const SeedPair& p) { return partners_a[p.a] > 1 || partners_b[p.b] > 1; });
+    if (found.size() < std::min(a.files.size(), b.files.size()))
+        if (const std::vector<RenderPair> named = named_pairs(a, b); shares_seeds(all_r, named)) {
+            found.clear();
+            for (const auto& [i, j] : named) found.push_back({i, j, all_r[i][j]});
+        }
     if (found.size() > 1) estimate_correlations(a, b, at, found);
     return found;
 }

@@ -131,6 +131,7 @@ BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const C
     referred = second >= readings.arms.size();
     brightest = plan.brightest.value_or(0);
     count_pixel_p = plan.count_pixel_p;
+    shared_noise = plan.shared_noise;
     if (const double weight = quantity > 0 ? weights[quantity - 1] : 1; weight > 0) brightest /= weight;
     if (!referred) other = &measured.arms[second];
     const RegionResult& frame = arm.region(whole_frame);
@@ -197,6 +198,34 @@ SetVariance BiasPair::noise_of(const PixelSet& set) const {
     return visit.done(low_frequencies);
 }
 
+bool BiasPair::pools() const {
+    const std::size_t ours = a.files.size(), theirs = b.files.size();
+    return shared_noise && !pairs && !referred && std::max(ours, theirs) > 1 &&
+        2 * std::min(ours, theirs) <= std::max(ours, theirs);
+}
+
+std::optional<Welch> BiasPair::pooled_test(
+    const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const {
+    if (!pools()) return {};
+    const double na = static_cast<double>(va.size()), nb = static_cast<double>(vb.size());
+    const double ratio = na > 1 && nb > 1 ? noise.a / noise.b : 1;  // of the variances of one render
+    if (!std::isfinite(ratio) || !(ratio > 0)) return {};
+    const MeanInterval ours = mean_and_error(va), theirs = mean_and_error(vb);
+    double squares = 0;  // in units of the variance of b
+    if (na > 1) squares += ours.se * ours.se * na * (na - 1) / ratio;
+    if (nb > 1) squares += theirs.se * theirs.se * nb * (nb - 1);
+    double variance = squares / (na + nb - 2);
+    if (const double pixels = nb > 1 ? noise.b : noise.a; floored && pixels > 0)
+        variance = std::max(variance, pixels / noise.pixels);
+    Welch out;
+    out.df = na + nb - 2;
+    out.se = std::sqrt(variance * (ratio / na + 1 / nb));
+    out.difference = ours.mean - theirs.mean;
+    if (out.se > 0) out.p = two_sided_p(out.difference / out.se, out.df);
+    else out.p = out.difference == 0 ? 1 : 0;
+    return out;
+}
+
 Welch BiasPair::test(
     const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const {
     if (pairs) {
@@ -205,6 +234,7 @@ Welch BiasPair::test(
         const MeanInterval mean = mean_and_error(each);
         return paired_test(floored ? floored_at(mean, noise.a / noise.pixels) : mean);
     }
+    if (const auto pooled = pooled_test(va, vb, noise, floored)) return *pooled;
     MeanInterval ours = mean_and_error(va);
     MeanInterval theirs = vb.size() > 1 ? mean_and_error(vb) : one_file(vb[0], noise);
     if (floored) ours = floored_at(ours, noise.a / noise.pixels);
@@ -214,6 +244,8 @@ Welch BiasPair::test(
 
 double BiasPair::rare_event(double difference) const {
     const QuantityReadings& read = (difference < 0 ? a : b).quantities[quantity];
+    if (pools() && (difference < 0 ? a : b).files.size() < 2)  // one render has no outliers among its values
+        return std::max({brightest, a.quantities[quantity].rise, b.quantities[quantity].rise});
     if (!differences) return std::max(brightest, read.rise);
     const QuantityReadings& paired = differences->quantities[quantity];  // an event in b alone is a fall of a - b
     return std::max(brightest, difference < 0 ? paired.rise : paired.fall);
@@ -221,7 +253,7 @@ double BiasPair::rare_event(double difference) const {
 
 double BiasPair::missable_difference(double difference, double pixels, double level) const {
     const ArmStats& lower = difference < 0 ? a : b;
-    if (lower.files.size() < 2) return 0;
+    if (lower.files.size() < 2 && !pools()) return 0;
     return -math::log(level) * rare_event(difference) / (pixels * renders_of(lower));
 }
 
@@ -420,7 +452,9 @@ std::string single(const BiasResult& b) {
 
 std::string sentence_of(const RenderStats& all, const BiasResult& b, double alpha) {
     if (b.identical)
-        return fmt::format("{} and {} are identical: the same pixels in every render.{}", b.a, b.b, excluded(b));
+        return fmt::format(
+            "{} and {} have the same R, G and B in every pixel of every render; other channels are not compared.{}",
+            b.a, b.b, excluded(b));
     const std::string notes = excluded(b) + seeds(b);
     if (b.differs())
         return fmt::format("{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(all, b), "; "),
@@ -430,10 +464,10 @@ std::string sentence_of(const RenderStats& all, const BiasResult& b, double alph
     for (const MeanTest& t : b.regions) {
         if (!t.caveat.empty()) not_tested.push_back(fmt::format("{}: {}", t.region, t.caveat));
         else if (t.why.empty()) found.push_back(smallest_seen(t));
-        else not_tested.push_back(fmt::format("{}: {}", t.region, t.why));
+        else not_tested.push_back(fmt::format("{}: {}{}", t.region, t.why, t.needed));
         for (const MeanTest& c : t.channels)
             if (t.why.empty() && !c.why.empty())
-                not_tested.push_back(fmt::format("{} in {}: {}", c.region, t.region, c.why));
+                not_tested.push_back(fmt::format("{} in {}: {}{}", c.region, t.region, c.why, c.needed));
     }
     std::string out = found.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
                                     : fmt::format(

@@ -78,7 +78,9 @@ std::string power_sentence(const BiasResult& means) {
 std::string too_few_sentence(const ViewResult& view) {
     std::string out =
         fmt::format("Too few renders ({} and {}): {}.", view.baseline_renders, view.candidate_renders, view.too_few);
-    if (view.renders_needed) out += fmt::format(" {} renders of each side would do.", *view.renders_needed);
+    if (view.renders_needed && static_cast<double>(*view.renders_needed) >= renders_beyond)
+        out += " More than a million renders of each side would be needed.";
+    else if (view.renders_needed) out += fmt::format(" {} renders of each side would do.", *view.renders_needed);
     return out;
 }
 
@@ -112,6 +114,10 @@ void decide_compared(ViewResult& view) {
     else if (means.identical)
         view.state = ViewState::same, view.sentence = "Identical: every render has the same R, G and B in every pixel.";
     else view.state = ViewState::same, view.sentence = power_sentence(means);
+    if (view.candidate_renders == 1 && view.baseline_renders > 1 && !view.exact)
+        view.sentence +=
+            " The one render of the candidate was tested with the variance of the baseline; its noise was not "
+            "tested.";
     if (!view.too_few.empty() && view.state == ViewState::noisier) view.sentence += " " + too_few_sentence(view);
 }
 

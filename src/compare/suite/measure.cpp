@@ -117,6 +117,9 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
     plan.regions = view.regions;
     constexpr int blocks = 256;  // a quarter of the default: enough to find correlation over the renders of a side
     plan.flip = plan.count_pixel_p = false, plan.spectrum_blocks = blocks;
+    plan.shared_noise = true;
+    plan.pair = suite.options.pair == Pairing::always;
+    plan.find_pairs = suite.options.pair == Pairing::automatic;
     plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
     return plan;
 }
@@ -159,7 +162,7 @@ void test_variances(const RenderStats& all, const CompareResult& measured, ViewR
 /// too many if the noise of the side with fewer renders is underestimated: they are limited to those of two sides of
 /// equal noise.
 double known_df(const RenderStats& all, const MeanTest& test) {
-    if (test.paired) return test.welch.df;
+    if (test.paired || test.pooled) return test.welch.df;
     const double a = static_cast<double>(all.arms[0].files.size()), b = static_cast<double>(all.arms[1].files.size());
     const double equal = (1 / a + 1 / b) * (1 / a + 1 / b) / (1 / (a * a * (a - 1)) + 1 / (b * b * (b - 1)));
     return std::min(test.welch.df, equal);
@@ -190,6 +193,8 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
             return m.se * m.se * static_cast<double>(m.n);
         };
         power.variance_a = variance(all.arms[means.arm_a]), power.variance_b = variance(all.arms[means.arm_b]);
+        if (std::isnan(power.variance_a)) power.variance_a = power.variance_b;  // one render
+        if (std::isnan(power.variance_b)) power.variance_b = power.variance_a;
     }
     Welch known = test.welch;
     known.df = power.estimate_df;
@@ -320,6 +325,8 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         picture_one_side(suite, view, files.reader(), out);
         return out;
     }
+    if (moments && suite.options.pair == Pairing::always)
+        throw InputError({suite.file, 0, 0}, "pair = true: expected renders as the baseline, found moments");
     if (moments)
         out.notes.push_back(
             "The baseline is stored as moments: whether it shares random numbers or renders with the "

@@ -26,6 +26,9 @@ inline constexpr double share_of_means = 0.75;
 /// How --accept stores a baseline: its renders, or the mean and the variance of each pixel.
 enum class BaselineStorage { renders, moments };
 
+/// Whether renders are compared in pairs: if they share random numbers, or those with the same number in their names.
+enum class Pairing { automatic, always, never };
+
 /// The table [suite] of a suite file.
 struct SuiteOptions {
     std::string title = "golden images";
@@ -36,6 +39,7 @@ struct SuiteOptions {
     double exposure = 1;
     std::optional<double> brightest;
     BaselineStorage store = BaselineStorage::renders;
+    Pairing pair = Pairing::automatic;
 };
 
 /// The file's statements about one view, and its renders.

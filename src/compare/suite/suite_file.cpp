@@ -42,7 +42,11 @@ Section suite_table() {
                 "The largest possible Y of a pixel of one render, such as a clamp.", to<&SuiteOptions::brightest>},
             {"store", Type::word, none, "", defaulted, "\"renders\"",
                 "What --accept stores: the renders, or the mean and the variance of each pixel.",
-                to<&SuiteOptions::store>, {"renders", "moments"}}},
+                to<&SuiteOptions::store>, {"renders", "moments"}},
+            {"pair", Type::word, none, "", defaulted, "\"auto\"",
+                "Renders are compared in pairs if they share random numbers; true: those with the same number in their "
+                "names; false: never.",
+                to<&SuiteOptions::pair>, {"auto", "true", "false"}}},
         {}};
 }
 
@@ -96,8 +100,17 @@ void expand_regions(Node& view) {
     }
 }
 
+/// true -> "true", false -> "false".
+void read_pair(Node* table) {
+    Member* found = table ? table->find("pair") : nullptr;
+    if (!found || found->value.kind != Node::Kind::flag) return;
+    found->value.kind = Node::Kind::text;
+    found->value.text = found->value.flag ? "true" : "false";
+}
+
 void normalize(Node& root) {
     Member* suite = root.find("suite");
+    read_pair(suite ? &suite->value : nullptr);
     read_percent(suite ? &suite->value : nullptr);
     Member* views = root.find("view");
     if (!views) return;

@@ -171,6 +171,80 @@ TEST(Suites, PixelsThatAreNotFiniteOnOneSideChangeAView) {
         }
 }
 
+/// A suite of one view with these numbers of renders.
+ViewResult unbalanced(int baseline, int candidate, const SyntheticNoise& of_candidate, std::uint32_t seed) {
+    MemorySuite s;
+    s.suite.options.smallest = 0.05;
+    for (int k = 0; k < baseline; ++k) s.put("view", "baseline", k, noise, seed + static_cast<std::uint32_t>(k));
+    for (int k = 0; k < candidate; ++k)
+        s.put("view", "candidate", k, of_candidate, seed + 500 + static_cast<std::uint32_t>(k));
+    return s.compare().views[0];
+}
+
+TEST(Suites, ALongBaselineDoesNotWeakenATest) {
+    double longer = 0, shorter = 0;
+    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+        longer += unbalanced(20, 3, noise, 10'000 + 1000 * seed).means->regions[0].smallest / 10;
+        shorter += unbalanced(3, 3, noise, 10'000 + 1000 * seed).means->regions[0].smallest / 10;
+    }
+    EXPECT_LT(longer, 0.5 * shorter);
+    EXPECT_EQ(unbalanced(20, 3, brighter, 30'000).state, ViewState::changed);
+}
+
+TEST(Suites, OneRenderOfTheCandidateIsTestedInItsMean) {
+    const ViewResult same = unbalanced(20, 1, noise, 40'000), changed = unbalanced(20, 1, brighter, 41'000);
+    EXPECT_EQ(same.state, ViewState::same) << same.sentence;
+    EXPECT_THAT(same.sentence, HasSubstr("its noise was not tested"));
+    EXPECT_EQ(changed.state, ViewState::changed) << changed.sentence;
+    EXPECT_TRUE(std::isnan(same.variance_p));
+}
+
+/// Renders with one seed for each number, whose noise is in a few pixels of a corner; the candidate is `scale` times as
+/// bright.
+MemorySuite few_noisy_pixels(int count, float scale) {
+    MemorySuite s;
+    s.suite.options.smallest = 0.05;
+    for (int k = 0; k < count; ++k)
+        for (const char* which : {"baseline", "candidate"}) {
+            s.put("view", which, k, noise, 50'000 + static_cast<std::uint32_t>(k));
+            Render& render = s.renders["view/" + std::string(which) + "/" + std::to_string(k)];
+            for (std::size_t i = 0; i < render.size(); ++i) {
+                const float value =
+                    (i % side < 6 && i / side < 6 ? render.r[i] : 1) * (which == std::string("candidate") ? scale : 1);
+                render.r[i] = render.g[i] = render.b[i] = value;
+            }
+        }
+    return s;
+}
+
+TEST(Suites, SharedSeedsAreFoundInFewPixels) {
+    for (const int count : {8, 12, 20}) {
+        const SuiteResult result = few_noisy_pixels(count, 1.001F).compare();
+        EXPECT_TRUE(result.views[0].means->paired) << count;
+    }
+}
+
+TEST(Suites, PairsAreLookedForStatedOrIgnored) {
+    MemorySuite s;
+    s.suite.options.smallest = 0.05;
+    for (int k = 0; k < 6; ++k)
+        for (const char* which : {"baseline", "candidate"})
+            s.put("view", which, k, noise, 60'000 + static_cast<std::uint32_t>(k));
+    for (auto& [name, render] : s.renders)
+        if (name.find("candidate") != std::string::npos)
+            for (auto* plane : {&render.r, &render.g, &render.b})
+                for (float& x : *plane) x *= 1.01F;
+    for (const auto& [pairing, paired] :
+        {std::pair{Pairing::automatic, true}, std::pair{Pairing::always, true}, std::pair{Pairing::never, false}}) {
+        s.suite.options.pair = pairing;
+        const SuiteResult result = s.compare();
+        EXPECT_EQ(result.views[0].means->paired, paired);
+    }
+    s.put("view", "candidate", 77, noise, 60'500);
+    s.suite.options.pair = Pairing::always;
+    EXPECT_EQ(s.compare().views[0].state, ViewState::unreadable);  // a render without a partner
+}
+
 class SuiteFiles : public ScratchFolder {};
 
 TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
@@ -185,6 +259,10 @@ TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
     ASSERT_EQ(good.views.size(), 2u);
     EXPECT_EQ(good.options.smallest, 0.02);
     EXPECT_EQ(good.smallest(good.views[0]), 0.005);
+    EXPECT_EQ(good.options.pair, Pairing::automatic);
+    EXPECT_EQ(read("pair = true\n").options.pair, Pairing::always);
+    EXPECT_EQ(read("pair = false\n").options.pair, Pairing::never);
+    EXPECT_EQ(read("pair = \"auto\"\n").options.pair, Pairing::automatic);
     ASSERT_EQ(good.views[0].regions.size(), 1u);
     EXPECT_EQ(good.views[0].regions[0].name, "lamp");
     EXPECT_EQ(good.views[0].regions[0].box.y1, 4);
@@ -194,6 +272,7 @@ TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
     EXPECT_THAT(mistake("alhpa = 0.1\n"), HasSubstr("did you mean 'alpha'?"));
     EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("s.toml:4:"));
     EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("did you mean 'v'?"));
+    EXPECT_THAT(mistake("pair = \"maybe\"\n"), HasSubstr("s.toml:4:"));
     EXPECT_THAT(mistake("smallest = \"much\"\n"), HasSubstr("s.toml:4:12: "));
     EXPECT_THAT(mistake("[view.v]\nregions.lamp = [1, 2, 3]\n"), HasSubstr("s.toml:5:"));
     for (const char* text : {"1e999 %", "%", " %", "nan %", "2 % %"})

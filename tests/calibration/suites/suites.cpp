@@ -37,6 +37,9 @@ std::vector<ViewKind> view_kinds() {
     failing.failing = 0.002;
     return {{"gamma, 20 %, grey", {Kind::gamma, 0.2}}, {"gamma, 50 %, colour", {Kind::gamma, 0.5}, 0.5},
         {"gamma, 20 %, 12 and 4 renders", {Kind::gamma, 0.2}, 0, false, 12, 4},
+        {"gamma, 20 %, 20 and 3 renders", {Kind::gamma, 0.2}, 0, false, 20, 3},
+        {"gamma, 50 %, colour, 20 and 1 renders", {Kind::gamma, 0.5}, 0.5, false, 20, 1},
+        {"lognormal, sigma 1, 20 and 3 renders", {Kind::lognormal, 1}, 0, false, 20, 3},
         {"gamma filtered over 3 x 3 (correlated), grey", filtered},
         {"gamma filtered over 3 x 3 (correlated), colour", filtered, 0.5},
         {"lognormal, sigma 1 (heavy-tailed), grey", {Kind::lognormal, 1}},
