@@ -105,7 +105,7 @@ def _renders(side: Any, what: str) -> list[Any]:
 
 
 def file_name(view: str) -> str:
-    """A file name for a view: `%` and two hexadecimal digits stand for characters that it cannot have."""
+    """A file name for a view: `%` and two hexadecimal digits replace characters that it cannot have."""
     if not view:
         raise ValueError("expected a name of a view, found an empty one")
     odd = '/\\*?"{}%'

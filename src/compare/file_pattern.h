@@ -1,5 +1,5 @@
 // Patterns of file names: *, ?, [abc], [a-z], [!abc], %d and %04d (digits), and {view}, the name of a view. A wildcard
-// does not match '/', and at the begin of a name no '.'. [c] with one character stands for that character: a folder
+// does not match '/', and at the begin of a name no '.'. [c] with one character is that character: a folder
 // whose name has wildcards is written so.
 #pragma once
 

@@ -19,7 +19,7 @@ namespace crescent::inline comparison {
 
 inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;     // of every interval
-inline constexpr double renders_beyond = 1e6;  // numbers of renders that are needed are not told apart from here on
+inline constexpr double renders_beyond = 1e6;  // larger numbers of renders are reported as this one
 inline constexpr double heavy_share = 0.5;     // one squared error with half of their sum decides the mean
 
 /// A metric of one arm in one region. `why`: the reason if there is no value or no interval.

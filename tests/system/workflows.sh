@@ -58,7 +58,7 @@ expect 0 action '' "  # cosine --nothing
 cosine --wo 30"
 [ -s reports/check-1.xml ] && [ ! -e reports/check-2.xml ] || die "$(ls reports)"
 expect 2 action '' "cosine 'not closed"
-# A crash keeps its exit code, whatever follows.
+# A crash keeps its exit code if other calls follow.
 printf '#!/bin/bash\n[ "$2" = crash ] && exit 139\nexec "%s" "$@"\n' "$CRESCENT" >crescent && chmod +x crescent
 mv crescent bin/crescent.new && mv bin/crescent.new bin/crescent
 expect 139 action '' "crash
