@@ -84,7 +84,7 @@ for line in sys.stdin:
     wo, rest = [float(v) for v in given[:3]], [float(v) for v in given[3:]]
     if kind == "never":
         answer = {"sample": "0 0 1 0", "pdf": "0", "f": "-"}[what]
-    elif what == "sample" and kind == "alias":  # lamp 1 from 1/2 to 3/4 of the third number, else lamp 0
+    elif what == "sample" and kind == "alias":  # light 1 from 1/2 to 3/4 of the third number, else light 0
         z = (1 - rest[0]) * (-1 if 0.5 <= rest[2] < 0.75 else 1)
         r, phi = math.sqrt(1 - z * z), 2 * math.pi * rest[1]
         answer = f"{r * math.cos(phi)!r} {r * math.sin(phi)!r} {z!r} {(3 if z > 0 else 1) / (8 * math.pi)!r}"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Each command once, on small inputs: its outputs are there, and right and wrong end with their exit codes. The other
-# scripts beside this one have the details.
+# scripts of this folder have the details.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" --version
