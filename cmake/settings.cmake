@@ -19,7 +19,7 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
 endif()
 
 # The files of a folder are compiled as one, which parses each header and instantiates each template once: a build from
-# nothing takes two thirds of the time. Whoever changes one file often sets it OFF and recompiles that file alone.
+# nothing takes two thirds of the time. Developers who change one file often set it OFF and recompile that file alone.
 option(CRESCENT_UNITY "compile the files of a folder together" ON)
 
 add_library(crescent_compile_options INTERFACE)

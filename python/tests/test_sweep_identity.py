@@ -1,4 +1,4 @@
-"""What identifies a result of a sweep: a sampler with its state; and results that are damaged or cannot be told apart."""
+"""What identifies a result of a sweep: a sampler with its state; and results that are damaged or cannot be distinguished."""
 
 import functools
 import json
@@ -22,7 +22,7 @@ from crescent._sweep.store import Store, locked, write_whole  # noqa: E402
 
 
 
-def cosine(wo, u):  # workers do not have the modules beside this one
+def cosine(wo, u):  # workers do not have the modules next to this one
     r, phi, z = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1], np.sqrt(1 - u[:, 0])
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), z / np.pi
 

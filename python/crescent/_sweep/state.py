@@ -162,7 +162,7 @@ class _Walk:
             return ["object", self.state(kind, names), self._pairs(attributes, names)]
         try:
             return ["object", kind.__qualname__, _sha(pickle.dumps(value, protocol=4))]
-        except Exception:  # whatever a library raises
+        except Exception:  # anything that a library raises
             inside = getattr(value, "__dict__", None)
             return ["object", kind.__qualname__, repr(value) if inside is None else self._pairs(inside, names)]
 

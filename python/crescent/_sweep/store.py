@@ -44,7 +44,7 @@ _OLD_S = 86400.0  #: no file takes a day to write
 
 
 def _left_behind(partial: Path) -> bool:
-    """Whether nobody writes this file any more: its process on this machine is gone, or it is a day old."""
+    """Whether no one writes this file any more: its process on this machine is gone, or it is a day old."""
     found = re.fullmatch(r".*\.(.+)-(\d+)\.partial", partial.name)
     if found and found[1] == socket.gethostname():
         try:

@@ -292,7 +292,7 @@ private:
         return false;
     }
 
-    /// Removes what was found from answers that are not numbers, apart from `valid`.
+    /// Removes what was found from answers that are not numbers, except for `valid`.
     void withhold_verdicts() {
         const auto withheld = [&](Family f) { return out_.is_withheld(info(f).verdict); };
         std::erase_if(out_.findings, [&](const Finding& f) { return withheld(f.first.family); });

@@ -216,9 +216,9 @@ TEST(MapOfU, ADensityBelowThatOfTheMapIsFound) {
     EXPECT_FALSE(tested(high, map));  // other u may map to the same direction
 }
 
-/// An alias table over lamps of these powers, each an equal band of z; the third number chooses an entry and then the
+/// An alias table over lights of these powers, each an equal band of z; the third number chooses an entry and then the
 /// entry itself or its alias.
-FunctionSampler alias_lamps(std::vector<double> powers) {
+FunctionSampler alias_lights(std::vector<double> powers) {
     const std::size_t n = powers.size();
     double sum = 0;
     for (double v : powers) sum += v;
@@ -251,7 +251,7 @@ FunctionSampler alias_lamps(std::vector<double> powers) {
 }
 
 TEST(MapOfU, ABranchMayBeSeveralIntervalsOfTheChoosingNumber) {
-    const FunctionSampler two = alias_lamps({3, 1});  // [0, 1/2) and [3/4, 1), and [1/2, 3/4)
+    const FunctionSampler two = alias_lights({3, 1});  // [0, 1/2) and [3/4, 1), and [1/2, 3/4)
     const std::vector<MapDensity> all = tested(two, [](Source& source) { return map_densities(source, key); });
     EXPECT_GT(all.size(), 20u);
     for (const MapDensity& m : all) EXPECT_NEAR(m.drawn / m.p, 1, 1e-3);
@@ -270,14 +270,14 @@ TEST(MapOfU, AliasTablesOfAnySizeAreRight) {
             many.push_back(0.05 + std::fmod(0.618 * static_cast<double>(i * i + 1), 1.0));
             alternating.push_back(i % 2 == 0 ? 3 : 1);
         }
-        EXPECT_FALSE(tested(alias_lamps(many), map)) << n;
-        EXPECT_FALSE(tested(alias_lamps(alternating), map)) << n;
+        EXPECT_FALSE(tested(alias_lights(many), map)) << n;
+        EXPECT_FALSE(tested(alias_lights(alternating), map)) << n;
     }
 }
 
-/// Two lamps that alternate over many intervals, most of which no probe of a branch meets.
+/// Two lights that alternate over many intervals, most of which no probe of a branch meets.
 TEST(MapOfU, ShortIntervalsOfOtherBranchesAreAllowedFor) {
-    FunctionSampler s = alias_lamps({1, 1});
+    FunctionSampler s = alias_lights({1, 1});
     s.draw = [](Vec3d, const PrimarySample& u) {
         const bool below = std::fmod(u[2] * 400, 1.0) < 0.05;
         return from_chart({below ? 1 + u[0] : u[0], two_pi * u[1]});
