@@ -92,7 +92,7 @@ template <class S> consteval bool gives_weights() {
 /// Whether pdf and f, if the class declares them, can be called.
 template <class S> consteval bool pdf_is_plain() { return HasPdf<S> || !names_pdf<S>(); }
 template <class S> consteval bool f_is_plain() { return HasF<S> || !names_f<S>(); }
-/// Whether f, which is what is called, has that name: an eval beside no f would be ignored.
+/// Whether f, which is what is called, has that name: an eval next to no f would be ignored.
 template <class S> consteval bool f_is_named() { return names_f<S>() || !names_eval<S>(); }
 template <class S> consteval bool is_checkable() {
     if constexpr (!HasSample<S> || !pdf_is_plain<S>() || !f_is_plain<S>() || !f_is_named<S>()) return false;

@@ -57,7 +57,7 @@ constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;  // 4,096 seeds o
 
 /// Appends with one call, so that items of two processes do not mix.
 bool append(const std::string& path, const std::string& items) {
-    // A pipe in its place, which nobody reads, does not stop the run.
+    // A pipe in its place, which no one reads, does not stop the run.
     constexpr int flags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
     const int file = ::open(path.c_str(), flags, 0666);
     if (file < 0) return false;

@@ -73,7 +73,7 @@ struct CheckAt {
     InvalidAnswers invalid;          // of pdf(w) and f(w)
     double moved_by_resolution = 0;  // share of the draws, if their numbers are too coarse for a test of the density
     bool nothing_drawn = false;      // no draw is a direction or a delta part, and p is 0 at every point
-    bool draws_elsewhere = false;    // whether a sampler that draws nothing here draws at another w_o
+    bool draws_elsewhere = false;    // whether a sampler that returns no sample here draws at another w_o
     EvaluationNoise scatter;         // of pdf(w) and f(w), if they are random estimates
     int looks = 0;
     std::uint64_t evaluations = 0;
