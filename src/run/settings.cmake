@@ -1,5 +1,4 @@
-# Version, commit and compiler, as cmake/provenance.cmake has them; files that run once.
-crescent_low_optimization(${PROJECT_SOURCE_DIR}/src/run/checkpoint.cpp ${PROJECT_SOURCE_DIR}/src/run/join.cpp)
+# Version, commit and compiler, as cmake/provenance.cmake has them.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/run/version.cpp PROPERTIES
   COMPILE_DEFINITIONS "${crescent_provenance}" INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/provenance)
 add_dependencies(crescent_run crescent_commit)

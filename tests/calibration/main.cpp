@@ -16,7 +16,7 @@
 #include "tests/calibration/records.h"
 #include "tests/calibration/serve.h"
 #include "tests/calibration/table.h"
-#include "tests/known_samplers/correct/false_alarms.h"
+#include "tests/known_samplers/study/false_alarms.h"
 
 namespace {
 

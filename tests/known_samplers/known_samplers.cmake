@@ -11,7 +11,12 @@ function(crescent_samplers target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PUBLIC crescent_check PRIVATE crescent_compile_options)
   crescent_use_pch(${target} <nlohmann/json.hpp>)
+  crescent_unity(${target} ${sources})
 endfunction()
 crescent_samplers(crescent_planted correct faulty)
-crescent_samplers(crescent_known_samplers held_out reported)
+crescent_samplers(crescent_known_samplers held_out reported study)
+# Many of them have a `Bend` of their own.
+file(GLOB own_helpers ${CMAKE_CURRENT_LIST_DIR}/faulty/*.cpp ${CMAKE_CURRENT_LIST_DIR}/held_out/*.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/reported/*.cpp)
+set_source_files_properties(${own_helpers} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 target_link_libraries(crescent_known_samplers PUBLIC crescent_planted)

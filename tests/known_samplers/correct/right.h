@@ -41,6 +41,8 @@ private:
 
 /// Returns the direction at `cos` from an axis, rotated by `turns` about it.
 Vec3d about(Vec3d axis, double cos, double turns);
+/// Returns the azimuth of w in turns, [0, 1).
+double turns_of(Vec3d w);
 
 using SamplerFamily = SyntheticSampler (*)(Rng&);
 std::vector<SamplerFamily> microfacet_families();  // anisotropic GGX, Beckmann and Ward, in double and in float

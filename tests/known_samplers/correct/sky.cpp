@@ -11,12 +11,13 @@
 
 namespace crescent {
 
-namespace {
-
 double turns_of(Vec3d w) {
     const double t = math::atan2(w.y, w.x) / (2 * pi);
     return t < 0 ? t + 1 : t;
 }
+
+namespace {
+
 double theta_of(Vec3d w) { return math::atan2(math::hypot(w.x, w.y), w.z); }
 
 std::pair<int, double> find(const double* sum, int count, double u) {

@@ -46,10 +46,6 @@ struct Table {
     }
 };
 
-double turns_of(Vec3d w) {
-    const double t = math::atan2(w.y, w.x) / (2 * pi);
-    return t < 0 ? t + 1 : t;
-}
 Vec3d about_up(double cos, double turns) { return math::spherical(cos, 2 * pi * turns); }
 int cell(double v, int count) { return std::clamp(static_cast<int>(v * count), 0, count - 1); }
 

@@ -1,6 +1,6 @@
 // Samplers are checked on all cores, each with seed_of() of its number, and counted in their order afterwards, so that
 // the table does not depend on the number of threads. Rates have Clopper & Pearson's 95 % interval.
-#include "tests/known_samplers/correct/false_alarms.h"
+#include "tests/known_samplers/study/false_alarms.h"
 
 #include <algorithm>
 #include <fmt/format.h>
