@@ -44,13 +44,13 @@ Part part_of(const std::string& text, const std::string& path) {
     return {path, Json::parse(text), std::move(file)};
 }
 
-constexpr std::size_t most_bytes = std::size_t{2} << 30;  // a run of 4,096 seeds has some 500 MB
+constexpr std::size_t most_bytes_of_part = std::size_t{2} << 30;  // a run of 4,096 seeds has some 500 MB
 
 Part read_part(const std::string& given) {
     std::error_code ignored;
     const bool folder = std::filesystem::is_directory(given, ignored);
     const std::string path = folder ? (std::filesystem::path(given) / "metrics.json").string() : given;
-    return part_of(read_input(path, most_bytes, "the metrics.json of a run, or the folder of one,"), path);
+    return part_of(read_input(path, most_bytes_of_part, "the metrics.json of a run, or the folder of one,"), path);
 }
 
 /// "section.key" -> value, of an experiment's canonical text.

@@ -42,6 +42,9 @@ build_example() {
     expect 0 cmake --build "$1/build"
 }
 
+# usable_arms: the built-in samplers that reach a light of an experiment without sky and meshes.
+usable_arms() { "$CRESCENT" list arms | sed 's/ .*//' | grep -vxE 'sky|light-triangle'; }
+
 # same_outputs A B: equal except for what varies from run to run.
 same_outputs() { diff -r -x timing.json "$1" "$2" >difference || die "$1 and $2 differ: $(head -n 5 difference)"; }
 

@@ -8,7 +8,7 @@
 # Every built-in sampler over the small scene, and scenes with other shapes, lobes and lights.
 {
     sed '/^\[arms/,/^n = /d' "$tiny"
-    "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'
+    usable_arms | sed 's/.*/[arms.&]\nn = [4, 16]/'
     printf '[lights.bulb]\nkind = "sphere"\ncenter = [1.2, 1.8, 1.0]\nradius = 0.3\nradiance = [6, 5, 4]\n'
     printf '[lights.window]\nkind = "rectangle"\ncorner = [-1, 2.6, -0.4]\nedge_u = [1.2, 0, 0]\n'
     printf 'edge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'

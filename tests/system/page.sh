@@ -19,7 +19,7 @@ node "$CRESCENT_SOURCE/apps/web/native.mjs" "$CRESCENT" >native.json 2>native.lo
 programs=$!
 
 # Every sampler over three scenes, small.
-arms=$("$CRESCENT" list arms | sed 's/ .*//')
+arms=$(usable_arms)
 for name in tiny three-glosses two-lamps; do
     from="$CRESCENT_SOURCE/experiments/$name.toml"
     [ "$name" = tiny ] && from=$tiny
