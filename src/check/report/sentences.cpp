@@ -329,7 +329,7 @@ void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
 
 void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     const bool tested = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
-    if (tested) return;
+    if (tested || c.nothing_drawn) return;  // of several techniques, another one may have draws
     const bool dark = c.integrals.light.points > 0 && c.integrals.light.all[0].value == 0 &&
         c.integrals.light.all[1].value == 0 && c.integrals.light.all[2].value == 0;
     if (c.observations.weightless > 0) {
