@@ -70,11 +70,11 @@ void keep_freed_memory() {
 #endif
 }
 
-/// 2026-11-25T21:04:05Z.
+/// 2026-11-25T21:04:05Z; "unknown" if the clock has no date, as at the ends of 64 bits.
 std::string now_text() {
     const std::time_t now = std::time(nullptr);
     std::tm parts{};
-    gmtime_r(&now, &parts);
+    if (!gmtime_r(&now, &parts)) return "unknown";
     char out[sizeof "2026-11-25T21:04:05Z"];
     std::strftime(out, sizeof out, "%Y-%m-%dT%H:%M:%SZ", &parts);
     return out;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "experiment/parser.h"
 #include "experiment/experiment.h"
@@ -117,7 +118,24 @@ void check_magnitudes(ParseContext& context) {
     }
 }
 
-/// Reports an arm whose sampler reaches no light that the experiment has: every sample of it is 0.
+/// What an arm reaches: a combination reaches what any of its samplers reaches; a sampler whose code is not built in
+/// counts as reaching everything. Combinations that contain themselves are reported elsewhere.
+Reaches reaches_of(const Experiment& e, const std::string& name, std::set<std::string>& seen) {
+    Reaches out{.fill = false, .lights = false, .sky = false, .triangles = false};
+    const ArmPlan* arm = e.find_arm(name);
+    if (arm && arm->is_combination()) {
+        if (!seen.insert(name).second) return out;
+        for (const std::string& part : arm->combination.of) {
+            const Reaches more = reaches_of(e, part, seen);
+            out.fill |= more.fill, out.lights |= more.lights, out.sky |= more.sky, out.triangles |= more.triangles;
+        }
+        return out;
+    }
+    const SamplerInfo* info = arm && arm->is_external() ? nullptr : find_arm_info(arm ? arm->sampler : name);
+    return info ? info->reaches : Reaches{};
+}
+
+/// Reports an arm whose samplers reach no light that the experiment has: every sample of it is 0.
 void check_reached_light(ParseContext& context) {
     for (const char* table : {"disks", "lights", "fill", "fill.radiance", "sky", "meshes", "arms"})
         if (!context.is_valid(table)) return;
@@ -126,9 +144,8 @@ void check_reached_light(ParseContext& context) {
     const bool lights = std::ranges::any_of(e.disks, shines) || std::ranges::any_of(e.lights, shines),
                triangles = std::ranges::any_of(e.meshes, &MeshObject::emits), fill = std::ranges::max(e.fill) > 0;
     for (const ArmPlan& arm : e.arms) {
-        const SamplerInfo* info = arm.is_external() || arm.is_combination() ? nullptr : find_arm_info(arm.sampler);
-        if (!info) continue;
-        const Reaches& reaches = info->reaches;
+        std::set<std::string> seen;
+        const Reaches reaches = reaches_of(e, arm.name, seen);
         if ((reaches.fill && fill) || (reaches.lights && lights) || (reaches.triangles && triangles) ||
             (reaches.sky && e.sky))
             continue;
@@ -136,10 +153,12 @@ void check_reached_light(ParseContext& context) {
         for (const auto& [of, name] : {std::pair(reaches.fill, "the fill"), {reaches.lights, "disks and lights"},
                  {reaches.triangles, "triangles that emit"}, {reaches.sky, "a sky"}})
             if (of) reached += (reached.empty() ? "" : " and ") + std::string(name);
+        if (reached.empty()) continue;  // a combination of nothing, which is reported elsewhere
         context.report("arms." + arm.name,
-            fmt::format("arms.{}: the sampler '{}' reaches only {}, and the experiment has no such light: every sample "
-                        "would be 0",
-                arm.name, arm.sampler, reached));
+            fmt::format("arms.{}: {} only {}, and the experiment has no such light: every sample would be 0", arm.name,
+                arm.is_combination() ? fmt::format("the samplers {} reach", fmt::join(arm.combination.of, ", "))
+                                     : fmt::format("the sampler '{}' reaches", arm.sampler),
+                reached));
     }
 }
 

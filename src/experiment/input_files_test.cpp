@@ -68,5 +68,45 @@ TEST_F(MeshFiles, HaveAContentThatStandsForThem) {
     }
 }
 
+/// A sky is found in the folder of the experiment or below it, as a mesh is: no path and no link leads out of it.
+TEST_F(MeshFiles, AndSkiesAreBelowTheExperiment) {
+    namespace fs = std::filesystem;
+    fs::create_directories(folder_ / "inner");
+    const std::vector<float> texels(3 * 8 * 4, 1);
+    for (const char* name : {"sky.image", "inner/sky.image"})
+        std::ofstream(folder_ / name, std::ios::binary)
+            << image_file({.width = 8, .height = 4, .rgb = texels, .hash = hash_of_texels(8, 4, texels)});
+    fs::create_symlink("../sky.image", folder_ / "inner" / "link.image");
+    fs::create_symlink("sky.image", folder_ / "inner" / "here.image");
+    std::ofstream(folder_ / "inner" / "e.toml") << R"(
+[image]
+width = 8
+height = 8
+[camera]
+eye = [0, 0, 5]
+target = [0, 0, 0]
+vfov_deg = 40
+[shapes.ball]
+kind = "sphere"
+center = [0, 0, 0]
+radius = 1
+rho_d = [0.5, 0.5, 0.5]
+[sky]
+file = "sky.image"
+[arms.sky]
+n = [4]
+)";
+    const auto mistake = [&](const std::string& file) -> std::string {
+        try {
+            (void)load((folder_ / "inner" / "e.toml").string(), {"sky.file=" + file});
+            return "";
+        } catch (const InputError& error) { return error.what(); }
+    };
+    for (const char* file : {"sky.image", "here.image", "../inner/sky.image"}) EXPECT_EQ(mistake(file), "");
+    for (const std::string& file :
+        {std::string("../sky.image"), (folder_ / "sky.image").string(), std::string("link.image")})
+        EXPECT_THAT(mistake(file), testing::HasSubstr("expected a file in the folder of the experiment or below it"));
+}
+
 }  // namespace input_files_test
 }  // namespace crescent::inline experiment

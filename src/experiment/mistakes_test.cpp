@@ -294,6 +294,16 @@ TEST(Mistakes, AnArmThatReachesNoLightIsRefused) {
     EXPECT_EQ(mistake_with({"arms.other.sampler=light-area"}), "");
     EXPECT_THAT(mistake_with({"arms.other.sampler=light-area", "key.radiance=[0, 0, 0]", "fill.radiance=[1, 1, 1]"}),
         HasSubstr("arms.other: the sampler 'light-area' reaches only disks and lights"));
+    const auto combined = [](const char* of, const char* kind = "mixture") {
+        return fmt::format("arms.other={{kind = \"{}\", of = {}}}", kind, of);
+    };
+    for (const char* kind : {"mixture", "mis"})
+        EXPECT_THAT(mistake_with({combined("[\"sky\", \"light-triangle\"]", kind)}),
+            HasSubstr("arms.other: the samplers sky, light-triangle reach only triangles that emit and a sky"));
+    EXPECT_THAT(mistake_with({"arms.inner={kind = \"mixture\", of = [\"sky\", \"sky\"]}",
+                    combined("[\"inner\", \"light-triangle\"]")}),
+        HasSubstr("arms.other: the samplers inner, light-triangle reach only"));
+    EXPECT_EQ(mistake_with({combined("[\"sky\", \"cosine\"]")}), "");
 }
 
 TEST(Mistakes, TheFileWithoutOneIsAccepted) { EXPECT_NO_THROW((void)parse(good, "x.toml")); }

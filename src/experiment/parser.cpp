@@ -451,6 +451,9 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
     }
     if (context.e.sky && context.is_valid("sky.file")) {
         try {
+            if (leads_out(std::filesystem::path(path).parent_path().string(), context.e.sky->file))
+                throw InputError({context.e.sky->file, 0, 0},
+                    "expected a file in the folder of the experiment or below it, found one in another place");
             load_sky(*context.e.sky);
         } catch (const InputError& error) { context.report("sky.file", fmt::format("sky.file: {}", error.what())); }
     }
