@@ -96,8 +96,11 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
         case Cut::Why::exited: return {State::error, rest, rest};
         case Cut::Why::too_slow: break;
     }
-    const std::string message = fmt::format(
-        "Not examined: {:g} s are not enough for this program at every w_o.", check_case.adapter->spending().allowed);
+    const double of_program = check_case.adapter->spending().allowed;
+    const std::string message = of_program > 0
+        ? fmt::format("Not examined: {:g} s are not enough for this program at every w_o.", of_program)
+        : fmt::format("Not examined: {:g} s (TestSettings::seconds) are not enough for this sampler at every w_o.",
+              settings.seconds);
     return {settings.accept_few ? State::skipped : State::inconclusive, message, message};
 }
 

@@ -30,6 +30,7 @@ struct TestSettings {
     std::size_t further_in_all = 8000000;    // evaluations by which w_o that are not decided go on, in all
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees; empty: the grid
     bool accept_few = false;  // whether a program too slow for every w_o is checked by those that were examined
+    double seconds = 60;      // for one sampler in C++, in all; what is not examined then is inconclusive; 0: no limit
     std::optional<check::CheckBudget> budget{};  // of each w_o; empty: that of the mode, or of the queries
 
     /// The defaults.
@@ -42,6 +43,7 @@ struct TestSettings {
         r.questions = 6000000;
         r.questions_in_all = 72000000;
         r.further_in_all = 0;
+        r.seconds = 3600;
         return r;
     }
 };

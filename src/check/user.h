@@ -275,7 +275,8 @@ template <class Given> CheckResult check_sampler(std::string name, Given&& sampl
     else if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
         const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), S(std::forward<Given>(sampler)));
         ProgressMonitor alone;
-        return run_checks(make_user_cases(adapter, settings.full, settings.wo), settings, monitor ? *monitor : alone);
+        return run_checks(make_user_cases(limited_in_time(adapter, settings.seconds), settings.full, settings.wo),
+            settings, monitor ? *monitor : alone);
     } else {
         return {};
     }

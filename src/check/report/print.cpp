@@ -175,7 +175,8 @@ namespace {
 /// By front end.
 using Words = std::array<const char*, 3>;
 constexpr Words thorough = {"--full", "crescent::IsARightSamplerBy(crescent::TestSettings::thorough())", "full=True"};
-constexpr Words time = {"--patience SECONDS", "a sampler that answers faster", "patience=SECONDS"};
+constexpr Words time = {
+    "--patience SECONDS", "TestSettings::seconds, or a sampler that answers faster", "patience=SECONDS"};
 constexpr Words accept = {"--allow-inconclusive", "crescent::IsNotAWrongSampler()", "state != 'wrong'"};
 
 std::string named(const Words& words, FrontEnd front_end) { return words[static_cast<std::size_t>(front_end)]; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <unordered_map>
@@ -246,6 +247,53 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
 const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
     const auto* cache = dynamic_cast<const CachingAdapter*>(&sampler);
     return cache ? cache->uncached_sampler() : sampler;
+}
+
+// ---- A sampler with a limited time.
+
+namespace {
+
+class TimedAdapter : public ForwardingAdapter {
+    using Clock = std::chrono::steady_clock;
+
+public:
+    TimedAdapter(std::shared_ptr<const SamplerAdapter> sampler, double seconds)
+        : ForwardingAdapter(std::move(sampler)), seconds_(seconds) {}
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        allow();
+        inner().sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        allow();
+        inner().pdf(t, at, out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        allow();
+        inner().exact_pdf(t, at, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        allow();
+        inner().f(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        allow();
+        inner().f_channels(at, out);
+    }
+
+private:
+    double seconds_;
+    Clock::time_point began_ = Clock::now();
+    void allow() const {
+        if (std::chrono::duration<double>(Clock::now() - began_).count() > seconds_)
+            throw SamplerTimeout("the limit of time is reached");
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> limited_in_time(std::shared_ptr<const SamplerAdapter> sampler, double seconds) {
+    if (!(seconds > 0)) return sampler;
+    return std::make_shared<TimedAdapter>(std::move(sampler), seconds);
 }
 
 // ---- Adds the side to the message of an error and throws it again with the same type.

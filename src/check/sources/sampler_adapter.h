@@ -323,6 +323,12 @@ private:
     }
 };
 
+// ---- A sampler with a limited time.
+
+/// Throws SamplerTimeout for a call that begins more than `seconds` after this object was made. Until then it changes
+/// nothing: results do not depend on the clock unless the limit is reached.
+std::shared_ptr<const SamplerAdapter> limited_in_time(std::shared_ptr<const SamplerAdapter> sampler, double seconds);
+
 // ---- The cases of a user's sampler; cases.h has those of the built-in arms.
 
 /// User-defined w_o: theta and azimuth in degrees.

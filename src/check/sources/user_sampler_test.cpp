@@ -3,10 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <thread>
 
 #include "check/user.h"
 
@@ -198,6 +204,61 @@ struct Unique : ChosenLight {
     Unique(Unique&&) = default;
 };
 static_assert(requires(Unique s) { check_sampler("mine", &s); } && requires { check_sampler("mine", Unique{}); });
+
+// ---- A limit of time: what is not examined within it is inconclusive, with the limit; nothing else depends on it.
+
+/// Lambert with its cosine sampler; slow: it sleeps once in so many calls.
+struct Lambert {
+    int slow = 0;
+    struct Out {
+        Float3 wi;
+        float pdf;
+    };
+    Out sample(Float3, std::array<float, 2> u) const {
+        wait();
+        const float r = std::sqrt(u[0]), phi = 2 * std::numbers::pi_v<float> * u[1], z = std::sqrt(1 - u[0]);
+        return {{r * std::cos(phi), r * std::sin(phi), z}, z / std::numbers::pi_v<float>};
+    }
+    float pdf(Float3, Float3 wi) const {
+        wait();
+        return std::max(wi[2], 0.0f) / std::numbers::pi_v<float>;
+    }
+    void wait() const {
+        if (slow > 0 && ++calls() % slow == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    static std::atomic<int>& calls() {
+        static std::atomic<int> count{0};
+        return count;
+    }
+};
+
+TEST(UserSamplers, AreInconclusiveAfterTheLimitOfTime) {
+    TestSettings settings;
+    EXPECT_EQ(settings.seconds, 60);
+    settings.wo = {{0, 0}, {60, 0}};
+    settings.seconds = 0.3;
+    const auto began = std::chrono::steady_clock::now();
+    const CheckResult j = check_sampler("slow", Lambert{50}, settings);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 20);
+    EXPECT_EQ(j.state, State::inconclusive);
+    ASSERT_FALSE(j.verdicts.empty());
+    EXPECT_EQ(j.verdicts[0].message,
+        "Not examined: 0.3 s (TestSettings::seconds) are not enough for this sampler at every w_o.");
+    EXPECT_EQ(j.left_out.size(), 2u);
+}
+
+TEST(UserSamplers, HaveTheSameResultWithAndWithoutALimitOfTime) {
+    TestSettings limited, unlimited;
+    limited.wo = unlimited.wo = {{30, 0}};
+    limited.seconds = 3600, unlimited.seconds = 0;
+    const CheckResult a = check_sampler("fast", Lambert{}, limited), b = check_sampler("fast", Lambert{}, unlimited);
+    EXPECT_EQ(a.state, State::right);
+    ASSERT_EQ(a.verdicts.size(), b.verdicts.size());
+    for (std::size_t k = 0; k < a.verdicts.size(); ++k) {
+        if (a.verdicts[k].name == "efficiency") continue;  // it is timed
+        EXPECT_EQ(a.verdicts[k].message, b.verdicts[k].message);
+    }
+}
 
 }  // namespace user_sampler_test
 }  // namespace crescent
