@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiment/parser.h"
 #include "module.h"
 #include "run_result.h"
 #include "watched.h"

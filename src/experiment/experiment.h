@@ -219,6 +219,10 @@ struct Experiment : SceneData {
 Experiment load(const std::string& path, const std::vector<std::string>& overrides = {});
 /// The same from text; `name` is the file's name in messages.
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
+/// Returns the text of a file with these overrides as a file of its own. A value that is not given stays so: another
+/// key may decide it.
+std::string text_with_overrides(
+    std::string_view text, const std::string& name, const std::vector<std::string>& overrides);
 
 /// Returns the experiment with its files read: published values, meshes and its sky, where it names some and has none
 /// yet. Throws InputError.

@@ -80,11 +80,6 @@ void throw_if_any(std::vector<Diagnostic> all);
 
 /// Puts "path=value" overrides into the tree.
 void apply_overrides(ParseContext& context, Node& root, const std::vector<std::string>& overrides);
-/// Returns the text of a file with these overrides as a file of its own. A value that is not given stays so: another
-/// key may decide it.
-std::string text_with_overrides(
-    std::string_view text, const std::string& name, const std::vector<std::string>& overrides);
-
 /// Checks keys against each other: names that must exist, regions on the image, the camera, degenerate shapes.
 void check_geometry(ParseContext& context);
 void check_names(ParseContext& context);
