@@ -1,6 +1,7 @@
 // Lengths in the meshes' own unit, radiance in W/(sr m^2).
 #include "experiment/model_experiment.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -16,7 +17,12 @@ namespace {
 
 constexpr double half_view = 20;  // degrees
 
-std::string point(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+/// A point with six digits of `detail`, a length: far from the origin, more digits than six.
+std::string point(Vec3d v, double detail) {
+    const double size = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+    const int digits = size > detail && detail > 0 ? 6 + static_cast<int>(std::ceil(math::log10(size / detail))) : 6;
+    return fmt::format("[{0:.{3}g}, {1:.{3}g}, {2:.{3}g}]", v.x, v.y, v.z, std::min(digits, 17));
+}
 
 /// The ball around a box.
 struct Ball {
@@ -35,7 +41,7 @@ std::string light_over(const Ball& ball) {
     return fmt::format(
         "[disks.light]\ncenter = {}\nnormal = {}\nradius = {:.6g}\nradiance = [15, 15, 15]\n\n[fill]\nradiance = "
         "[0.3, 0.3, 0.3]\n",
-        point(ball.middle + 2.5 * ball.radius * towards), point(-1.0 * towards), 0.6 * ball.radius);
+        point(ball.middle + 2.5 * ball.radius * towards, ball.radius), point(-1.0 * towards, 1), 0.6 * ball.radius);
 }
 
 std::string arm(const std::string& name, const std::string& more = "") {
@@ -48,8 +54,8 @@ std::string camera_table(const Bounds& box) {
     const Ball ball(box);
     const Vec3d towards = normalize(Vec3d{0.5, 0.4, 1});
     return fmt::format("[camera]\neye = {}\ntarget = {}\nvfov_deg = {}\n",
-        point(ball.middle + (1.05 * ball.radius / math::sin(half_view * pi / 180)) * towards), point(ball.middle),
-        2 * half_view);
+        point(ball.middle + (1.05 * ball.radius / math::sin(half_view * pi / 180)) * towards, ball.radius),
+        point(ball.middle, ball.radius), 2 * half_view);
 }
 
 std::string table_name_of(const std::string& file) {

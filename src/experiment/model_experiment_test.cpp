@@ -27,6 +27,25 @@ TEST(ModelExperiment, IsReadByTheParser) {
     }
 }
 
+TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
+    for (const double distance : {0.0, 3.8e6}) {
+        Bounds box;
+        for (const double side : {0.0, 1.5}) {
+            const double x = distance + side;
+            box.add(Vec3f{static_cast<float>(x), static_cast<float>(-x), static_cast<float>(2 * x)});
+        }
+        std::string text = experiment_for({{"far.mesh", tetrahedron()}}, std::nullopt);
+        const std::size_t begin = text.find("[camera]"), end = text.find("\n\n", begin);
+        text.replace(begin, end - begin, camera_table(box));
+        const Camera camera = parse(text, "far").camera;
+        const Vec3d middle = 0.5 * (widen(box.low) + widen(box.high)), size = widen(box.high) - widen(box.low);
+        const double radius = 0.5 * std::sqrt(dot(size, size));
+        const Vec3d off = camera.target - middle, away = camera.eye - camera.target;
+        EXPECT_LT(std::sqrt(dot(off, off)), 1e-4 * radius) << distance;
+        EXPECT_NEAR(std::sqrt(dot(away, away)) / radius, 1.05 / std::sin(20 * pi / 180), 1e-3) << distance;
+    }
+}
+
 TEST(ModelExperiment, NamesTablesAfterFiles) {
     EXPECT_EQ(table_name_of("folder/a model.mesh"), "a_model");
     EXPECT_EQ(table_name_of("-x.mesh"), "mesh-x");

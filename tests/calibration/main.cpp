@@ -1,6 +1,6 @@
-// crescent_calibration SET ...: runs cases; crescent_calibration right: checks correct samplers at random parameters
-// and counts false alarms by family; crescent_calibration table|csv FILE...: reports results; --serve: serves the
-// sampler of a case over a pipe; --list: lists sets, families and engines.
+// crescent_calibration SET ...: runs cases; crescent_calibration false-alarms: checks correct samplers at random
+// parameters and counts false alarms by family; crescent_calibration table|csv FILE...: reports results; --serve:
+// serves the sampler of a case over a pipe; --list: lists sets, families and engines.
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
@@ -119,7 +119,7 @@ void run_set(const Options& o) {
 }
 
 /// Returns 0 if no more correct samplers are called wrong than alpha allows.
-int check_right(const Options& o) {
+int count_false_alarms(const Options& o) {
     TestSettings settings = o.mode == "full" ? TestSettings::thorough() : TestSettings::quick();
     settings.seed = static_cast<std::uint32_t>(o.seed);
     const auto [from, to] = range_of(o.cases, CaseSet{});
@@ -155,7 +155,7 @@ void list() {
 int run(int argc, char** argv) {
     CLI::App app{"Measures engines of `crescent check` on samplers whose verdict is known."};
     Options o;
-    app.add_option("what", o.words, "SET, or right, or table FILE..., or csv FILE... (JSON lines, or .csv)");
+    app.add_option("what", o.words, "SET, or false-alarms, or table FILE..., or csv FILE... (JSON lines, or .csv)");
     app.add_option("--engine", o.engine, "which engine")->capture_default_str();
     app.add_option("--seed", o.seed, "of the cases")->capture_default_str();
     app.add_option("--cases", o.cases, "A:B, or all")->capture_default_str();
@@ -175,8 +175,9 @@ int run(int argc, char** argv) {
     if (o.serve) return serve_case(o);
     if (o.list) return list(), 0;
     if (o.words.empty())
-        throw InputError({"SET", 0, 0}, "give a set, or right, or table or csv and files; --list lists the sets");
-    if (o.words[0] == "right") return check_right(o);
+        throw InputError(
+            {"SET", 0, 0}, "give a set, or false-alarms, or table or csv and files; --list lists the sets");
+    if (o.words[0] == "false-alarms") return count_false_alarms(o);
     if (o.words[0] != "table" && o.words[0] != "csv") return run_set(o), 0;
     std::vector<nlohmann::ordered_json> records;
     for (std::size_t k = 1; k < o.words.size(); ++k)

@@ -1,5 +1,5 @@
 // Correct samplers at random parameters, for measuring false positives of the check. Each is written in double from its
-// source, with separate sample and pdf, as users write theirs; `crescent_calibration right` checks them.
+// source, with separate sample and pdf, as users write theirs; `crescent_calibration false-alarms` checks them.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // How often correct samplers at random parameters are reported as wrong, by family: measured by
-// `crescent_calibration right`.
+// `crescent_calibration false-alarms`.
 #pragma once
 
 #include "check/check.h"
