@@ -28,7 +28,7 @@ TEST(ModelExperiment, IsReadByTheParser) {
 }
 
 TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
-    for (const double distance : {0.0, 3.8e6}) {
+    for (const double distance : {0.0, 4e5}) {
         Bounds box;
         for (const double side : {0.0, 1.5}) {
             const double x = distance + side;
