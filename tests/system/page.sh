@@ -27,7 +27,7 @@ for name in tiny three-glosses two-lamps; do
         for arm in $arms; do printf '\n[arms.%s]\nn = [4, 16]\n' "$arm"; done; } >"$name-all.toml"
 done
 expect 0 "$FILM_HASHES" tiny-all.toml three-glosses-all.toml two-lamps-all.toml
-awk '/ note-reference | under a sky, | paired |^function /{ next } / quadrature /{ print; next } { $2 = ""; $0 = $0; $1 = $1; print }' printed |
+awk '/ note-reference | under a sky, | paired | flip |^function /{ next } / quadrature /{ print; next } { $2 = ""; $0 = $0; $1 = $1; print }' printed |
     sort -u >native
 [ "$(wc -l <native)" -gt 70 ] || die "too few films: $(cat native)"
 expect 0 node --no-warnings "$CRESCENT_SOURCE/tests/system/browser/hashes.mjs" hashes.js "$CRESCENT_PAGE/crescent.wasm" \
