@@ -30,8 +30,13 @@ for name, right in expected.items():
 wrong = []
 with concurrent.futures.ThreadPoolExecutor(2) as pool:
     for name, found in pool.map(states, expected):
-        # Under one disk light the exported sampler has no f.
-        page = {verdict: state for verdict, state in expected[name]["states"].items() if found[verdict] != "skipped" or state == "skipped"}
+        # Under one disk light the exported sampler has no f. A program may be asked for more draws than the page takes, so
+        # a tail or a mean that is hard to decide may be decided for one of them alone.
+        page = {
+            verdict: state
+            for verdict, state in expected[name]["states"].items()
+            if verdict not in ("tail", "mean") and (found[verdict] != "skipped" or state == "skipped")
+        }
         same = {verdict: found[verdict] for verdict in page}
         if same != page or len(page) < 4:
             wrong.append(f"{name}: {same} in Python, {page} in the page")
