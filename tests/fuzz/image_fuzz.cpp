@@ -14,7 +14,7 @@ using namespace crescent;
 
 /// The hash of the content is the last field of the header.
 void make_right(std::string& file) {
-    if (file.size() <= image_header_size) return;
+    if (file.size() < image_header_size + sizeof(float)) return;
     std::uint32_t size[2];
     std::memcpy(size, &file[16], sizeof size);
     const std::size_t floats = (file.size() - image_header_size) / sizeof(float);
