@@ -92,7 +92,7 @@ namespace crescent::inline experiment {
 
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) { return web::given(web::meshes, path, ".mesh"); }
 std::shared_ptr<const RgbImage> sky_in_file(const std::string& path) { return web::image(path, why_no_sky_of); }
-std::string read_input(const std::string& path, std::size_t /*most*/, std::string_view what) {
+std::string read_input(const std::string& path, std::size_t /*limit*/, std::string_view what) {
     throw InputError(
         {path, 0, 0}, "expected " + std::string(what) + " that can be read: there are no files in a browser");
 }

@@ -30,31 +30,31 @@ std::ifstream open_input(const std::string& path, std::string_view what) {
     return file;
 }
 
-std::string read_input(const std::string& path, std::size_t most, std::string_view what) {
+std::string read_input(const std::string& path, std::size_t limit, std::string_view what) {
     std::ifstream file = open_input(path, what);
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) most = std::min(most, std::size_t{64} << 20);
+    if (!std::filesystem::is_regular_file(path, ignored)) limit = std::min(limit, std::size_t{64} << 20);
     std::string text;
-    while (file && text.size() <= most) {
+    while (file && text.size() <= limit) {
         const std::size_t before = text.size();
-        text.resize(std::min(most + 1, before + (std::size_t{1} << 20)));
+        text.resize(std::min(limit + 1, before + (std::size_t{1} << 20)));
         errno = 0;
         file.read(text.data() + before, static_cast<std::streamsize>(text.size() - before));
         text.resize(before + static_cast<std::size_t>(file.gcount()));
     }
     if (file.bad())
         throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));
-    if (text.size() > most)
-        throw InputError({path, 0, 0}, fmt::format("expected {} of at most {} MiB, found more", what, most >> 20));
+    if (text.size() > limit)
+        throw InputError({path, 0, 0}, fmt::format("expected {} of at most {} MiB, found more", what, limit >> 20));
     return text;
 }
 
-bool read_line(std::istream& file, std::string& text, std::size_t most) {
+bool read_line(std::istream& file, std::string& text, std::size_t limit) {
     text.clear();
     int c = file.get();
     if (c == std::istream::traits_type::eof()) return false;
     for (; c != '\n' && c != std::istream::traits_type::eof(); c = file.get()) {
-        if (text.size() > most) return false;
+        if (text.size() > limit) return false;
         text += static_cast<char>(c);
     }
     return true;

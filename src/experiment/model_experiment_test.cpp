@@ -40,9 +40,9 @@ TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
         const Camera camera = parse(text, "far").camera;
         const Vec3d middle = 0.5 * (widen(box.low) + widen(box.high)), size = widen(box.high) - widen(box.low);
         const double radius = 0.5 * std::sqrt(dot(size, size));
-        const Vec3d off = camera.target - middle, away = camera.eye - camera.target;
-        EXPECT_LT(std::sqrt(dot(off, off)), 1e-4 * radius) << distance;
-        EXPECT_NEAR(std::sqrt(dot(away, away)) / radius, 1.05 / std::sin(20 * pi / 180), 1e-3) << distance;
+        const Vec3d offset = camera.target - middle, view = camera.eye - camera.target;
+        EXPECT_LT(std::sqrt(dot(offset, offset)), 1e-4 * radius) << distance;
+        EXPECT_NEAR(std::sqrt(dot(view, view)) / radius, 1.05 / std::sin(20 * pi / 180), 1e-3) << distance;
     }
 }
 
