@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/vec.h"
@@ -45,15 +46,29 @@ FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, co
         quantile(means, 0.75), quantile(means, 0.95)};
 }
 
+/// Calls work(points, first) for whole packs of `count` equal points, on all cores. Point i of the pack has the random
+/// numbers of point first + i.
+template <class Work> void for_each_pack(const Surface& surface, std::size_t count, const Work& work) {
+    parallel_for(std::size_t{0}, (count + widest_pack - 1) / widest_pack, [&](std::size_t pack) {
+        const std::size_t first = pack * widest_pack;
+        ShadingPoints points = furnace_points(surface, std::min(widest_pack, count - first));
+        for (std::uint32_t& pixel : points.pixel) pixel += static_cast<std::uint32_t>(first);
+        work(std::as_const(points), first);
+    });
+}
+
 void float_furnace(const FurnaceCase& adapter, const std::string& isa, ProgressMonitor& monitor, Evidence& out) {
-    const ShadingPoints shading_points = furnace_points(adapter.surface, replicates);
-    for (std::uint64_t n : furnace_sample_counts) {
-        const Moments m = estimate_points(shading_points, "phong", n, adapter.seed, isa, &monitor.stop);
-        std::vector<double> means;
-        for (std::size_t i = 0; i < replicates; ++i)
-            means.push_back((adapter.rho_d / pi * m.g[i] + adapter.rho_s * m.g_lobe[i]) / static_cast<double>(n));
-        out.furnace.push_back(quantiles("float32", 24, n, means));
-    }
+    std::vector<std::vector<double>> means(furnace_sample_counts.size(), std::vector<double>(replicates));
+    for_each_pack(adapter.surface, replicates, [&](const ShadingPoints& points, std::size_t first) {
+        const std::vector<Moments> moments =
+            estimate_points(points, "phong", furnace_sample_counts, adapter.seed, isa, &monitor.stop);
+        for (std::size_t k = 0; k < moments.size(); ++k)
+            for (std::size_t i = 0; i < points.count; ++i)
+                means[k][first + i] = (adapter.rho_d / pi * moments[k].g[i] + adapter.rho_s * moments[k].g_lobe[i]) /
+                    static_cast<double>(furnace_sample_counts[k]);
+    });
+    for (std::size_t k = 0; k < means.size(); ++k)
+        out.furnace.push_back(quantiles("float32", 24, furnace_sample_counts[k], means[k]));
 }
 
 /// Resolutions of u in double precision that are compared.
@@ -134,17 +149,12 @@ FalseRejection false_rejection(
     FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
     std::vector<int> rejected(runs);
     const double bound = student_two_sided_quantile(static_cast<double>(n - 1), alpha);
-    constexpr int share = 16;
-    parallel_for(0, (runs + share - 1) / share, [&](int part) {
-        const int first = part * share, count = std::min(share, runs - first);
-        ShadingPoints shading_points = furnace_points(lambert, static_cast<std::size_t>(count));
-        for (std::uint32_t& pixel : shading_points.pixel) pixel += static_cast<std::uint32_t>(first);
-        const Moments m = estimate_points(shading_points, "phong", n, adapter.seed, isa, &monitor.stop);
-        for (int i = 0; i < count; ++i) {
-            const std::size_t at = static_cast<std::size_t>(i);
-            const double mean = m.g[at] / pi / static_cast<double>(n), off = mean - 1;
-            const double se = std::sqrt(m.spread[at] / static_cast<double>(n) / static_cast<double>(n - 1));
-            rejected[static_cast<std::size_t>(first + i)] = std::fabs(off) > bound * se;
+    for_each_pack(lambert, runs, [&](const ShadingPoints& points, std::size_t first) {
+        const Moments m = estimate_points(points, "phong", n, adapter.seed, isa, &monitor.stop);
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const double mean = m.g[i] / pi / static_cast<double>(n), off = mean - 1;
+            const double se = std::sqrt(m.spread[i] / static_cast<double>(n) / static_cast<double>(n - 1));
+            rejected[first + i] = std::fabs(off) > bound * se;
         }
     });
     for (int r : rejected) out.rejected += r;

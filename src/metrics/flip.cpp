@@ -224,6 +224,7 @@ std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, d
 
 FlipExposures flip_exposures(const FlipImage& reference) {
     std::vector<double> y;
+    y.reserve(reference.r.size());
     for (std::size_t i = 0; i < reference.r.size(); ++i) {
         const double v = luminance_of(reference, i);
         if (std::isfinite(v)) y.push_back(std::max(0.0, v));

@@ -161,18 +161,24 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
     std::vector<std::uint32_t> seeds;  // of the lobe, then of each light
     for (std::size_t k = 0; k <= views.at(0).scene().lights().size(); ++k)
         seeds.push_back(reference_seed(experiment, static_cast<std::uint32_t>(k)));
+    const auto estimate = [&](const Scene& scene, const ShadingPoints& points, ReferenceFilm& film) {
+        const MonteCarloPixels pixels(scene, experiment, points, seeds, isa, monitor);
+        for (std::size_t i = 0; i < points.count; ++i) pixels.write(i, film);
+    };
     return by_tiles(
         experiment.image, exponents, monitor, [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
-            for (std::size_t e = 0; e < views.size(); ++e) {
-                const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
-                for (const ShadingPoints& shading_points : *groups) {
-                    if (e > 0 && shading_points.lobe < 0) {
-                        for (std::size_t i = 0; i < shading_points.count; ++i)
-                            copy_pixel(films[0], films[e], shading_points.pixel[i]);
-                        continue;
+            const std::shared_ptr<const TiledScene::Points> groups = views[0].points(k);
+            for (const ShadingPoints& group : *groups) {
+                estimate(views[0].scene(), group, films[0]);
+                if (group.lobe >= 0 && views.size() > 1) {
+                    ShadingPoints at_s = group;
+                    for (std::size_t e = 1; e < views.size(); ++e) {
+                        at_s.take_s(views[e].scene());
+                        estimate(views[e].scene(), at_s, films[e]);
                     }
-                    const MonteCarloPixels pixels(views[e].scene(), experiment, shading_points, seeds, isa, monitor);
-                    for (std::size_t i = 0; i < shading_points.count; ++i) pixels.write(i, films[e]);
+                } else {
+                    for (std::size_t e = 1; e < views.size(); ++e)
+                        for (std::size_t i = 0; i < group.count; ++i) copy_pixel(films[0], films[e], group.pixel[i]);
                 }
             }
         });

@@ -34,6 +34,9 @@ void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) 
 /// The mean radiance of shading points over n samples.
 class MeanRadiance {
 public:
+    static constexpr std::size_t longest = 64;  // points of a call: a row of a tile
+    using Means = std::array<std::array<double, longest>, 3>;
+
     MeanRadiance(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, std::uint64_t n)
         : scene_(scene),
           shading_points_(shading_points),
@@ -41,41 +44,69 @@ public:
           n_(static_cast<double>(n)),
           is_power_of_2_(std::has_single_bit(n)) {}
 
-    /// Returns x / n, by the faster product if that has the same bits.
-    double over_n(double x) const { return is_power_of_2_ ? x * inverse_n_ : x / n_; }
+    /// Divides `count` sums by n, by the faster product if that has the same bits.
+    void over_n(double* __restrict sums, std::size_t count) const {
+        if (is_power_of_2_)
+            for (std::size_t i = 0; i < count; ++i) sums[i] *= inverse_n_;
+        else
+            for (std::size_t i = 0; i < count; ++i) sums[i] /= n_;
+    }
 
-    Rgb operator()(std::size_t i) const {
-        double fill_g = m_.g[i], fill_lobe = m_.g_lobe[i];
-        Rgb diffuse{}, lobe{};
-        for (std::size_t k = 0; k < m_.light_g.size(); ++k) {
-            fill_g -= m_.light_g[k][i];
-            fill_lobe -= m_.light_g_lobe[k][i];
-            for (std::size_t c = 0; c < 3; ++c) {
-                diffuse[c] += scene_.lights()[k].radiance[c] * m_.light_g[k][i];
-                lobe[c] += scene_.lights()[k].radiance[c] * m_.light_g_lobe[k][i];
-            }
-        }
-        if (shading_points_.around) {
-            fill_g -= m_.around_g[i], fill_lobe -= m_.around_g_lobe[i];
-            for (std::size_t c = 0; c < 3; ++c) diffuse[c] += m_.around[c][i], lobe[c] += m_.around_lobe[c][i];
-        }
-        Rgb out{};
+    /// Of points first to first + count, by colour channel.
+    void operator()(std::size_t first, std::size_t count, Means& out) const {
+        Means diffuse{}, lobe{};
+        add_lights(first, count, m_.g, m_.light_g, m_.around_g, m_.around, diffuse);
+        add_lights(first, count, m_.g_lobe, m_.light_g_lobe, m_.around_g_lobe, m_.around_lobe, lobe);
         for (std::size_t c = 0; c < 3; ++c) {
-            diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
-            lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
-            const double lobes = shading_points_.rho_s_exact[i] * (shading_points_.tint[i][c] * lobe[c]);
-            out[c] = over_n(shading_points_.lambert[i][c] * diffuse[c] + lobes);
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::size_t at = first + i;
+                const double lobes = shading_points_.rho_s_exact[at] * (shading_points_.tint[at][c] * lobe[c][i]);
+                out[c][i] = shading_points_.lambert[at][c] * diffuse[c][i] + lobes;
+            }
+            over_n(out[c].data(), count);
         }
-        return out;
     }
 
 private:
+    using Sums = std::vector<double>;
+
+    /// Adds the light of each emitter, and of the fill where no other is met.
+    void add_lights(std::size_t first, std::size_t count, const Sums& g, const std::vector<Sums>& light_g,
+        const Sums& around_g, const std::array<Sums, 3>& around, Means& out) const {
+        std::array<double, longest> fill_g;
+        std::copy_n(g.data() + first, count, fill_g.data());
+        const auto subtract = [&](const double* __restrict from) {
+            for (std::size_t i = 0; i < count; ++i) fill_g[i] -= from[i];
+        };
+        const auto add = [&](std::size_t c, double radiance, const double* __restrict from) {
+            for (std::size_t i = 0; i < count; ++i) out[c][i] += radiance * from[i];
+        };
+        for (std::size_t k = 0; k < light_g.size(); ++k) {
+            subtract(light_g[k].data() + first);
+            for (std::size_t c = 0; c < 3; ++c) add(c, scene_.lights()[k].radiance[c], light_g[k].data() + first);
+        }
+        if (shading_points_.around) {
+            subtract(around_g.data() + first);
+            for (std::size_t c = 0; c < 3; ++c) add(c, 1, around[c].data() + first);
+        }
+        for (std::size_t i = 0; i < count; ++i) fill_g[i] = fill_g[i] < 0 ? 0 : fill_g[i];
+        for (std::size_t c = 0; c < 3; ++c) add(c, scene_.fill()[c], fill_g.data());
+    }
+
     const Scene& scene_;
     const ShadingPoints& shading_points_;
     const Moments& m_;
     double n_, inverse_n_ = 1 / n_;
     bool is_power_of_2_;
 };
+
+/// Returns how many points from `first` on are next to each other in the image, at most `most`.
+std::size_t run_length(const ShadingPoints& points, std::size_t first, std::size_t most) {
+    const std::size_t last = std::min(points.count, first + most);
+    std::size_t end = first + 1;
+    while (end < last && points.pixel[end] == points.pixel[end - 1] + 1) ++end;
+    return end - first;
+}
 
 }  // namespace
 
@@ -89,25 +120,36 @@ SampleCost cost_of_sample(const SamplerRef& arm) {
 void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& m, Film& film) {
     const MeanRadiance mean_of(scene, shading_points, m, film.n);
     const double n = static_cast<double>(film.n);
-    for (std::size_t i = 0; i < shading_points.count; ++i) {
-        const std::size_t at = shading_points.pixel[i];
-        const Rgb mean = mean_of(i);
-        const double y = luminance(mean);
-        film.r[at] = static_cast<float>(mean[0]);
-        film.g[at] = static_cast<float>(mean[1]);
-        film.b[at] = static_cast<float>(mean[2]);
-        film.y[at] = static_cast<float>(y);
-        film.second_moment[at] = static_cast<float>(mean_of.over_n(m.spread[i]) + y * y);
-        film.var[at] = film.n > 1 ? static_cast<float>(m.spread[i] / (n * (n - 1))) : 0.0f;
-        film.largest[at] = m.largest[i];
-        film.horizon[at] = m.horizon[i];
-        film.light_hits[at] = m.hits[i];
+    MeanRadiance::Means mean;
+    std::array<double, MeanRadiance::longest> squares, y;
+    for (std::size_t first = 0, count; first < shading_points.count; first += count) {
+        count = run_length(shading_points, first, MeanRadiance::longest);
+        const std::size_t at = shading_points.pixel[first];
+        mean_of(first, count, mean);
+        std::copy_n(m.spread.data() + first, count, squares.data());
+        mean_of.over_n(squares.data(), count);
+        for (std::size_t i = 0; i < count; ++i) y[i] = luminance(Rgb{mean[0][i], mean[1][i], mean[2][i]});
+        const auto store = [&](std::vector<float>& plane, const auto& value) {
+            float* const to = plane.data() + at;
+            for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<float>(value(i));
+        };
+        store(film.r, [&](std::size_t i) { return mean[0][i]; });
+        store(film.g, [&](std::size_t i) { return mean[1][i]; });
+        store(film.b, [&](std::size_t i) { return mean[2][i]; });
+        store(film.y, [&](std::size_t i) { return y[i]; });
+        store(film.second_moment, [&](std::size_t i) { return squares[i] + y[i] * y[i]; });
+        store(film.var, [&](std::size_t i) { return film.n > 1 ? m.spread[first + i] / (n * (n - 1)) : 0; });
+        std::copy_n(m.largest.data() + first, count, film.largest.data() + at);
+        std::copy_n(m.horizon.data() + first, count, film.horizon.data() + at);
+        std::copy_n(m.hits.data() + first, count, film.light_hits.data() + at);
     }
 }
 
 Rgb mean_radiance(
     const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, std::uint64_t n, std::size_t i) {
-    return MeanRadiance(scene, shading_points, moments, n)(i);
+    MeanRadiance::Means mean;
+    MeanRadiance(scene, shading_points, moments, n)(i, 1, mean);
+    return {mean[0][0], mean[1][0], mean[2][0]};
 }
 
 void for_each_tile(
@@ -167,13 +209,19 @@ ShapeMap shape_map(const Scene& scene) {
     return map;
 }
 
+std::vector<Moments> estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm,
+    std::span<const std::uint64_t> n, std::uint32_t seed, const std::string& isa, const std::atomic<bool>* stop,
+    float* samples) {
+    std::vector<Moments> moments(n.size());
+    for (Moments& m : moments) m.resize(shading_points);
+    run_kernel(isa, arm, {&shading_points, n, seed, moments, stop, samples});
+    return moments;
+}
+
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
-    std::array<Moments, 1> moments;
-    moments[0].resize(shading_points);
-    const std::array<std::uint64_t, 1> sample_counts = {n};
-    run_kernel(isa, arm, {&shading_points, sample_counts, seed, moments, stop, samples});
-    return std::move(moments[0]);
+    const std::array<std::uint64_t, 1> one = {n};
+    return std::move(estimate_points(shading_points, arm, one, seed, isa, stop, samples)[0]);
 }
 
 namespace {

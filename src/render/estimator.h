@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,11 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
 /// Runs a kernel over shading points made by the caller and returns the moments of the last sample count.
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples = nullptr);
+
+/// The same for several sample counts (ascending), one entry for each.
+std::vector<Moments> estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm,
+    std::span<const std::uint64_t> n, std::uint32_t seed, const std::string& isa, const std::atomic<bool>* stop,
+    float* samples = nullptr);
 
 /// Calls work(k) for every tile k on all cores; work returns the tile's units of progress. Stops early if the monitor
 /// requests it.

@@ -4,6 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+
+#include "base/parallel.h"
+
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -34,8 +38,12 @@ std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
 std::string to_string(const RunKey& key) { return fmt::format("{} n={} s={}", key.arm, key.n, key.s); }
 
 Film::Film(int w, int h, std::uint64_t samples) : width(w), height(h), n(samples) {
-    for (auto* plane : {&r, &g, &b, &y, &second_moment, &var, &largest}) plane->assign(area(w, h), 0.0f);
-    for (auto* plane : {&horizon, &light_hits}) plane->assign(area(w, h), 0u);
+    std::vector<float>* const sums[] = {&r, &g, &b, &y, &second_moment, &var, &largest};
+    std::vector<std::uint32_t>* const counts[] = {&horizon, &light_hits};
+    parallel_for(std::size_t{0}, std::size(sums) + std::size(counts), [&](std::size_t k) {
+        if (k < std::size(sums)) sums[k]->assign(area(w, h), 0.0f);
+        else counts[k - std::size(sums)]->assign(area(w, h), 0u);
+    });
 }
 
 ReferenceFilm::ReferenceFilm(int w, int h, double exponent) : width(w), height(h), s(exponent) {
