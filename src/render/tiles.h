@@ -20,6 +20,9 @@ public:
     TiledScene(Scene scene);  // NOLINT(google-explicit-constructor): a scene is a tiled one that keeps nothing
     /// From now on the points of a tile are created on first use, and kept while this object or a copy lives.
     void keep_points();
+    bool keeps_points() const { return kept_ != nullptr; }
+    /// Gives up the hits of primary rays, which nothing needs once all points are kept.
+    void forget_hits() { scene_.forget_hits(); }
     /// Returns the same view with another exponent, see Scene::with_s. If this one keeps points, the other copies them
     /// each time, which costs less than the memory to keep them.
     TiledScene with_s(double s) const;

@@ -54,10 +54,12 @@ TEST(TiledScene, ThatIsNotToldToKeepsNoPoints) {
 }
 
 TEST(TiledScene, GivesFilmsTheBitsThatTheyHaveWithoutIt) {
-    const Scene scene = scene_of_three_surfaces();
+    Scene scene = scene_of_three_surfaces();
     ProgressMonitor monitor;
+    scene.remember_primaries();
     TiledScene kept = scene;
     kept.keep_points();
+    kept.forget_hits();
     for (const double s : {scene.s(), 90.0})
         for (const char* arm : {"cosine", "phong"})
             EXPECT_EQ(hash(estimate_films(views_at(kept, {s}).front(), arm, {16}, 3, "", monitor)[0]),

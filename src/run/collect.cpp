@@ -150,6 +150,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     out.stopped = prepared.stopped;
     sort_results(plan, results);
     take_results(std::move(results), out);
+    prepared.views.clear();  // no more films: their points are given up
     const auto stage = [&](const char* name, const auto& work) {
         const Stopwatch start;
         out.stopped = out.stopped || !unless_stopped(with.threads, monitor, work);

@@ -22,24 +22,31 @@ namespace crescent::inline runs {
 
 namespace {
 
-/// Adds FLIP, which costs more than all other metrics, for the first seeds of the series at one sample count: the
+/// FLIP of one film of a job in each region; none if the job has none.
+struct Flips {
+    std::size_t film = 0;
+    std::vector<double> values;
+};
+
+/// Computes FLIP, which costs more than all other metrics, for the first seeds of the series at one sample count: the
 /// experiment's own, at which arms are compared, or the highest.
-void add_flips(const RunPlan& plan, const Job& job, const std::vector<Film>& films, const ReferenceFilm& reference,
-    const std::string& isa, std::vector<RunMetrics>& out) {
+Flips flips_of(const RunPlan& plan, const Job& job, const std::vector<Film>& films, const ReferenceFilm& reference,
+    const std::string& isa) {
     const Experiment& experiment = plan.experiment;
     const std::vector<std::uint32_t> series = seeds_of(plan.whole);
     const auto place = static_cast<std::size_t>(std::ranges::find(series, job.seed) - series.begin());
-    if (place >= static_cast<std::size_t>(std::max(plan.whole.flip_seeds, 1)) || experiment.regions.empty()) return;
+    if (place >= static_cast<std::size_t>(std::max(plan.whole.flip_seeds, 1)) || experiment.regions.empty()) return {};
     const auto image = [](const auto& film) { return FlipImage{film.width, film.height, film.r, film.g, film.b}; };
     const ArmPlan* arm = experiment.find_arm(job.arm);
     ensure(arm != nullptr, "a job is of an arm of the experiment");
     const auto own = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
-    const std::size_t f = own == films.end() ? films.size() - 1 : static_cast<std::size_t>(own - films.begin());
-    const FlipImage test[] = {image(films[f])};
+    Flips out;
+    out.film = own == films.end() ? films.size() - 1 : static_cast<std::size_t>(own - films.begin());
+    const FlipImage test[] = {image(films[out.film])};
     std::vector<Box> boxes;
     for (const Region& region : experiment.regions) boxes.push_back(region.box);
-    const auto flips = mean_hdr_flips(image(reference), test, boxes, flip_pixels_per_degree, isa);
-    for (std::size_t r = 0; r < boxes.size(); ++r) out[f].regions[r].flip = flips[0][r];
+    out.values = mean_hdr_flips(image(reference), test, boxes, flip_pixels_per_degree, isa)[0];
+    return out;
 }
 
 std::vector<RunMetrics> metrics_of(const RunPlan& plan, const Prepared& prepared, const Job& job,
@@ -47,11 +54,16 @@ std::vector<RunMetrics> metrics_of(const RunPlan& plan, const Prepared& prepared
     const ReferenceFilm* reference = reference_of(plan.experiment, prepared, job.s);
     ensure(reference != nullptr, "references are made before the jobs that are measured against them");
     std::vector<RunMetrics> out(films.size());
-    parallel_for(std::size_t{0}, films.size(), [&](std::size_t r) {
-        out[r] =
-            measure(plan.experiment, {job.arm, films[r].n, job.s, job.seed}, films[r], *reference, prepared.shapes);
-    });
-    add_flips(plan, job, films, *reference, isa, out);
+    Flips flips;
+    side_by_side(
+        [&] {
+            parallel_for(std::size_t{0}, films.size(), [&](std::size_t r) {
+                const RunKey key{job.arm, films[r].n, job.s, job.seed};
+                out[r] = measure(plan.experiment, key, films[r], *reference, prepared.shapes);
+            });
+        },
+        [&] { flips = flips_of(plan, job, films, *reference, isa); });
+    for (std::size_t r = 0; r < flips.values.size(); ++r) out[flips.film].regions[r].flip = flips.values[r];
     return out;
 }
 
@@ -66,6 +78,34 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     out.metrics = metrics_of(plan, prepared, out.job, films, engine.isa);
     if (keep_films) out.films = std::move(films);
     else if (checkpoint) checkpoint->add(out.metrics);
+}
+
+/// If points are kept: makes all of them, and gives up the hits of which they were made.
+void finish_points(const RunPlan& plan, Prepared& prepared, ProgressMonitor& monitor) {
+    TiledScene view = view_at(prepared, prepared.scene.s());
+    if (!view.keeps_points()) return;
+    for_each_tile(view.tiles(), monitor, [&](std::size_t k) {
+        (void)view.points(k);
+        return 0.0;
+    });
+    view.forget_hits(), prepared.scene.forget_hits();
+    prepared.views = views_at(view, plan.exponents);
+}
+
+/// Computes the references that the experiment requests.
+void compute_references(const RunPlan& plan, Prepared& prepared, const Engine& with, ProgressMonitor& monitor) {
+    const auto pixels = static_cast<double>(prepared.shapes.shape.size());
+    const ReferencePlan& asked = plan.experiment.reference;
+    if (asked.kind == ReferenceKind::paired) {
+        monitor.begin("paired reference", pixels);
+        prepared.paired = paired_reference(prepared.views, paired_plan(plan.whole), monitor);
+        return;
+    }
+    monitor.begin("reference by quadrature", pixels);
+    prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor);
+    if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
+    monitor.begin("the article's reference", pixels);
+    prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor);
 }
 
 }  // namespace
@@ -113,19 +153,9 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
 
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {
     const Engine with = settled(engine);
-    const auto pixels = static_cast<double>(prepared.shapes.shape.size());
     prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
-        const ReferencePlan& asked = plan.experiment.reference;
-        if (asked.kind == ReferenceKind::paired) {
-            monitor.begin("paired reference", pixels);
-            prepared.paired = paired_reference(prepared.views, paired_plan(plan.whole), monitor);
-            return;
-        }
-        monitor.begin("reference by quadrature", pixels);
-        prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor);
-        if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
-        monitor.begin("the article's reference", pixels);
-        prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor);
+        compute_references(plan, prepared, with, monitor);
+        finish_points(plan, prepared, monitor);
     });
 }
 

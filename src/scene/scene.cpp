@@ -126,6 +126,14 @@ void Scene::remember_primaries() {
     }
 }
 
+void Scene::forget_hits() {
+    if (!hits_) return;
+    auto all = std::make_shared<std::vector<std::int32_t>>();
+    all->reserve(hits_->size());
+    for (const Hit& hit : *hits_) all->push_back(hit.shape);
+    shapes_ = std::move(all), hits_ = nullptr;
+}
+
 Scene Scene::with_s(double s) const {
     Scene other = *this;
     if (made_->s_shape >= 0) other.s_ = s, other.other_s_ = true;

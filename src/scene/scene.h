@@ -48,6 +48,8 @@ public:
     /// Traces every pixel once and stores the hits for as long as the scene and its copies live: whole hits if the
     /// image has at most whole_hits pixels, else only the shape, 4 bytes per pixel, which primary() then tests alone.
     void remember_primaries();
+    /// Stores only the shapes from now on. Copies made before keep what they have.
+    void forget_hits();
     /// 84 MB. Computing a hit again costs as much as ten samples of a pixel, a sixth of a film of 64.
     static constexpr std::size_t whole_hits = std::size_t{1} << 20;
     /// Returns the same view with another exponent, for the shape whose s is the scene's and all that inherit it.

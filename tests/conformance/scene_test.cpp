@@ -82,12 +82,19 @@ TEST(Primaries, AreTheSameWhereTheyAreRemembered) {
     Scene plain(test::small_scene()), kept(test::small_scene());
     kept.remember_primaries();
     const Scene other = kept.with_s(8);
+    Scene shapes_alone = kept;
+    shapes_alone.forget_hits();
     for (int j = 0; j < 45; ++j)
         for (int i = 0; i < 67; ++i) {
             const auto a = plain.primary(i, j), b = kept.primary(i, j), c = other.primary(i, j);
             ASSERT_EQ(a.has_value(), b.has_value());
+            const auto d = shapes_alone.primary(i, j);
             ASSERT_EQ(a.has_value(), c.has_value());
+            ASSERT_EQ(a.has_value(), d.has_value());
             if (!a) continue;
+            EXPECT_EQ(a->shape, d->shape);
+            EXPECT_EQ(a->x.x, d->x.x);
+            EXPECT_EQ(a->n.y, d->n.y);
             EXPECT_EQ(a->shape, b->shape);
             EXPECT_EQ(a->x.x, b->x.x);
             EXPECT_EQ(a->n.y, c->n.y);
