@@ -59,25 +59,52 @@ RunPlan plan(const Experiment& experiment, SeedRange range) {
     return out;
 }
 
-// ---- Four bytes per pixel for each plane of each film and reference held, 12 more per pixel, the hits of images up to
-// 2^20 pixels, 150 MB for the program. The suggested image fits into 90 % of the available memory.
+// ---- Memory is the larger of two moments: the last references are made from the hits of the primary rays, which are
+// then given up; the last films are measured. Kept points live until then. Four bytes per pixel for each plane of each
+// film and reference. The suggested image fits into 90 % of the available memory.
 
 namespace {
 
-constexpr double for_itself = 150e6;  // code, fonts, plates, the report; measured on the gallery at 64 x 36
-// Per pixel: Scene::remember_primaries' 4, shape map, shading point counts and rows being written to a file.
-constexpr double working_bytes = 12;
+// Code, fonts, plates and the report: 20 to 35 MB on the experiments of this repository.
+constexpr double for_itself = 34e6;
+constexpr double of_shape_map = 2;               // bytes per pixel
+constexpr double of_shapes = 4;                  // the same, of Scene::remember_primaries without whole hits
+constexpr double of_luminance = sizeof(double);  // the same, while FLIP looks for its exposures
+
+double pixels_of(const Experiment& experiment) {
+    return static_cast<double>(experiment.image.width) * experiment.image.height;
+}
 
 double pixels_that_fit(double pixels, double needed, double available) {
     const double each = (needed - for_itself) / pixels;
     return std::max(0.0, (0.9 * available - for_itself) / each);
 }
 
+/// Bytes per pixel of everything that lives from the references on.
+double of_references(const Experiment& experiment, std::size_t exponents) {
+    const ReferencePlan& asked = experiment.reference;
+    const bool two = asked.kind != ReferenceKind::paired && (asked.monte_carlo || asked.kind == ReferenceKind::note);
+    return (two ? 2.0 : 1.0) * 4.0 * static_cast<double>(ReferenceFilm().planes().size() * exponents);
+}
+
+/// Of the sky's distribution and of the triangles that emit; their files are in memory already.
+double of_emitters(const Experiment& experiment) {
+    double bytes = 0;
+    // One float of a texel, and the guides that find it.
+    if (experiment.sky && experiment.sky->image) bytes += 8.0 * static_cast<double>(experiment.sky->image->texels());
+    for (const MeshObject& mesh : experiment.meshes) {
+        if (!mesh.emits() || !mesh.pack) continue;
+        const double copies =
+            static_cast<double>(std::max<std::size_t>(1, mesh.instances.size())) * (mesh.two_sided ? 2 : 1);
+        constexpr double of_triangle = 400;  // with its nodes in the tree of emitting triangles
+        bytes += copies * of_triangle * static_cast<double>(mesh.pack->mesh.triangles.size());
+    }
+    return bytes;
+}
+
 }  // namespace
 
-std::uint64_t memory_needed(const Experiment& experiment) {
-    const double film = 4.0 * static_cast<double>(Film().planes().size()),
-                 reference = 4.0 * static_cast<double>(ReferenceFilm().planes().size());
+std::uint64_t memory_needed(const Experiment& experiment, std::uint64_t points) {
     double sample_counts = 0, most = 0;
     std::set<double> exponents;
     for (const Job& job : jobs_of(experiment, experiment.seed)) {
@@ -85,26 +112,26 @@ std::uint64_t memory_needed(const Experiment& experiment) {
         most = std::max(most, static_cast<double>(job.n.size()));
         exponents.insert(job.s);
     }
-    const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
-    const ReferencePlan& asked = experiment.reference;
-    const double references = asked.monte_carlo || asked.kind == ReferenceKind::note ? 2 : 1;
-    const double again = experiment.seeds > 1 ? most : 0;
-    const double a_pixel =
-        film * (sample_counts + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
-    const double hits = pixels <= static_cast<double>(Scene::whole_hits) ? pixels * sizeof(Hit) : 0;
-    // Three floats of a texel and one of its row's distribution.
-    const double sky = experiment.sky && experiment.sky->image ? 16.0 * double(experiment.sky->image->texels()) : 0;
-    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits + sky);
+    const double pixels = pixels_of(experiment), again = experiment.seeds > 1 ? most : 0;
+    const double film = 4.0 * static_cast<double>(Film().planes().size());
+    const bool whole_hits = pixels <= static_cast<double>(Scene::whole_hits);
+    const double always = of_references(experiment, exponents.size()) + of_shape_map;
+    const double films = always + of_shapes + film * (sample_counts + again) + of_luminance;
+    const double at_references = pixels * (always + (whole_hits ? sizeof(Hit) : of_shapes));
+    // Without kept points each job makes them of the hits, which then live as long as the films.
+    const double at_films = pixels * (films + (whole_hits && points == 0 ? sizeof(Hit) : 0));
+    return static_cast<std::uint64_t>(
+        for_itself + static_cast<double>(points) + std::max(at_references, at_films) + of_emitters(experiment));
 }
 
 bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available) {
-    return memory_needed(plan.experiment) + bytes_of_points(scene) <= available / 2;
+    return memory_needed(plan.experiment, bytes_of_points(scene)) <= available / 2;
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {
     const auto needed = static_cast<double>(memory_needed(experiment)), there = static_cast<double>(available);
     if (needed <= there) return "";
-    const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
+    const double pixels = pixels_of(experiment);
     const double scale = std::sqrt(pixels_that_fit(pixels, needed, there) / pixels);
     const int width = static_cast<int>(experiment.image.width * scale),
               height = static_cast<int>(experiment.image.height * scale);

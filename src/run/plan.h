@@ -55,9 +55,9 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed);
 
 // ---- The memory and fonts that a run needs, checked before the work begins.
 
-/// Returns the peak memory of a run in bytes: the films of its first seed and of one more pass, the references at each
-/// exponent, what the camera sees, and the program itself.
-std::uint64_t memory_needed(const Experiment& experiment);
+/// Returns the peak memory of a run in bytes if its shading points are kept in `points` bytes: the films of its first
+/// seed and of one more pass, the references at each exponent, what the camera sees, and the program itself.
+std::uint64_t memory_needed(const Experiment& experiment, std::uint64_t points = 0);
 
 /// Returns "this run needs about 70 GB of memory ...", with a smaller alternative; "" if `available` bytes are enough.
 std::string why_too_large(const Experiment& experiment, std::uint64_t available);
