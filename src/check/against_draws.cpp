@@ -139,7 +139,7 @@ public:
             const ScrambledSobol points(key, source_.numbers(), source_.resolution());
             for (std::uint32_t from = first; from < last; from += batch_size) {
                 u_.resize(std::min(batch_size, last - from)), draws_.assign(u_.size(), {});
-                for (std::uint32_t i = 0; i < u_.size(); ++i) u_[i] = points.at(from + i);
+                points.points(from, u_);
                 source_.draw(u_, draws_);
                 for (const Draw& d : draws_) take(d, set);
             }

@@ -158,7 +158,9 @@ double first_octant(double y, double x) {
 /// The angle of (x, y) from the x axis, y >= 0: [0, pi].
 double angle(double y, double x) {
     const double ahead = std::fabs(x);
-    const double a = y > ahead ? half_pi.hi - (first_octant(ahead, y) - half_pi.lo) : first_octant(y, ahead);
+    const bool steep = y > ahead;
+    const double in_octant = first_octant(steep ? ahead : y, steep ? y : ahead);
+    const double a = steep ? half_pi.hi - (in_octant - half_pi.lo) : in_octant;
     return x < 0 ? pi.hi - (a - pi.lo) : a;
 }
 
@@ -187,12 +189,12 @@ SinCos sincos(double x) {
     if (!(std::fabs(x) < 0x1p50)) return {none, none};
     const Reduced at = reduce(x);
     const double s = sin_series(at.r), c = cos_series(at.r);
-    switch (at.n) {
-        case 0: return {s, c};
-        case 1: return {c, -s};
-        case 2: return {-s, -c};
-        default: return {-c, s};
-    }
+    // (s, c), (c, -s), (-s, -c), (-c, s) for n = 0 to 3, without a branch: n is random in most uses.
+    const auto n = static_cast<std::uint64_t>(at.n), exchanged = -(n & 1);
+    const auto bits_s = std::bit_cast<std::uint64_t>(s), bits_c = std::bit_cast<std::uint64_t>(c);
+    const std::uint64_t both = (bits_s ^ bits_c) & exchanged;
+    return {std::bit_cast<double>(bits_s ^ both ^ (n >> 1) << 63),
+        std::bit_cast<double>(bits_c ^ both ^ ((n ^ n >> 1) & 1) << 63)};
 }
 
 double sin(double x) {

@@ -4,11 +4,15 @@
 #include "check/decide/check_sampler.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tuple>
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "base/text.h"
 #include "check/constants.h"
 #include "check/sources/sampler_adapter.h"
 
@@ -145,6 +149,7 @@ private:
     Levels levels_;
     double further_ = 0;         // evaluations that are left for going on
     std::size_t jobs_left_ = 0;  // of a serial check
+    std::atomic_flag logged_{};  // whether the first w_o was reported
 
     std::size_t index_of(const Job& job) const { return job.outcome->check_cases[job.index]; }
     const CheckCase& case_of(const Job& job) const { return check_cases_[index_of(job)]; }
@@ -172,8 +177,32 @@ private:
                 further_ -= std::max(static_cast<double>(c.evaluations) - budget.evaluations, 0.0);
         if (cut) at.clear();
         job.outcome->tails[job.index] = tail_of(at);
+        log_first(check_case, at, cut);
         for (CheckAt& c : at) release_unused(c, check_case.adapter->traits().has_pdf);
         monitor_.advance(1);
+    }
+
+    /// What the first w_o shows, for a user who waits for the others.
+    void log_first(const CheckCase& check_case, std::span<const CheckAt> techniques, const std::optional<Cut>& cut) {
+        if (jobs_.size() < 2 || cut || logged_.test_and_set(std::memory_order_relaxed)) return;
+        std::vector<std::string_view> wrong;
+        const auto add = [&](Family family) {
+            const std::string_view verdict = info(family).verdict;
+            if (std::ranges::find(wrong, verdict) == wrong.end()) wrong.push_back(verdict);
+        };
+        for (const CheckAt& c : techniques) {
+            for (const SmallFault& f : c.small) add(f.family);
+            for (const Finding& f : c.findings) add(f.first.family);
+        }
+        const bool open = std::ranges::any_of(techniques, &CheckAt::inconclusive);
+        const std::optional<std::string>& known = check_case.theory.wrong;
+        const bool expected = known && wrong.size() == 1 && wrong[0] == *known;
+        const std::string found = !wrong.empty()
+            ? fmt::format("{} wrong{}", fmt::join(wrong, ", "), expected ? " as expected" : "")
+            : open ? "inconclusive"
+                   : "no fault found";
+        monitor_.log(
+            fmt::format("1 of {}: {}, {}: {}", jobs_.size(), printable(check_case.arm), check_case.text(), found));
     }
 
     /// The evaluations by which one w_o may go on: what is left, in the order of a serial check; an equal share if w_o

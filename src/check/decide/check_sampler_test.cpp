@@ -61,6 +61,31 @@ TEST(CheckedSamplers, AFaultOfTheWholeSamplerIsOfNoWo) {
     for (const auto& at : found[0].at) EXPECT_FALSE(at[0].wrong());
 }
 
+struct LogMonitor : ProgressMonitor {
+    std::vector<std::string> lines;
+    void log(std::string_view line) override { lines.emplace_back(line); }
+};
+
+TEST(CheckedSamplers, TheFirstWoIsLoggedBeforeTheOthersEnd) {
+    struct Serial : FunctionSampler {
+        bool serial() const override { return true; }
+    };
+    const auto right = std::make_shared<Serial>(), wrong = std::make_shared<Serial>();
+    wrong->p = [](Vec3d o, Vec3d w) { return 2 * cosine_pdf(o, w); };
+    CheckSettings settings;
+    settings.budget = CheckBudget::limited(1e5);
+    const auto logged = [&](const std::vector<CheckCase>& all) {
+        LogMonitor monitor;
+        check_samplers(all, settings, monitor);
+        return monitor.lines;
+    };
+    EXPECT_TRUE(logged({case_of(right, 45)}).empty());
+    EXPECT_EQ(logged({case_of(right, 10), case_of(right, 45)}),
+        std::vector<std::string>{"1 of 2: made, w_o 45 deg az 30: no fault found"});
+    EXPECT_EQ(logged({case_of(wrong, 45), case_of(wrong, 60)}),
+        std::vector<std::string>{"1 of 2: made, w_o 45 deg az 30: normalised, density wrong"});
+}
+
 /// A program that ends at w_o beyond 50 degrees.
 struct Ending : FunctionSampler {
     bool serial() const override { return true; }

@@ -202,13 +202,13 @@ private:
 
     void place_points(const Grid& g) {
         const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[g.leaf]);
-        for (int j = 0; j < g.cells(); ++j)
-            for (int pair = 0; pair < 2; ++pair) {
-                const double x = (j % g.rows + stream_.number()) / g.rows,
-                             y = (j / g.rows + stream_.number()) / g.columns;
-                chart_.push_back(rect.at(x, y));
-                w_.push_back(from_chart(chart_.back()));
-            }
+        for (int column = 0; column < g.columns; ++column)
+            for (int row = 0; row < g.rows; ++row)
+                for (int pair = 0; pair < 2; ++pair) {
+                    const double x = (row + stream_.number()) / g.rows, y = (column + stream_.number()) / g.columns;
+                    chart_.push_back(rect.at(x, y));
+                    w_.push_back(from_chart(chart_.back()));
+                }
     }
 
     void add_points(const Grid& g, double rounding, std::size_t& at) {
@@ -273,7 +273,7 @@ private:
     void allow_strip(const Leaf& leaf, LeafIntegral& to) {
         const double k = to.per_point, v = k * k * leaf.q * leaf.q / 2;
         const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), off = middle - plan_.middle;
-        const double log_q = math::log(leaf.q) - plan_.median_log_p;
+        const double log_q = Plan::log_of(leaf.q) - plan_.median_log_p;
         to.bridge.variance += v;
         const double times[integrands] = {4, 1, log_q * log_q, off.x * off.x, off.y * off.y, off.z * off.z};
         for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].variance += v * times[q];

@@ -84,11 +84,21 @@ public:
         source_.draw(key, from, u, draws_);
         process(u, -1, with_f);
     }
-    /// Adds draws of one scrambled set.
-    void batch(std::span<const PrimarySample> u, int set) {
-        draws_.assign(u.size(), {});
-        source_.draw(u, draws_);
-        process(u, set, false);
+    /// Adds draws `first` to `last` of one scrambled set.
+    void set(const StreamKey& key, int number, std::uint32_t first, std::uint32_t last) {
+        const ScrambledSobol points(key, source_.numbers(), source_.resolution());
+        const auto column = static_cast<std::size_t>(number);
+        rows_.resize(to_.node_by_set.size());
+        for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r] = to_.node_by_set[r][column];
+        std::vector<PrimarySample> u;
+        for (std::uint32_t from = first; from < last; from += batch_size) {
+            u.resize(std::min(batch_size, last - from));
+            points.points(from, u);
+            draws_.assign(u.size(), {});
+            source_.draw(u, draws_);
+            process(u, number, false);
+        }
+        for (std::size_t r = 0; r < rows_.size(); ++r) to_.node_by_set[r][column] = rows_[r];
     }
 
 private:
@@ -102,6 +112,7 @@ private:
     std::vector<double> p_;
     std::vector<ChartPoint> points_;
     std::vector<std::uint32_t> leaf_;
+    std::vector<double> rows_;  // the column of node_by_set of one set
 
     void process(std::span<const PrimarySample> u, int set, bool with_f) {
         w_.clear(), at_.clear();
@@ -120,9 +131,21 @@ private:
         plan_.tree.find(points_, leaf_);
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
-        for (std::size_t k = 0; k < w_.size(); ++k)
+        for (std::size_t k = 0; k < w_.size(); ++k) {
+            fetch_leaf(k + fetched_before, set);
             if (is_direction(source_.traits, draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
             else if (set < 0) ++to_.checks.nothing, to_.checks.outside += source_.traits.wo != Traits::WoDomain::none;
+        }
+    }
+
+    /// The leaves of successive draws are anywhere in memory: each is requested a few draws before it is used.
+    static constexpr std::size_t fetched_before = 8;
+    void fetch_leaf(std::size_t k, int set) const {
+        if (k >= leaf_.size()) return;
+        __builtin_prefetch(&plan_.tree.leaves()[leaf_[k]]);
+        if (set >= 0) return;
+        __builtin_prefetch(&integrals_.leaves[leaf_[k]].top);
+        __builtin_prefetch(&to_.leaves[leaf_[k]]);
     }
 
     /// Restores draws below the surface whose estimated p happens to be 0, if other draws there have p > 0.
@@ -275,7 +298,7 @@ private:
         const Values v = plan_.values(leaf, w, p);
         if (set >= 0) {
             for (std::size_t q = 0; q < integrands; ++q) to_.by_set[q][static_cast<std::size_t>(set)] += v[q];
-            to_.node_by_set[static_cast<std::size_t>(leaf.coarse)][static_cast<std::size_t>(set)] += v[bridge];
+            rows_[static_cast<std::size_t>(leaf.coarse)] += v[bridge];
             return;
         }
         ++to_.checks.directions;
@@ -343,12 +366,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         StreamKey scramble = key;
         scramble.purpose = Purpose::scrambles;
         scramble.part = static_cast<std::uint16_t>(set);
-        const ScrambledSobol points(scramble, source.numbers(), source.resolution());
-        for (std::uint32_t from = first; from < last; from += batch_size) {
-            u.resize(std::min(batch_size, last - from));
-            for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = points.at(from + i);
-            observer.batch(u, set);
-        }
+        observer.set(scramble, set, first, last);
     }
     to.scrambled = static_cast<double>(last) * replicate_sets;
 }

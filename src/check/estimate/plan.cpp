@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/estimate/sort.h"
 #include "check/constants.h"
 #include "check/estimate/source.h"
 
@@ -81,9 +82,13 @@ private:
         if (open.size() >= limit) return false;
         std::size_t count = std::min(std::max(open.size() / round_share, std::size_t{16}), limit - open.size());
         count = std::min(count, open.size());
-        std::partial_sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count), open.end(),
-            [&](int a, int b) { return at(a).score != at(b).score ? at(a).score > at(b).score : a < b; });
-        std::vector<int> chosen(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
+        const auto chosen_end = open.begin() + static_cast<std::ptrdiff_t>(count);
+        const auto before = [&](int a, int b) {
+            return at(a).score != at(b).score ? at(a).score > at(b).score : a < b;
+        };
+        std::nth_element(open.begin(), chosen_end, open.end(), before);
+        std::sort(open.begin(), chosen_end, before);
+        std::vector<int> chosen(open.begin(), chosen_end);
         std::erase_if(chosen, [&](int i) { return at(i).score <= least_score; });
         if (chosen.empty()) return false;
         const std::vector<int> fresh = cut(chosen);
@@ -132,7 +137,8 @@ private:
             (*side ? halves[1].rect.phi0 : halves[1].rect.t0) = middle;
             const auto left = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
             Growing parts[2];
-            Growing whole = std::move(at(i));
+            const Growing whole = std::move(at(i));
+            for (Growing& part : parts) part.points.reserve(whole.points.size() + points_per_leaf);
             for (const DensityPoint& e : whole.points) parts[!left(e)].points.push_back(e);
             const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.first);
             const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.last);
@@ -215,12 +221,6 @@ private:
     }
 };
 
-Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
-    double step, const CheckBudget& budget, const StreamKey& key) {
-    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow(std::move(hints));
-    find_edges();
-}
-
 void Tree::number_leaves() {
     std::vector<int> up(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -243,13 +243,71 @@ void Tree::number_leaves() {
     }
 }
 
+/// Makes the grids of the search.
+class StartGrids {
+public:
+    explicit StartGrids(Tree& tree) : tree_(tree), leaves_below_(tree.nodes_.size(), 1) {
+        for (std::size_t i = tree.nodes_.size(); i-- > 0;)
+            if (const int child = tree.nodes_[i].child; child >= 0) {
+                const auto c = static_cast<std::size_t>(child);
+                leaves_below_[i] = leaves_below_[c] + leaves_below_[c + 1];
+            }
+        add_grid(0);
+    }
+
+private:
+    static constexpr std::uint32_t cells = Tree::cells;
+    static constexpr int many_leaves = 128;  // below a node with a grid of its own: one leaf for each eighth cell
+    Tree& tree_;
+    std::vector<int> leaves_below_;
+
+    struct Cells {
+        std::uint32_t t0 = 0, t1 = cells, phi0 = 0, phi1 = cells;
+    };
+    std::uint32_t add_grid(std::size_t node) {
+        const ChartRect& r = tree_.nodes_[node].rect;
+        const auto first = static_cast<std::uint32_t>(tree_.starts_.size());
+        const auto grid = static_cast<std::uint32_t>(tree_.grids_.size());
+        tree_.grids_.push_back({r.t0, r.phi0, cells / (r.t1 - r.t0), cells / (r.phi1 - r.phi0), first});
+        tree_.starts_.resize(first + cells * cells);
+        fill(first, node, {});
+        return Tree::is_grid | grid;
+    }
+    /// Sets the entries of these cells, which are the rectangle of the node.
+    void fill(std::uint32_t first, std::size_t node, const Cells& at) {
+        const TreeNode& x = tree_.nodes_[node];
+        const std::uint32_t from = x.along_phi ? at.phi0 : at.t0, to = x.along_phi ? at.phi1 : at.t1;
+        if (x.child < 0 || to - from == 1) {
+            const std::uint32_t start =
+                leaves_below_[node] >= many_leaves ? add_grid(node) : static_cast<std::uint32_t>(node);
+            for (std::uint32_t t = at.t0; t < at.t1; ++t)
+                std::fill_n(tree_.starts_.begin() + first + t * cells + at.phi0, at.phi1 - at.phi0, start);
+            return;
+        }
+        Cells low = at, high = at;
+        (x.along_phi ? low.phi1 : low.t1) = (x.along_phi ? high.phi0 : high.t0) = (from + to) / 2;
+        fill(first, static_cast<std::size_t>(x.child), low);
+        fill(first, static_cast<std::size_t>(x.child) + 1, high);
+    }
+};
+
+Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
+    double step, const CheckBudget& budget, const StreamKey& key) {
+    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow(std::move(hints));
+    StartGrids{*this};
+    find_edges();
+}
+
 void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const {
     constexpr std::size_t together = 16;
     for (std::size_t first = 0; first < at.size(); first += together) {
         const std::size_t n = std::min(together, at.size() - first);
         std::array<ChartPoint, together> points;
         std::array<std::uint32_t, together> node{};
-        for (std::size_t k = 0; k < together; ++k) points[k] = at[first + std::min(k, n - 1)];
+        for (std::size_t k = 0; k < together; ++k) {
+            points[k] = at[first + std::min(k, n - 1)];
+            node[k] = start_of(points[k]);
+        }
         for (bool moved = true; moved;) {
             moved = false;
             for (std::size_t k = 0; k < together; ++k) {
@@ -262,37 +320,49 @@ void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves)
     }
 }
 
-/// Whether a neighbouring leaf has another density, so that this leaf may contain a strip of it without any point.
-bool Tree::at_edge(const Leaf& leaf) const {
-    constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
-    const ChartRect& r = rect(leaf);
-    for (int face = 0; face < 4; ++face)
-        for (double x : places) {
-            ChartPoint at = r.at(x, x);
-            if (face == 0) at.t = r.t0 - outside;
-            if (face == 1) at.t = r.t1 + outside;
-            if (face == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
-            if (face == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
-            if (at.t < 0 || at.t > 2) continue;
-            const Leaf& neighbour = leaves_[find(at)];
-            const double q = neighbour.met ? neighbour.q : 0;
-            if (std::max(q, leaf.q) > alike * std::min(q, leaf.q)) return true;
-        }
-    return false;
-}
-
+/// A leaf is at an edge if a neighbouring leaf has another density: it may then contain a strip of it without any
+/// point. The neighbours are those at two places beyond each side.
 void Tree::find_edges() {
-    for (Leaf& leaf : leaves_) leaf.edge = leaf.met && at_edge(leaf);
+    constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
+    constexpr std::size_t sides = 4, leaves_together = 512;
+    std::vector<ChartPoint> beyond;
+    std::vector<std::size_t> of;  // the leaf of each of these points
+    std::vector<std::uint32_t> neighbours;
+    for (std::size_t first = 0; first < leaves_.size(); first += leaves_together) {
+        beyond.clear(), of.clear();
+        for (std::size_t l = first; l < std::min(first + leaves_together, leaves_.size()); ++l) {
+            if (!leaves_[l].met) continue;
+            const ChartRect& r = rect(leaves_[l]);
+            for (std::size_t side = 0; side < sides; ++side)
+                for (double x : places) {
+                    ChartPoint at = r.at(x, x);
+                    if (side == 0) at.t = r.t0 - outside;
+                    if (side == 1) at.t = r.t1 + outside;
+                    if (side == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
+                    if (side == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
+                    if (at.t < 0 || at.t > 2) continue;
+                    beyond.push_back(at), of.push_back(l);
+                }
+        }
+        neighbours.resize(beyond.size());
+        find(beyond, neighbours);
+        for (std::size_t k = 0; k < of.size(); ++k) {
+            const Leaf& neighbour = leaves_[neighbours[k]];
+            Leaf& leaf = leaves_[of[k]];
+            const double q = neighbour.met ? neighbour.q : 0;
+            if (std::max(q, leaf.q) > alike * std::min(q, leaf.q)) leaf.edge = true;
+        }
+    }
 }
 
 // ---- The pilot draws and the step of the arithmetic.
 
 double step_of(std::vector<double> v) {
     if (v.size() < 64) return 0;
-    std::sort(v.begin(), v.end());
+    sort_by_key(v, sort_key);
     for (std::size_t k = 0; k + 1 < v.size(); ++k) v[k] = v[k + 1] - v[k];
     v.pop_back();
-    std::sort(v.begin(), v.end());
+    sort_by_key(v, sort_key);
     const auto equal = static_cast<std::size_t>(std::upper_bound(v.begin(), v.end(), 0.0) - v.begin());
     const std::size_t n = v.size(), within = std::min(n - 1, 2 * equal + n / 16);
     if (equal < 3 || equal == n) return 0;

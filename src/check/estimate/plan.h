@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -59,7 +60,7 @@ public:
     const std::vector<Leaf>& leaves() const { return leaves_; }
     /// The leaf that contains a point.
     std::size_t find(ChartPoint at) const {
-        std::uint32_t i = 0;
+        std::uint32_t i = start_of(at);
         for (std::uint32_t next; (next = cuts_[i].next(at)) != i; i = next) {}
         return cuts_[i].leaf;
     }
@@ -81,11 +82,34 @@ private:
     std::vector<TreeNode> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<Cut> cuts_;
+    /// Shortens the search: a grid over the rectangle of a node has for each cell the deepest node that contains it, or
+    /// the grid of that node if there are many leaves below it. Cuts are dyadic, so that the search ends in the same
+    /// leaf.
+    struct Grid {
+        double t0, phi0, cells_per_t, cells_per_phi;
+        std::uint32_t first;  // of its entries in `starts_`
+    };
+    static constexpr std::uint32_t cells = 32, is_grid = 1u << 31;
+    std::vector<Grid> grids_;
+    std::vector<std::uint32_t> starts_;  // a node, or is_grid and a grid
     int depth_ = 0;
     std::size_t rows_ = 0;
+    std::uint32_t start_of(ChartPoint at) const {
+        const auto cell = [](double x) {
+            return static_cast<std::uint32_t>(std::min(std::max(0.0, x), cells - 1.0));  // 0 for NaN
+        };
+        std::uint32_t start = is_grid;
+        while (start & is_grid) {
+            const Grid& g = grids_[start & ~is_grid];
+            const std::uint32_t t = cell((at.t - g.t0) * g.cells_per_t),
+                                phi = cell((at.phi - g.phi0) * g.cells_per_phi);
+            start = starts_[g.first + t * cells + phi];
+        }
+        return start;
+    }
+    friend class StartGrids;
     void number_leaves();
     void find_edges();
-    bool at_edge(const Leaf& leaf) const;
     friend class TreeGrowth;
 };
 
@@ -117,7 +141,18 @@ struct Plan {
     /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of
     /// an angle is angle_per_step ulp, here to a factor of 4.
     bool in_single(const Source& source) const { return source.single() || step >= angle_per_step * ulp / 4; }
-    static double log_of(double p) { return math::log(p); }
+    /// ln p to 1e-9. A series of few terms suffices, because the tests hold for any function of p: with m in
+    /// [0.71, 1.42) and s = (m - 1) / (m + 1), ln m = 2 (s + s^3 / 3 + s^5 / 5 + ...).
+    static double log_of(double p) {
+        constexpr double ln2 = 0.6931471805599453;
+        constexpr std::uint64_t of_mantissa = (std::uint64_t{1} << 52) - 1;
+        const auto bits = std::bit_cast<std::uint64_t>(p);
+        constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcdu;  // bits of sqrt(1/2), from which m begins
+        const std::uint64_t above = bits - root_half;
+        const auto exponent = static_cast<double>(static_cast<std::int64_t>(above) >> 52);
+        const double m = std::bit_cast<double>((above & of_mantissa) + root_half), s = (m - 1) / (m + 1), s2 = s * s;
+        return exponent * ln2 + 2 * s * (1 + s2 * (1.0 / 3 + s2 * (1.0 / 5 + s2 * (1.0 / 7 + s2 * (1.0 / 9)))));
+    }
 };
 
 /// Makes the pilot draws and builds the tree.

@@ -27,6 +27,35 @@ TEST_F(CheckTree, LeavesPartitionTheSphere) {
     }
 }
 
+// A narrow lobe off the pole has most of its leaves in one cell of the grid at which a search starts.
+TEST(CheckTreeSearch, EndsInTheLeafThatContainsThePoint) {
+    const Vec3d axis = normalize(Vec3d{0.3, -0.5, 0.7});
+    FunctionSampler lobe;
+    lobe.draw = [&](Vec3d, const PrimarySample& u) {
+        const Vec3d w = from_chart({2e-6 * -std::log1p(-u[0]), two_pi * u[1]});
+        return frame_about(axis).to_world(w);
+    };
+    lobe.p = [&](Vec3d, Vec3d w) {
+        const Vec3d off = w - axis;
+        return std::exp(-dot(off, off) / 2 / 2e-6) / (two_pi * 2e-6);
+    };
+    const CaseLighting light;
+    Source source(lobe, 0, {0, 0, 1}, light);
+    const Plan plan = make_plan(source, CheckBudget::limited(1e5), {});
+    Stream stream({1, 0, 0, 1, Purpose::pairs});
+    std::vector<ChartPoint> places;
+    for (const Leaf& leaf : plan.tree.leaves()) {
+        const ChartRect& r = plan.tree.rect(leaf);
+        for (double x : {0.0, 0.5, stream.number(), 1 - 1e-9}) places.push_back(r.at(x, stream.number()));
+    }
+    std::vector<std::uint32_t> found(places.size());
+    plan.tree.find(places, found);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(found[i], i / 4);
+        EXPECT_EQ(plan.tree.find(places[i]), i / 4);
+    }
+}
+
 TEST_F(CheckTree, LeafDensitiesAreCloseToPWhereItsMassIs) {
     double off = 0;
     for (const Leaf& leaf : plan.tree.leaves()) {
@@ -109,6 +138,11 @@ TEST(CheckPlan, DescribesThePilotDraws) {
     EXPECT_NEAR(plan.median_log_p, std::log(std::sqrt(0.5) / pi), 0.05);
 }
 
+TEST(CheckPlan, LogarithmOfADensityIsThatOfTheLibrary) {
+    for (double p = 1e-300; p < 1e300; p *= 1.37) EXPECT_NEAR(Plan::log_of(p), std::log(p), 1e-9) << p;
+    EXPECT_NEAR(Plan::log_of(1), 0, 1e-15);
+}
+
 TEST(CheckPlan, TestFunctionsAreBridgedWithTheLeaf) {
     const FunctionSampler cosine;
     const CaseLighting light;
@@ -119,7 +153,7 @@ TEST(CheckPlan, TestFunctionsAreBridgedWithTheLeaf) {
     leaf.q = 0.3;
     const Values at = plan.values(leaf, {0.5, 0.5, 0.7}, 0.1);
     EXPECT_DOUBLE_EQ(at[bridge], 0.75);
-    EXPECT_NEAR(at[slope], 0.75 * (std::log(0.1) + 1), 1e-12);
+    EXPECT_NEAR(at[slope], 0.75 * (Plan::log_of(0.1) + 1), 1e-12);
     EXPECT_NEAR(at[centre_x], 0.75 * 0.4, 1e-12);
     EXPECT_NEAR(at[centre_z], 0.75 * 0.4, 1e-12);
     EXPECT_EQ(plan.values(leaf, {0, 0, 1}, 0)[slope], 0);

@@ -15,7 +15,7 @@ namespace crescent::check {
 
 std::span<const Pair> Source::pairs_of(Vec3d from, std::span<const Vec3d> wi) {
     pairs_.resize(wi.size());
-    for (std::size_t i = 0; i < wi.size(); ++i) pairs_[i] = {from, wi[i]};
+    for (std::size_t i = 0; i < wi.size(); ++i) pairs_[i].wo = from, pairs_[i].wi = wi[i];
     evaluations_ += wi.size();
     return pairs_;
 }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <span>
 
 #include "check/estimate/chart.h"
 #include "check/sources/sampler_adapter.h"
@@ -153,13 +155,27 @@ constexpr std::uint32_t reversed_bits(std::uint32_t x) {
 }
 
 /// A nested uniform scramble: each bit is flipped by a hash of the bits above it.
-constexpr std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
-    x = reversed_bits(x) + seed;
+constexpr std::uint32_t owen_of_reversed(std::uint32_t x, std::uint32_t seed) {
+    x += seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     x ^= x * 0x8d22f6e6u;
     return reversed_bits(x);
+}
+constexpr std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
+    return owen_of_reversed(reversed_bits(x), seed);
+}
+
+/// steps[dimension][k]: the change of a number with its bits reversed, from point i to i + 1, where i + 1 is divisible
+/// by 2^k and not by 2^(k + 1): i and i + 1 differ in the bits 0 to k.
+constexpr SobolMatrix reversed_sobol_steps() {
+    SobolMatrix out = sobol_matrix();
+    for (auto& v : out) {
+        std::uint32_t x = 0;
+        for (std::uint32_t& step : v) step = x ^= reversed_bits(step);
+    }
+    return out;
 }
 
 /// Sets of Sobol points with independent scrambles, so that their means are independent replicates.
@@ -170,15 +186,27 @@ public:
         Stream stream(key);
         for (std::uint32_t& s : seeds_) s = stream.bits();
     }
+    /// Points `from` to `from + out.size()`.
+    void points(std::uint32_t from, std::span<PrimarySample> out) const {
+        static constexpr SobolMatrix steps = reversed_sobol_steps();
+        std::ranges::fill(out, PrimarySample());
+        for (int d = 0; d < count_; ++d) {
+            const auto& step = steps[static_cast<std::size_t>(d)];
+            const std::uint32_t seed = seeds_[static_cast<std::size_t>(d)];
+            std::uint32_t x = reversed_bits(sobol(from, d)), i = from;
+            for (PrimarySample& u : out) {
+                const std::uint32_t more = resolution_ == Resolution::fine
+                    ? pcg4d(Vec4u<std::uint32_t>{i, static_cast<std::uint32_t>(d), seed, 0}).x
+                    : 0;
+                u[d] = number_of_bits(owen_of_reversed(x, seed), more, resolution_);
+                ++i;
+                if (i != 0) x ^= step[static_cast<std::size_t>(std::countr_zero(i))];
+            }
+        }
+    }
     PrimarySample at(std::uint32_t i) const {
         PrimarySample out;
-        for (int d = 0; d < count_; ++d) {
-            const std::uint32_t seed = seeds_[static_cast<std::size_t>(d)];
-            const std::uint32_t more = resolution_ == Resolution::fine
-                ? pcg4d(Vec4u<std::uint32_t>{i, static_cast<std::uint32_t>(d), seed, 0}).x
-                : 0;
-            out[d] = number_of_bits(owen_scrambled(sobol(i, d), seed), more, resolution_);
-        }
+        points(i, {&out, 1});
         return out;
     }
 

@@ -49,6 +49,19 @@ TEST(CheckSobol, FirstTwoDimensionsAreANetWithOnePointInEachElementaryInterval) 
     }
 }
 
+TEST(CheckSobol, ARunOfPointsHasEachPointOfTheSequence) {
+    const ScrambledSobol points({7}, 5, Resolution::standard);
+    std::vector<PrimarySample> run(700, PrimarySample(0.5, 0.5));
+    for (PrimarySample& u : run) u[6] = 0.5;
+    points.points(333, run);
+    for (std::uint32_t i = 0; i < run.size(); ++i) {
+        const PrimarySample one = points.at(333 + i);
+        for (int d = 0; d < PrimarySample::most; ++d) EXPECT_EQ(run[i][d], one[d]) << i << " " << d;
+    }
+    Stream seeds(StreamKey{7});
+    for (int d = 0; d < 5; ++d) EXPECT_EQ(run[100][d], unit_number(owen_scrambled(sobol(433, d), seeds.bits()))) << d;
+}
+
 TEST(CheckSobol, EveryDimensionHasOnePointInEachOfItsIntervals) {
     for (int d = 0; d < PrimarySample::most; ++d) EXPECT_EQ(most_in_a_cell(d, 0, 10, 0, 10, 77u, 0), 1) << d;
 }

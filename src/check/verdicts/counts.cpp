@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "check/estimate/sort.h"
 #include "check/constants.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
@@ -18,13 +19,23 @@ void test_share(Family family, const Count& count, double of, double tolerated, 
     visit({family, 0, of > 0 ? times / of : 0, 0, tolerated, times > tolerated * of + tolerated_breaks ? 0.0 : 1.0, 0});
 }
 
+/// Equal keys side by side. Keys are hashes: the lower half of their bits separates nearly all.
+std::vector<Observations::Met> grouped_by_key(std::vector<Observations::Met> met) {
+    const auto lower = [](const Observations::Met& m) { return m.key & ((std::uint64_t{1} << 33) - 1); };
+    sort_by_key(met, lower);
+    for (auto first = met.begin(), last = first; first != met.end(); first = last) {
+        while (last != met.end() && lower(*last) == lower(*first)) ++last;
+        if (last - first > 1) std::ranges::sort(first, last, {}, &Observations::Met::key);
+    }
+    return met;
+}
+
 /// Pairs of equal directions compared with the number that the lattice of the arithmetic causes: N^2 / 2 pairs, of
 /// which a step^2 of the sphere contains the integral of p^2 = E[p]. In single precision a small disk about an axis is
 /// one direction (`one_direction`), which is then drawn N p times.
 void test_repeats(const Evidence& e, const Visit& visit) {
     const Observations& o = e.observations;
-    std::vector<Observations::Met> met = o.met;
-    std::ranges::sort(met, {}, &Observations::Met::key);
+    const std::vector<Observations::Met> met = grouped_by_key(o.met);
     const double least = e.source.traits.bits == 53 ? 0x1p-53 : ulp;
     const double step = std::max(e.plan.step / angle_per_step, least);
     const bool single = e.plan.in_single(e.source);

@@ -21,7 +21,7 @@ constexpr Kind sum_kinds[integrands] = {{Family::mass, Family::mass_sets}, {Fami
 Values values_in(const Evidence& e, std::size_t l, double h) {
     const Leaf& leaf = e.plan.tree.leaves()[l];
     const Vec3d off = from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)) - e.plan.middle;
-    return {1, h, h * (math::log(leaf.q) - e.plan.median_log_p), h * off.x, h * off.y, h * off.z};
+    return {1, h, h * (Plan::log_of(leaf.q) - e.plan.median_log_p), h * off.x, h * off.y, h * off.z};
 }
 
 /// The effect of rounding of p on a whole sum, for all leaves in which p is not known better.
