@@ -42,6 +42,7 @@ template <class F> std::shared_ptr<const SamplerAdapter> with_numbers(
 }  // namespace
 
 std::shared_ptr<const SamplerAdapter> make_adapter(const Sampler& s) {
+    if (s.given) return s.given;
     Traits known;
     known.wo = s.wo;
     known.reciprocal = s.reciprocal;

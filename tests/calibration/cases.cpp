@@ -201,6 +201,7 @@ const std::vector<CaseSet>& case_sets() {
     static const std::vector<CaseSet> all = {
         {"right", "right samplers with random parameters, one w_o each", 0, 1, make_right},
         {"right-held-out", "the same of the held-out families", 0, 1, make_right},
+        {"fresh", "right samplers of families written after the engine", 0, 1, make_fresh},
         {"hard", "right samplers that are hard to integrate or to draw in single precision", count_hard(), 2,
             make_hard},
         {"power", "faults by size in twelve families: constant, leak, rotation, mismatch", 0, 0, make_power},

@@ -62,6 +62,9 @@ Case make_hard(const CaseKey& key);  // hard.cpp
 std::uint64_t count_hard();
 Case make_reported(const CaseKey& key);  // reported.cpp
 std::uint64_t count_reported();
+Case make_fresh(const CaseKey& key);  // fresh.cpp
+std::vector<std::string> fresh_names();
+Sampler fresh_sampler(std::size_t family, Real real, Rng& rng);
 Case make_known(const CaseKey& key);  // known.cpp
 std::uint64_t count_known();
 

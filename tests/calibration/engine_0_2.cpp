@@ -1,6 +1,7 @@
 // The engine of src/check.
 #include <fmt/format.h>
 
+#include "check/check.h"
 #include "check/explain/causes.h"
 #include "tests/calibration/engine.h"
 
@@ -24,6 +25,9 @@ public:
         if (request.full) settings.budget = check::CheckBudget::thorough();
         if (std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); }))
             settings.budget = check::CheckBudget::limited();
+        if (request.evaluations > 0)
+            settings.budget = check::CheckBudget::limited(static_cast<double>(request.evaluations));
+        if (!request.full) settings.further_in_all = static_cast<double>(TestSettings::quick().further_in_all);
         settings.seed = request.seed;
         ProgressMonitor monitor;
         Result out;

@@ -48,6 +48,7 @@ struct Sampler {
     std::optional<double> eta{};  // index below over above
     bool reciprocal = true;
     std::variant<Functions<double>, Functions<float>> functions;
+    std::shared_ptr<const SamplerAdapter> given{};  // in place of the functions, for draws with a weight
     Real real() const { return functions.index() == 0 ? Real::f64 : Real::f32; }
 };
 

@@ -19,6 +19,12 @@ std::string handshake(const Sampler& s) {
     if (s.real() == Real::f32) out += " real=f32";
     if (s.eta) out += fmt::format(" eta={}", *s.eta);
     if (!s.reciprocal) out += " reciprocal=no";
+    if (s.given) {
+        const Traits t = s.given->traits();
+        out += " weight=yes";
+        if (t.delta) out += " delta=yes";
+        if (!t.has_pdf) out += " pdf=no";
+    }
     return out + " block=f64\n";
 }
 
@@ -27,7 +33,8 @@ struct Request {
     std::uint32_t rows;
 };
 
-void answer_samples(const SamplerAdapter& s, int numbers, const std::vector<double>& in, std::vector<double>& out) {
+void answer_samples(
+    const SamplerAdapter& s, int numbers, bool weights, const std::vector<double>& in, std::vector<double>& out) {
     const std::size_t width = 3 + static_cast<std::size_t>(numbers);
     for (std::size_t r = 0; r < in.size() / width; ++r) {
         const double* row = &in[r * width];
@@ -35,7 +42,8 @@ void answer_samples(const SamplerAdapter& s, int numbers, const std::vector<doub
         for (int k = 0; k < numbers; ++k) u[k] = row[3 + k];
         Draw d;
         s.sample(0, {row[0], row[1], row[2]}, {&u, 1}, {&d, 1});
-        for (const double v : {d.wi.x, d.wi.y, d.wi.z, d.pdf}) out.push_back(v);
+        for (const double v : {d.wi.x, d.wi.y, d.wi.z, d.delta > 0 ? -d.delta : d.pdf}) out.push_back(v);
+        if (weights) out.push_back(d.weight.value_or(0));
     }
 }
 
@@ -66,7 +74,7 @@ bool serve(const Sampler& sampler, std::FILE* in, std::FILE* out) {
         questions.resize(request.rows * static_cast<std::size_t>(samples ? 3 + sampler.numbers : 6));
         if (std::fread(questions.data(), 8, questions.size(), in) != questions.size()) return false;
         answers.clear();
-        if (samples) answer_samples(*adapter, sampler.numbers, questions, answers);
+        if (samples) answer_samples(*adapter, sampler.numbers, sampler.given != nullptr, questions, answers);
         else answer_values(*adapter, std::memcmp(request.what, "pdf_", 4) == 0, questions, answers);
         std::fwrite(&request.rows, 4, 1, out);
         std::fwrite(answers.data(), 8, answers.size(), out);
