@@ -8,7 +8,7 @@ import signal
 import numpy as np
 import pytest
 from samplers import cosine, mirror
-from test_experiments import TINY
+from tiny import TINY
 
 import crescent
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from samplers import cosine
 from test_callable_arms import difference, phong, with_samplers
-from test_experiments import TINY
+from tiny import TINY
 
 import crescent
 

@@ -5,6 +5,7 @@ import sys
 import time
 
 import pytest
+from tiny import TINY
 
 SCRIPT = """
 import atexit, os, sys, threading, time
@@ -12,6 +13,7 @@ import numpy as np
 import crescent
 
 began, kind = threading.Event(), sys.argv[1]
+scene = crescent.parse(sys.argv[2])
 
 def sample(wo, u):
     if len(u) > 8:
@@ -32,14 +34,13 @@ def progress(what, done, total):
 
 CALLS = {
     "an arm": lambda: crescent.check("ggx-vndf", full=True, progress=progress),
-    "a run": lambda: crescent.run(crescent.parse(sys.argv[2]), progress=progress),
+    "a run": lambda: crescent.run(scene.with_({"seeds": 64, "arms.cosine.n": 65536}), progress=progress),
     "functions": lambda: (began.set(), crescent.arm("ggx-vndf").sample([0, 0, 1], np.full((100000, 2), 0.5))),
     "serial": lambda: crescent.check(sample, pdf, full=True, serial=True),
     "a join": lambda: (began.set(), crescent.join([sys.argv[4]])),
 }
 if kind == "a join":
-    small = sys.argv[2].replace("n = 65536", "n = 16").replace("seeds = 64", "seeds = 2")
-    crescent.run(crescent.parse(small), seeds=(1, 1), out=sys.argv[4])
+    crescent.run(scene, seeds=(1, 1), out=sys.argv[4])
 
 def work():
     while True:
@@ -50,27 +51,6 @@ assert began.wait(30)
 time.sleep(float(sys.argv[3]))
 print("over")
 """
-SCENE = """
-title = "a floor"
-seed = 1
-n = 65536
-seeds = 64
-[image]
-width = 64
-height = 64
-[camera]
-eye = [0, 1, 3]
-target = [0, 0, 0]
-vfov_deg = 40
-[shapes.floor]
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-rho_d = [0.5, 0.5, 0.5]
-[fill]
-radiance = [1, 1, 1]
-[arms.cosine]
-"""
 
 
 @pytest.mark.parametrize(
@@ -80,7 +60,7 @@ def test_an_interpreter_ends_as_usual_beside_a_daemon_thread(kind, tmp_path):
     for wait in ("0", "0.11"):
         start = time.monotonic()
         ended = subprocess.run(
-            [sys.executable, "-c", SCRIPT, kind, SCENE, wait, str(tmp_path / "part")],
+            [sys.executable, "-c", SCRIPT, kind, TINY, wait, str(tmp_path / "part")],
             capture_output=True,
             text=True,
             timeout=50,

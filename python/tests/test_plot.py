@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 import crescent  # noqa: E402
 from crescent import plot  # noqa: E402
 from crescent._intervals import best_of, fitted_slope, log_interval, t_quantile  # noqa: E402
-from test_experiments import TINY  # noqa: E402
+from tiny import TINY  # noqa: E402
 
 
 @pytest.fixture(scope="module")

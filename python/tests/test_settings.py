@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from test_experiments import TINY
+from tiny import TINY
 
 import crescent
 

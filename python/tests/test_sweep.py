@@ -27,7 +27,7 @@ from crescent._sweep.dataset import read  # noqa: E402
 from crescent._sweep.engines import engine_of, profile_of, usable_cores  # noqa: E402
 from crescent._sweep.grid import UsageError, axes_of, grid  # noqa: E402
 from crescent._sweep.plan import missing  # noqa: E402
-from test_experiments import TINY as SCENE  # noqa: E402
+from tiny import TINY as SCENE  # noqa: E402
 
 TINY = f"""{SCENE}
 [furnaces.ball]

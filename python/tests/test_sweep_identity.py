@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from test_experiments import TINY
+from tiny import TINY
 
 import crescent
 

@@ -78,24 +78,8 @@ TEST_F(MeshFiles, AndSkiesAreBelowTheExperiment) {
             << image_file({.width = 8, .height = 4, .rgb = texels, .hash = hash_of_texels(8, 4, texels)});
     fs::create_symlink("../sky.image", folder_ / "inner" / "link.image");
     fs::create_symlink("sky.image", folder_ / "inner" / "here.image");
-    std::ofstream(folder_ / "inner" / "e.toml") << R"(
-[image]
-width = 8
-height = 8
-[camera]
-eye = [0, 0, 5]
-target = [0, 0, 0]
-vfov_deg = 40
-[shapes.ball]
-kind = "sphere"
-center = [0, 0, 0]
-radius = 1
-rho_d = [0.5, 0.5, 0.5]
-[sky]
-file = "sky.image"
-[arms.sky]
-n = [4]
-)";
+    std::ofstream(folder_ / "inner" / "e.toml")
+        << test::view_text + test::ball_text + "[sky]\nfile = \"sky.image\"\n[arms.sky]\nn = 4\n";
     const auto mistake = [&](const std::string& file) -> std::string {
         try {
             (void)load((folder_ / "inner" / "e.toml").string(), {"sky.file=" + file});

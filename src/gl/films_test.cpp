@@ -5,6 +5,7 @@
 #include "backend.h"
 #include "tests/support/gl_compare.h"
 #include "tests/support/gl_test_scene.h"
+#include "tests/support/scene_text.h"
 
 namespace crescent::gl {
 namespace films_test {
@@ -207,28 +208,8 @@ TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
 }
 
 TEST(Films, ASceneWithoutLightsAndBodiesIsDrawnToo) {
-    const Experiment experiment = parse(R"(
-title = "plain"
-seed = 1
-[image]
-width = 16
-height = 12
-[camera]
-eye = [0, 1, 4]
-target = [0, 0, 0]
-vfov_deg = 40
-[fill]
-radiance = [1, 1, 1]
-[shapes.floor]
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-rho_d = [0.5, 0.5, 0.5]
-[arms.cosine]
-n = [16]
-[regions.all]
-box = [0, 0, 3, 3]
-)",
+    const Experiment experiment = parse(
+        crescent::test::view_text + crescent::test::floor_text + crescent::test::fill_text + "[arms.cosine]\nn = 16\n",
         "plain.toml");
     const Scene scene(experiment);
     ProgressMonitor monitor;

@@ -13,6 +13,7 @@
 #include "scene/lobes/all.h"
 #include "scene/mesh/mesh.h"
 #include "tests/support/oracle.h"
+#include "tests/support/scene_text.h"
 #include "tests/support/skies.h"
 #include "tests/support/test_scene.h"
 
@@ -144,31 +145,11 @@ TEST(Surroundings, OfOneRadianceAreAFill) {
 
 /// A plane below a ball, under an even sky: the ball covers (r/d)^2 cos of the projected hemisphere.
 TEST(Surroundings, AreHiddenByABall) {
-    const Experiment e = parse(R"(
-[image]
-width = 9
-height = 1
-[camera]
-eye = [0, 1, 4]
-target = [0, 0, 0]
-vfov_deg = 2
-[fill]
-radiance = [1, 1, 1]
-[shapes.ground]
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-rho_d = [0.6, 0.6, 0.6]
-[shapes.ball]
-kind = "sphere"
-center = [0.3, 1.5, 0.2]
-radius = 0.6
-rho_d = [0.5, 0.5, 0.5]
-occludes = true
-[arms.cosine]
-n = 4
-)",
-        "ball.toml");
+    const Experiment e = parse(
+        test::view_text + test::fill_text + test::floor_text + test::ball_text + "[arms.cosine]\nn = 4\n", "ball.toml",
+        {"image.width=9", "image.height=1", "camera.eye=[0,1,4]", "camera.target=[0,0,0]", "camera.vfov_deg=2",
+            "shapes.floor.rho_d=[0.6,0.6,0.6]", "shapes.ball.center=[0.3,1.5,0.2]", "shapes.ball.radius=0.6",
+            "shapes.ball.occludes=true"});
     SceneData data = e;
     data.fill = {}, data.sky = test::constant_sky(1, 1, 1);
     const Scene scene(data);

@@ -12,35 +12,16 @@
 #include "render/reference/reference.h"
 #include "run/arm_cases.h"
 #include "run/execute.h"
+#include "tests/support/scene_text.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent {
 namespace combinations_test {
 
-const std::string room = R"toml(
-seed = 3
-n = 64
-[image]
-width = 40
-height = 24
-[camera]
-eye = [0, 0.8, 3.2]
-target = [0, 0.5, 0]
-vfov_deg = 42
-[shapes.ball]
-kind = "sphere"
-center = [0, 0.65, 0]
-radius = 0.65
-rho_d = [0.155, 0.175, 0.188]
-rho_s = 0.3
-s = 32
-occludes = true
-[shapes.floor]
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-rho_d = [0.4, 0.3, 0.2]
+/// A glossy ball over a floor under two lights, with these arms.
+Experiment with(const std::string& arms) {
+    static const std::string lights = R"toml(
 [disks.key]
 center = [1.2, 2.9, 1.3]
 normal = [-0.48, -0.81, -0.3369]
@@ -51,15 +32,17 @@ kind = "sphere"
 center = [-1.5, 2, 1]
 radius = 0.3
 radiance = [20, 30, 40]
-[fill]
-radiance = [1.2, 1.38, 1.62]
 [furnaces.white]
 arm = "tested"
 shape = "ball"
 n = 4096
 )toml";
-
-Experiment with(const std::string& arms) { return parse(room + arms, "room.toml"); }
+    return parse(test::view_text + test::ball_text + test::floor_text + test::fill_text + lights + arms, "room.toml",
+        {"seed=3", "n=64", "image.width=40", "image.height=24", "camera.eye=[0,0.8,3.2]", "camera.target=[0,0.5,0]",
+            "camera.vfov_deg=42", "shapes.ball.center=[0,0.65,0]", "shapes.ball.radius=0.65",
+            "shapes.ball.rho_d=[0.155,0.175,0.188]", "shapes.ball.rho_s=0.3", "shapes.ball.s=32",
+            "shapes.ball.occludes=true", "shapes.floor.rho_d=[0.4,0.3,0.2]", "fill.radiance=[1.2,1.38,1.62]"});
+}
 
 /// The film of an arm at 64 samples per pixel.
 Film film_of(const Experiment& e, const std::string& arm, std::uint64_t n = 64) {

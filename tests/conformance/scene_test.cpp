@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/scene_text.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent {
@@ -12,30 +13,10 @@ namespace scene_test {
 
 /// A camera before a wall at z = 0, looking along -z from 4 m.
 Experiment wall(const std::vector<std::string>& overrides = {}) {
-    return parse(R"(
-title = "wall"
-seed = 1
-[image]
-width = 80
-height = 40
-[camera]
-eye = [0, 0, 4]
-target = [0, 0, 0]
-up = [0, 1, 0]
-vfov_deg = 90
-[fill]
-radiance = [1, 1, 1]
-[shapes.wall]
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 0, 1]
-rho_d = [0.5, 0.5, 0.5]
-[arms.cosine]
-n = [4]
-[regions.all]
-box = [0, 0, 3, 3]
-)",
-        "wall.toml", overrides);
+    std::vector<std::string> all{"image.width=80", "image.height=40", "camera.eye=[0,0,4]", "camera.target=[0,0,0]",
+        "camera.vfov_deg=90", "shapes.floor.normal=[0,0,1]"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return parse(test::view_text + test::floor_text + test::fill_text + "[arms.cosine]\nn = 4\n", "wall.toml", all);
 }
 
 TEST(Camera, PixelsCountFromTheBottomLeftAndAreSquare) {

@@ -20,50 +20,30 @@
 #include "render/reference/reference.h"
 #include "report/plates/plates.h"
 #include "report/report.h"
+#include "tests/support/scene_text.h"
 
 using namespace crescent;
 
 namespace {
 
-constexpr const char* scene_text = R"(
-seed = 5
-[image]
-width = 32
-height = 20
-[camera]
-eye = [0.0, 1.0, 4.0]
-target = [0.0, 0.6, 0.0]
-vfov_deg = 30.0
-[fill]
-radiance = [0.5, 0.6, 0.7]
-[shapes.ball]
-kind = "sphere"
-center = [0.0, 0.6, 0.0]
-radius = 0.6
-rho_d = [0.3, 0.2, 0.1]
-rho_s = 0.3
-s = 12.0
-alpha = 0.4
-[shapes.ground]
-kind = "plane"
-point = [0.0, 0.0, 0.0]
-normal = [0.0, 1.0, 0.0]
-rho_d = [0.5, 0.5, 0.5]
-[disks.lamp]
-center = [-1.5, 2.5, 1.0]
-normal = [0.0, -1.0, 0.0]
-radius = 0.8
-radiance = [4.0, 4.0, 4.0]
-[arms.it]
-n = [256]
-[regions.all]
-box = [0, 0, 31, 19]
-)";
+/// A glossy ball over a floor under a lamp, with the arm `it` and these tables.
+Experiment scene_with(const std::string& tables, const std::vector<std::string>& settings) {
+    static const std::string lamp =
+        "[disks.lamp]\ncenter = [-1.5, 2.5, 1]\nnormal = [0, -1, 0]\nradius = 0.8\nradiance = [4, 4, 4]\n"
+        "[arms.it]\nn = 256\n[regions.all]\nbox = [0, 0, 31, 19]\n";
+    std::vector<std::string> overrides{"seed=5", "image.width=32", "image.height=20", "camera.eye=[0,1,4]",
+        "camera.target=[0,0.6,0]", "camera.vfov_deg=30", "fill.radiance=[0.5,0.6,0.7]", "shapes.ball.center=[0,0.6,0]",
+        "shapes.ball.radius=0.6", "shapes.ball.rho_d=[0.3,0.2,0.1]", "shapes.ball.rho_s=0.3", "shapes.ball.s=12",
+        "shapes.ball.alpha=0.4"};
+    overrides.insert(overrides.end(), settings.begin(), settings.end());
+    return parse(
+        test::view_text + test::ball_text + test::floor_text + test::fill_text + lamp + tables, "extending", overrides);
+}
 
 bool has_the_references_mean(const std::string& sampler, const std::string& brdf, const std::string& added = "",
     const std::string& fill = "[0.5, 0.6, 0.7]") {
-    const Experiment e = parse(std::string(scene_text) + added, "extending",
-        {"fill.radiance=" + fill, "arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
+    const Experiment e = scene_with(
+        added, {"fill.radiance=" + fill, "arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
     const Scene scene(e);
     ProgressMonitor monitor;
     const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", monitor)[0];
@@ -88,9 +68,9 @@ bool is_checked_as_expected(const std::string& sampler, const Grid& wo = {}) {
 
 /// Tests the outputs of a film of cosine.
 bool is_measured_and_drawn(const std::string& metric, const std::string& plate) {
-    const Experiment e = parse(std::string(scene_text) + "[plates.it]\nkind = \"" + plate +
+    const Experiment e = scene_with("[plates.it]\nkind = \"" + plate +
             "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + metric + ".all(it) > 0\"\n",
-        "extending", {"arms.it.sampler=\"cosine\""});
+        {"arms.it.sampler=\"cosine\""});
     const Scene scene(e);
     ProgressMonitor monitor;
     const RunKey key{"it", 256, e.s(), e.seed};
