@@ -1,5 +1,5 @@
 // CodeMirror, which takes longer to evaluate than the rest of the page: scripts of its own, one for each of its packages
-// (apps/web/vendor/codemirror/bundle.sh), that run when the first editor or the first export needs them.
+// (apps/web/vendor/codemirror/bundle.sh), that run when the first editor needs them.
 import { newTask } from "./dom";
 import type * as Parts from "./vendor/codemirror/editor";
 

@@ -102,7 +102,7 @@ export class Workshop implements Viewer {
         el("div", {}, this.views, el("figure", { class: "hemisphere" }, this.hemisphere, this.caption))),
       this.verdicts,
       el("h3", {}, "Its film beside a built-in one"), this.options, this.film.root, this.charts,
-      el("details", { id: "export", ontoggle: () => this.export() }, el("summary", {}, "Export: C++, Python, the program"), formats,
+      el("details", { id: "export", ontoggle: () => this.export() }, el("summary", {}, "Export: the program, a frame for C++ or Python"), formats,
         this.out, el("p", {}, button("copy-export", "Copy", () => void this.copyExport()), " ", button("save-export", "Save as a file", () => this.saveExport()))));
     window.setInterval(() => this.guard(), 500);
   }

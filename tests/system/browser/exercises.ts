@@ -8,8 +8,6 @@ import { evaluations, four } from "../../../apps/web/workshop_settings";
 
 import "../../../apps/web/vendor/codemirror/editor"; // in the page, scripts of their own
 
-export { exported } from "../../../apps/web/export";
-export { templates };
 interface Verdict { name: string; state: string; say: string; hidden: Record<string, number> }
 declare const global: Record<string, unknown>;
 
