@@ -1,4 +1,4 @@
-/* A smooth coat over a coloured diffuse base, for `crescent check --exec ./coat`, in protocol 2.
+/* A smooth coat over a coloured diffuse base, for `crescent check --exec ./coat`.
  * cc -O2 -o coat coat.c -lm
  * The coat mirrors 1/5 of the light, a delta part; the rest meets a Lambert surface of three channels. Three random
  * numbers: the third chooses the part. Requests are read as they come, and answers flushed when none is waiting. */

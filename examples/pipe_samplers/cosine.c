@@ -12,7 +12,7 @@ int main(void) {
     while (fgets(line, sizeof line, stdin)) {
         double ox, oy, oz, x, y, z;
         if (strncmp(line, "hello", 5) == 0) {
-            printf("hello 1 cosine.c\n");
+            printf("hello 2 cosine.c\n");
         } else if (sscanf(line, "sample %lf %lf %lf %lf %lf", &ox, &oy, &oz, &x, &y) == 5) {
             const double r = sqrt(x), up = sqrt(1 - x), phi = 2 * pi * y;
             printf("%a %a %a %a\n", r * cos(phi), r * sin(phi), up, up / pi);

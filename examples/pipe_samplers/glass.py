@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rough glass for `crescent check --exec 'python3 glass.py'`, in protocol 2, by blocks of doubles.
+"""Rough glass for `crescent check --exec 'python3 glass.py'`, by blocks of doubles.
 
 GGX, Smith's G separable: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", with equation
 numbers at the lines; normals are drawn from the visible ones, Heitz 2018. Three random numbers per sample: the third

@@ -105,7 +105,7 @@ def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
     if s.uses:
         keys["uses"] = ",".join(s.uses)
     name = " ".join(s.title().replace("=", "-").split()) or "sampler"
-    return f"hello {3 if s.uses else 2} {name} " + " ".join(f"{key}={value}" for key, value in keys.items())
+    return f"hello 2 {name} " + " ".join(f"{key}={value}" for key, value in keys.items())
 
 
 def _started(where: str) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]:

@@ -94,7 +94,7 @@ def test_a_plugin_runs_beside_the_module(tmp_path):
         """#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
-unsigned crescent_sampler_abi(void) { return 1; }
+unsigned crescent_sampler_abi(void) { return 2; }
 int crescent_sampler_sample(size_t n, const double* wo, const double* u, const double* s, double* wi, double* p) {
     if (getenv("PLUGIN_ENDS")) _Exit(3);
     for (size_t i = 0; i < n; ++i) {

@@ -22,8 +22,8 @@ unsigned crescent_sampler_numbers(void);
 /* Not 0: one call at a time; default 0. */
 int crescent_sampler_serial(void);
 
-/* The columns of `surface`, since ABI 2: names separated by commas, in any order. Default, and in ABI 1: 4
- * columns, Phong exponent s, GGX roughness alpha, luminance of the diffuse albedo, specular albedo.
+/* The columns of `surface`: names separated by commas, in any order. Default: 4 columns, Phong exponent s, GGX
+ * roughness alpha, luminance of the diffuse albedo, specular albedo.
  *   s, alpha, rho_s  1 column each
  *   rho_d            3 columns, the diffuse albedo by channel
  *   side, eta        1 column each: always 1, because scenes are opaque and w_o is on the side of the normal

@@ -110,8 +110,8 @@ struct SamplerRef {
     SamplerRef(const char* word) : sampler(word) {}
 };
 
-// ---- The description of the surface point for a program behind a pipe, protocol 3: columns after w_o and u, or after
-// w_o and w_i. docs/samplers.md has their order and units.
+// ---- The description of the surface point for a program behind a pipe: columns after w_o and u, or after w_o and
+// w_i. docs/samplers.md has their order and units.
 
 /// The quantities that a handshake may name in `uses`: "s, alpha, rho_d, rho_s, side, eta, lights".
 std::span<const std::string_view> context_names();

@@ -1,4 +1,4 @@
-// A calibration sampler as a program behind a pipe: protocol 2 of `crescent check --exec`, with blocks.
+// A calibration sampler as a program behind a pipe: the protocol of `crescent check --exec`, with blocks.
 #pragma once
 
 #include <cstdio>

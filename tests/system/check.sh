@@ -63,7 +63,7 @@ expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 next_texel.py 256 51
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x weights=yes'
 grep -q "expected one of u, domain, wo,.* got the unknown key 'weights'; did you mean 'weight'?" printed ||
     die "an unknown key is not named: $(cat printed)"
-expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
+expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x; exit 3'
 grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"
 
 # Samplers without a pdf(w), with a branch of two intervals, with an f that fails at one pair, and one that never draws.

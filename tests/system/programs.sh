@@ -27,11 +27,11 @@ broken() {
     fields broken.json "
 assert j['state'] == 'error' and all(v['state'] in ('right', 'skipped', 'error') for v in j['verdicts'])"
 }
-broken "exit code 3" 'read hello; echo hello 1 x; exit 3'
+broken "exit code 3" 'read hello; echo hello 2 x; exit 3'
 broken "loading weights.*stdout is for answers alone" 'echo loading weights...; cat'
 broken "exit code 2" 'python3 nowhere.py'
-broken "signal 11" 'read hello; echo hello 1 x; read f; echo -; kill -SEGV $$'
-broken "got 'oops'" 'read hello; echo hello 1 x; read f; echo -; read sample
+broken "signal 11" 'read hello; echo hello 2 x; read f; echo -; kill -SEGV $$'
+broken "got 'oops'" 'read hello; echo hello 2 x; read f; echo -; read sample
     while echo 0 0 1 0.3; do read verb || exit 0; [ "${verb%% *}" = sample ] || { echo oops; break; }; done'
 
 # A number too large for a double is infinite in every notation.
@@ -48,7 +48,7 @@ x.ParserCreate().ParseFile(open(sys.argv[1], 'rb'))
 open(sys.argv[2], encoding='utf-8').read()" "$1" "$2" || die "$1 or $2"
 }
 for name in 'a\033[31m\302\233<&"' "$(printf 'x%.0s' {1..59})\303\251\303\251" 'na\357ve'; do
-    expect 3 check --exec "read hello; printf 'hello 1 $name\n'; read f; echo -; exit 3" --junit name.xml \
+    expect 3 check --exec "read hello; printf 'hello 2 $name\n'; read f; echo -; exit 3" --junit name.xml \
         --html name.html
     well_formed name.xml name.html
     ! LC_ALL=C grep -q "$(printf '\033\\|\302\233')" printed || die "a control character of the name: $(cat -v printed)"
@@ -63,7 +63,7 @@ gone() {
     done
     die "process $(cat "$1") lives on"
 }
-expect 3 check --exec 'setsid sh -c "echo \$\$ >session; exec sleep 300" & read hello; echo hello 1 x
+expect 3 check --exec 'setsid sh -c "echo \$\$ >session; exec sleep 300" & read hello; echo hello 2 x
     while [ ! -s session ]; do :; done; exit 3'
 gone session
 "$CRESCENT" check --quiet --exec 'echo $$ >orphan; exec sleep 300' >/dev/null 2>&1 &

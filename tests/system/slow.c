@@ -18,7 +18,7 @@ int main(int count, char** words) {
         const struct timespec nap = {0, 100000000};
         if (quick-- <= 0) nanosleep(&nap, 0);
         if (strncmp(line, "hello", 5) == 0) {
-            printf("hello 1 slow\n");
+            printf("hello 2 slow\n");
         } else if (sscanf(line, "sample %lf %lf %lf %lf %lf", &ox, &oy, &oz, &x, &y) == 5) {
             const double r = sqrt(x), up = sqrt(1 - x), phi = 2 * pi * y;
             printf("%.17g %.17g %.17g ", r * cos(phi), r * sin(phi), up);

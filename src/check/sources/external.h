@@ -15,10 +15,9 @@
 
 namespace crescent::inline sources {
 
-// ---- A program. The handshake starts with `hello 2`, and the program answers with its declaration. A program that
-// answers `hello 1 NAME` uses protocol 1, which is protocol 2 without keys; one that answers `hello 3` may declare the
-// quantities of the surface point and the lights that it uses. Requests are text lines, or blocks of doubles if the
-// program declares them; docs/samplers.md has the grammar. The program ends at the end of its input.
+// ---- A program. The handshake starts with `hello 2`, and the program answers with its declaration. Requests are text
+// lines, or blocks of doubles if the program declares them; docs/samplers.md has the grammar. The program ends at the
+// end of its input.
 
 /// Time limits of a program behind a pipe or of a plugin.
 struct PipeLimits {
@@ -46,18 +45,18 @@ public:
 std::shared_ptr<const ProgramSampler> start_pipe(
     const std::string& command, const PipeLimits& limits = {}, const std::string& label = "");
 
-// ---- The declaration of a program: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`, or `hello 3 ...`;
-// docs/samplers.md has the keys.
+// ---- The declaration of a program; docs/samplers.md has the keys.
+
+inline constexpr const char* handshake_form = "'hello 2 NAME [KEY=VALUE]...'";
 
 /// The declaration in the first line of a program.
 struct Handshake {
-    int protocol = 1;
     std::string name;
     Traits traits;
     bool hemisphere = false;  // a draw below the horizon is no sample
     bool f_cos = false;       // f includes |cos|
     bool weight = false, delta = false, blocks = false;
-    std::vector<std::string> uses;  // protocol 3: of context_names()
+    std::vector<std::string> uses;  // of context_names()
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
 

@@ -145,7 +145,7 @@ private:
             for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
         };
     }
-    double number_for(double u) const { return hello_.protocol == 1 || hello_.traits.u_bits == 53 ? u : for_float(u); }
+    double number_for(double u) const { return hello_.traits.u_bits == 53 ? u : for_float(u); }
     std::size_t columns_of_sample(std::size_t lights) const {
         return 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights);
     }
@@ -260,8 +260,7 @@ private:
 
     void handshake_with_program(const std::string& label) {
         connection_.lines(
-            1, "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
-            [](std::size_t, std::string& line) { line = "hello 2"; },
+            1, handshake_form, [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
                 Handshake hello;
@@ -404,8 +403,8 @@ const std::array<HandshakeKey, 16>& keys() {
                 return v == "53" || v == "24";
             }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
-        {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas, after 'hello 3'",
-            [](S v, Handshake& g) { return g.protocol == 3 && take_context_names(v, g.uses); }},
+        {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas",
+            [](S v, Handshake& g) { return take_context_names(v, g.uses); }},
     }};
     return all;
 }
@@ -432,16 +431,20 @@ HandshakeError read_key(std::string_view word, Handshake& out) {
 }  // namespace
 
 HandshakeError read_handshake(std::string_view answer, Handshake& out) {
-    const std::string form = "'hello 2 NAME [KEY=VALUE]...', 'hello 3 NAME [KEY=VALUE]...' or 'hello 1 NAME'";
-    const bool one = answer.starts_with("hello 1 "), three = answer.starts_with("hello 3 "),
-               two = three || answer.starts_with("hello 2 ");
-    if ((!one && !two) || blank(answer.substr(8))) return {form, "got " + shown(answer) + only_answers};
-    out.protocol = one ? 1 : three ? 3 : 2;
-    std::string_view rest = answer.substr(8), name = rest;
-    const std::size_t key = two ? rest.find('=') : rest.npos;
+    constexpr std::string_view start = "hello 2 ";
+    for (const char* version : {"hello 1 ", "hello 3 "})
+        if (answer.starts_with(version))
+            return {handshake_form,
+                fmt::format(
+                    "got {}; write {}", shown(answer), shown(fmt::format("{}{}", start, answer.substr(start.size()))))};
+    if (!answer.starts_with(start) || blank(answer.substr(start.size())))
+        return {handshake_form, "got " + shown(answer) + only_answers};
+    std::string_view rest = answer.substr(start.size()), name = rest;
+    const std::size_t key = rest.find('=');
     if (key != rest.npos) {
         const std::size_t before = rest.find_last_of(" \t", key);
-        if (before == rest.npos || blank(rest.substr(0, before))) return {form, "got no name in " + shown(answer)};
+        if (before == rest.npos || blank(rest.substr(0, before)))
+            return {handshake_form, "got no name in " + shown(answer)};
         name = rest.substr(0, before);
         rest = rest.substr(before);
         std::set<std::string_view> seen;

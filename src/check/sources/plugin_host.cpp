@@ -143,10 +143,10 @@ struct Library {
         const char* (*calls_itself)() = nullptr, *(*names)() = nullptr;
         if (!find("crescent_sampler_abi", abi)) throw missing("crescent_sampler_abi");
         const unsigned version = called("crescent_sampler_abi", abi);
-        if (version < 1 || version > CRESCENT_SAMPLER_ABI)
+        if (version != CRESCENT_SAMPLER_ABI)
             throw Fault{"it has version " + std::to_string(version) + " of the interface; this program has version " +
-                std::to_string(CRESCENT_SAMPLER_ABI)};
-        if (version >= 2 && find("crescent_sampler_uses", names)) uses = text_of("crescent_sampler_uses", names);
+                std::to_string(CRESCENT_SAMPLER_ABI) + ": compile it with the sampler_plugin.h of this program"};
+        if (find("crescent_sampler_uses", names)) uses = text_of("crescent_sampler_uses", names);
         if (uses.find_first_of(" \n") != std::string::npos)
             throw Fault{"crescent_sampler_uses gives '" + uses + "': expected names separated by commas"};
         if (!find("crescent_sampler_sample", sample)) throw missing("crescent_sampler_sample");
