@@ -1,4 +1,4 @@
-// crescent import: starts crescent-import, which reads a model by assimp in a process of its own, checks the mesh that
+// crescent import: starts crescent-import, which reads a model in a process of its own, checks the mesh that
 // it wrote, and prints the tables of an experiment for it. A model that the importer dies of is an error of the input.
 // An OpenEXR image is packed by the program itself.
 #include <algorithm>
@@ -95,10 +95,9 @@ Imported import_model(const ImportFlags& flags) {
     if (!end) refuse(flags.file, fmt::format("the importer takes more than {} s (--timeout)", flags.timeout));
     Json description = Json::parse(text, nullptr, false);
     if (description.is_object() && description.contains("error") && description["error"].is_string())
-        refuse(
-            flags.file, fmt::format("expected a model that assimp reads: {}", description["error"].get<std::string>()));
+        refuse(flags.file, description["error"].get<std::string>());
     if (!end->well() || !description.is_object())
-        refuse(flags.file, fmt::format("expected a model that assimp reads; the importer ended with {}", end->text()));
+        refuse(flags.file, fmt::format("expected a model that can be read; the importer ended with {}", end->text()));
     return {contents_of_descriptor(plan.shared), std::move(description)};
 }
 
@@ -140,8 +139,13 @@ int import(const ImportFlags& flags) {
         refuse(flags.file, "expected a file that can be read");
     can_write(flags.out);
     const Imported imported = import_model(flags);
-    const auto pack = read_mesh(imported.mesh, flags.file);
-    write_whole(flags.out, imported.mesh);
+    auto pack = read_mesh(imported.mesh, flags.file);
+    const std::size_t degenerate = pack->degenerate, duplicate = pack->duplicate;
+    Mesh moved = pack->mesh;
+    const std::optional<Rescaled> rescaled = bring_into_range(moved);
+    const std::string file = rescaled ? mesh_file(moved) : imported.mesh;
+    if (rescaled) pack = read_mesh(file, flags.file);
+    write_whole(flags.out, file);
 
     const Mesh& mesh = pack->mesh;
     const Bounds box = mesh.bounds();
@@ -150,8 +154,15 @@ int import(const ImportFlags& flags) {
     out += fmt::format("# box {} to {}\n", point(widen(box.low)), point(widen(box.high)));
     out += fmt::format("# normals: {}; texture coordinates: {}\n", mesh.normals.empty() ? "of the triangles" : "smooth",
         mesh.uv.empty() ? "none" : "one set");
-    if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);
-    if (pack->duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", pack->duplicate);
+    if (rescaled) {
+        const Vec3d& from = rescaled->from;
+        out += fmt::format("# moved by [{:.9g}, {:.9g}, {:.9g}]{}: an experiment holds sizes of 1e-3 to 1e5 m\n",
+            -from.x, -from.y, -from.z, rescaled->by == 1 ? "" : fmt::format(", then scaled by {:.9g}", rescaled->by));
+    }
+    if (degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", degenerate);
+    if (duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", duplicate);
+    for (const Json& what : imported.description.value("left_out", Json::array()))
+        out += fmt::format("# left out: {}\n", what.get<std::string>());
     const Json materials = imported.description.value("materials", Json::array());
     for (const Json& material : materials)
         out += fmt::format("# material '{}': {} triangles{}{}\n", material.value("name", ""),

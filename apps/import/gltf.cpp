@@ -1,0 +1,563 @@
+// glTF 2.0 and GLB (Khronos Group 2021, "glTF 2.0 Specification"): the triangles of the scene, placed by its nodes.
+// Every offset, size and index is checked before it is used. Integers as positions are KHR_mesh_quantization.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "model.h"
+
+namespace crescent::importer {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// A place in the file: "meshes[0].primitives[1]".
+std::string in(const std::string& place, std::string_view key) {
+    return place.empty() ? std::string(key) : fmt::format("{}.{}", place, key);
+}
+std::string at(std::string_view list, std::size_t index) { return fmt::format("{}[{}]", list, index); }
+
+[[noreturn]] void fail(const std::string& place, const std::string& message) {
+    throw ModelError(fmt::format("{}: {}", place, message));
+}
+
+std::optional<std::size_t> whole(const Json& of, const char* key, const std::string& place) {
+    const auto found = of.find(key);
+    if (found == of.end()) return std::nullopt;
+    if (!found->is_number_unsigned()) fail(in(place, key), "expected a whole number");
+    return found->get<std::size_t>();
+}
+
+std::size_t needed(const Json& of, const char* key, const std::string& place) {
+    const std::optional<std::size_t> value = whole(of, key, place);
+    if (!value) fail(place, fmt::format("expected '{}'", key));
+    return *value;
+}
+
+template <std::size_t n>
+std::optional<std::array<double, n>> numbers(const Json& of, const char* key, const std::string& place) {
+    const auto found = of.find(key);
+    if (found == of.end()) return std::nullopt;
+    std::array<double, n> out{};
+    if (!found->is_array() || found->size() != n) fail(in(place, key), fmt::format("expected {} numbers", n));
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!(*found)[k].is_number()) fail(in(place, key), fmt::format("expected {} numbers", n));
+        out[k] = (*found)[k].template get<double>();
+    }
+    return out;
+}
+
+std::string text(const Json& of, const char* key) {
+    const auto found = of.find(key);
+    return found != of.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// The characters that %XX stand for (RFC 3986).
+std::string percent_decoded(std::string_view uri) {
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1;
+    };
+    std::string out;
+    for (std::size_t k = 0; k < uri.size(); ++k) {
+        const bool is_code = uri[k] == '%' && k + 2 < uri.size() && digit(uri[k + 1]) >= 0 && digit(uri[k + 2]) >= 0;
+        out += is_code ? static_cast<char>(16 * digit(uri[k + 1]) + digit(uri[k + 2])) : uri[k];
+        if (is_code) k += 2;
+    }
+    return out;
+}
+
+/// Base64 (RFC 4648); nothing if some other character is in it.
+std::optional<std::string> base64_decoded(std::string_view text) {
+    constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    std::uint32_t bits = 0;
+    int count = 0;
+    while (text.ends_with('=')) text.remove_suffix(1);
+    for (const char c : text) {
+        const std::size_t value = alphabet.find(c);
+        if (value == alphabet.npos) return std::nullopt;
+        bits = bits << 6 | static_cast<std::uint32_t>(value);
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        out += static_cast<char>(bits >> count & 255);
+    }
+    return out;
+}
+
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t out = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+        out |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << (8 * k);
+    return out;
+}
+
+/// The parts of a .glb file: JSON, and a buffer.
+struct Container {
+    std::string_view json;
+    std::optional<std::string_view> buffer;
+};
+
+Container container_of(std::string_view file) {
+    constexpr std::string_view magic = "glTF";
+    constexpr std::uint32_t json_chunk = 0x4E4F534A, buffer_chunk = 0x004E4942;
+    if (!file.starts_with(magic)) return {file, std::nullopt};
+    if (file.size() < 12 || number_at(file, 4) != 2) throw ModelError("expected version 2 of GLB");
+    Container out;
+    for (std::size_t place = 12; place + 8 <= file.size();) {
+        const std::uint32_t size = number_at(file, place), kind = number_at(file, place + 4);
+        if (size > file.size() - place - 8)
+            throw ModelError(fmt::format("byte {}: a part of {} bytes, beyond the end of the file", place, size));
+        const std::string_view bytes = file.substr(place + 8, size);
+        if (kind == json_chunk && out.json.empty()) out.json = bytes;
+        if (kind == buffer_chunk && !out.buffer) out.buffer = bytes;
+        place += 8 + (std::size_t{size} + 3) / 4 * 4;
+    }
+    return out;
+}
+
+/// Numbers of one kind in a buffer.
+struct Array {
+    std::string place;
+    std::size_t count = 0, components = 1, stride = 0;
+    std::size_t type = 0;
+    bool normalized = false;
+    std::string_view bytes;  // of the first number on; empty: all are 0
+    const Json* sparse = nullptr;
+};
+
+constexpr std::size_t type_i8 = 5120, type_u8 = 5121, type_i16 = 5122, type_u16 = 5123, type_u32 = 5125,
+                      type_f32 = 5126;
+
+std::size_t bytes_of_type(std::size_t type, const std::string& place) {
+    switch (type) {
+        case type_i8:
+        case type_u8: return 1;
+        case type_i16:
+        case type_u16: return 2;
+        case type_u32:
+        case type_f32: return 4;
+        default: fail(place, fmt::format("expected a componentType of 5120 to 5126, not {}", type));
+    }
+}
+
+double value_at(const char* bytes, std::size_t type, bool normalized) {
+    std::uint32_t bits = 0;
+    const std::size_t size = type <= type_u8 ? 1 : type <= type_u16 ? 2 : 4;
+    for (std::size_t k = 0; k < size; ++k)
+        bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[k])) << (8 * k);
+    switch (type) {
+        case type_i8: {
+            const double v = static_cast<std::int8_t>(bits);
+            return normalized ? std::max(v / 127, -1.0) : v;
+        }
+        case type_u8: return normalized ? bits / 255.0 : bits;
+        case type_i16: {
+            const double v = static_cast<std::int16_t>(bits);
+            return normalized ? std::max(v / 32767, -1.0) : v;
+        }
+        case type_u16: return normalized ? bits / 65535.0 : bits;
+        case type_f32: return static_cast<double>(std::bit_cast<float>(bits));
+        default: return bits;
+    }
+}
+
+/// x' = columns x + origin.
+struct Placement {
+    Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin{};
+
+    Vec3d turned(Vec3d v) const { return v.x * columns[0] + v.y * columns[1] + v.z * columns[2]; }
+    Vec3d placed(Vec3d p) const { return turned(p) + origin; }
+    Placement then(const Placement& inner) const {
+        Placement out;
+        for (int k = 0; k < 3; ++k) out.columns[k] = turned(inner.columns[k]);
+        out.origin = placed(inner.origin);
+        return out;
+    }
+    double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
+};
+
+Vec3f narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+class Reader {
+public:
+    Model model;
+
+    Reader(std::string_view file, std::filesystem::path folder)
+        : folder_(std::move(folder)),
+          container_(container_of(file)),
+          root_(Json::parse(container_.json, nullptr, false)) {
+        if (!root_.is_object()) throw ModelError("expected JSON, or GLB");
+        if (root_.contains("asset") && !text(root_["asset"], "version").starts_with("2"))
+            fail("asset.version", "expected glTF 2");
+        look_at_extensions();
+        for (std::size_t k = 0; k < size_of("materials"); ++k) add_material(k);
+        place_scene();
+        const auto left_out = [&](std::size_t count, const char* what) {
+            if (count > 0) model.left_out.push_back(fmt::format("{} {}", count, what));
+        };
+        left_out(points_and_lines_, "primitives of points or lines");
+        left_out(size_of("skins"), "skins");
+        left_out(size_of("animations"), "animations");
+        left_out(targets_, "primitives' morph targets");
+    }
+
+private:
+    std::size_t size_of(const char* list) const {
+        const auto found = root_.find(list);
+        return found != root_.end() && found->is_array() ? found->size() : 0;
+    }
+    const Json& element(const char* list, std::size_t index, const std::string& from) const {
+        if (index >= size_of(list))
+            fail(from, fmt::format("expected an index below {}, the number of {}, not {}", size_of(list), list, index));
+        const Json& out = root_[list][index];
+        if (!out.is_object()) fail(at(list, index), "expected an object");
+        return out;
+    }
+
+    /// Extensions that place or shape nothing are left out and named; the others are needed, so they are refused by
+    /// name.
+    void look_at_extensions() {
+        const auto names = [&](const char* key) {
+            std::vector<std::string> out;
+            if (root_.contains(key) && root_[key].is_array())
+                for (const Json& name : root_[key])
+                    if (name.is_string()) out.push_back(name.get<std::string>());
+            return out;
+        };
+        const auto is_read = [](const std::string& name) { return name == "KHR_mesh_quantization"; };
+        const auto shapes_nothing = [](const std::string& name) {
+            return name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" ||
+                name == "KHR_texture_basisu" || name == "EXT_texture_webp" || name.starts_with("KHR_xmp");
+        };
+        for (const std::string& name : names("extensionsRequired"))
+            if (!is_read(name) && !shapes_nothing(name))
+                fail("extensionsRequired", fmt::format("the extension '{}' is not supported", name));
+        for (const std::string& name : names("extensionsUsed"))
+            if (!is_read(name)) model.left_out.push_back(fmt::format("the extension {}", name));
+    }
+
+    void add_material(std::size_t index) {
+        const std::string place = at("materials", index);
+        const Json& from = element("materials", index, place);
+        Material to{text(from, "name")};
+        if (const auto emission = numbers<3>(from, "emissiveFactor", place))
+            to.emission = narrow({(*emission)[0], (*emission)[1], (*emission)[2]});
+        to.rho_d = {1, 1, 1};
+        if (const auto found = from.find("pbrMetallicRoughness"); found != from.end() && found->is_object()) {
+            const std::string inner = in(place, "pbrMetallicRoughness");
+            if (const auto colour = numbers<4>(*found, "baseColorFactor", inner))
+                to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
+            if (found->contains("baseColorTexture") && (*found)["baseColorTexture"].is_object())
+                to.texture = texture((*found)["baseColorTexture"], in(inner, "baseColorTexture"));
+        }
+        model.materials.push_back(std::move(to));
+    }
+    std::string texture(const Json& from, const std::string& place) const {
+        const std::size_t index = needed(from, "index", place);
+        const Json& texture = element("textures", index, in(place, "index"));
+        const std::optional<std::size_t> source = whole(texture, "source", at("textures", index));
+        if (!source) return "";
+        const std::string uri = text(element("images", *source, in(at("textures", index), "source")), "uri");
+        return uri.empty() || uri.starts_with("data:") ? "within the model" : percent_decoded(uri);
+    }
+
+    // ---- Buffers.
+
+    std::string_view buffer(std::size_t index, const std::string& from) {
+        const Json& one = element("buffers", index, from);
+        const std::string place = at("buffers", index);
+        const std::size_t size = needed(one, "byteLength", place);
+        const auto [known, is_new] = buffers_.try_emplace(index);
+        if (is_new) known->second = bytes_of_buffer(one, index, place);
+        const std::string_view bytes = one.contains("uri") ? known->second : *container_.buffer;
+        if (bytes.size() < size) fail(place, fmt::format("expected {} bytes, found {}", size, bytes.size()));
+        return bytes.substr(0, size);
+    }
+    std::string bytes_of_buffer(const Json& one, std::size_t index, const std::string& place) const {
+        if (!one.contains("uri")) {
+            if (index != 0 || !container_.buffer) fail(place, "expected 'uri'");
+            return "";
+        }
+        const std::string uri = text(one, "uri");
+        if (uri.starts_with("data:")) {
+            const std::size_t comma = uri.find(";base64,");
+            auto out = comma == uri.npos ? std::nullopt : base64_decoded(std::string_view(uri).substr(comma + 8));
+            if (!out) fail(in(place, "uri"), "expected base64");
+            return std::move(*out);
+        }
+        const std::filesystem::path path = folder_ / percent_decoded(uri);
+        if (!is_inside(folder_, path)) fail(in(place, "uri"), "expected a file in the folder of the model or below it");
+        return bytes_of(path);
+    }
+
+    /// The bytes of a view from an offset on, and its stride: 0 for none.
+    std::pair<std::string_view, std::size_t> view(std::size_t index, std::size_t offset, const std::string& from) {
+        const Json& one = element("bufferViews", index, from);
+        const std::string place = at("bufferViews", index);
+        const std::string_view bytes = buffer(needed(one, "buffer", place), in(place, "buffer"));
+        const std::size_t begin = whole(one, "byteOffset", place).value_or(0), size = needed(one, "byteLength", place);
+        if (begin > bytes.size() || size > bytes.size() - begin)
+            fail(place, fmt::format("{} bytes from {} on are beyond the {} of its buffer", size, begin, bytes.size()));
+        if (offset > size) fail(from, fmt::format("byteOffset {} is beyond the {} bytes of its view", offset, size));
+        return {bytes.substr(begin + offset, size - offset), whole(one, "byteStride", place).value_or(0)};
+    }
+
+    Array array(std::size_t index, const std::string& from, std::string_view expected) {
+        const Json& one = element("accessors", index, from);
+        Array out;
+        out.place = at("accessors", index);
+        out.type = needed(one, "componentType", out.place);
+        const std::size_t size = bytes_of_type(out.type, out.place);
+        if (text(one, "type") != expected)
+            fail(in(out.place, "type"), fmt::format("expected {} for {}, not '{}'", expected, from, text(one, "type")));
+        out.components = expected == "VEC3" ? 3 : expected == "VEC2" ? 2 : 1;
+        out.count = needed(one, "count", out.place);
+        out.normalized = one.value("normalized", Json(false)) == Json(true);
+        out.stride = out.components * size;
+        if (const auto place = whole(one, "bufferView", out.place)) {
+            const auto [bytes, stride] =
+                view(*place, whole(one, "byteOffset", out.place).value_or(0), in(out.place, "bufferView"));
+            if (stride > 0) out.stride = stride;
+            out.bytes = bytes;
+            need_bytes(out.place, bytes.size(), out.count, out.stride, out.components * size);
+        }
+        if (one.contains("sparse")) out.sparse = &one["sparse"];
+        else if (out.bytes.empty()) fail(out.place, "expected 'bufferView' or 'sparse'");
+        return out;
+    }
+    static void need_bytes(
+        const std::string& place, std::size_t have, std::size_t count, std::size_t stride, std::size_t last) {
+        if (count == 0) return;
+        if (have < last || (stride > 0 && count - 1 > (have - last) / stride))
+            fail(place, fmt::format("{} elements are beyond the {} bytes of its view", count, have));
+    }
+
+    /// All numbers of an array, row by row.
+    std::vector<double> values_of(const Array& from) {
+        constexpr std::size_t most = std::size_t{1} << 31;
+        if (from.count > most) fail(from.place, "expected at most 2^31 elements");
+        std::vector<double> out(from.count * from.components);
+        const std::size_t size = bytes_of_type(from.type, from.place);
+        if (!from.bytes.empty())
+            for (std::size_t k = 0; k < out.size(); ++k)
+                out[k] = value_at(from.bytes.data() + k / from.components * from.stride + k % from.components * size,
+                    from.type, from.normalized);
+        if (from.sparse) add_sparse(from, out);
+        return out;
+    }
+    void add_sparse(const Array& from, std::vector<double>& to) {
+        const std::string place = in(from.place, "sparse");
+        const Json& sparse = *from.sparse;
+        if (!sparse.is_object() || !sparse.contains("indices") || !sparse.contains("values") ||
+            !sparse["indices"].is_object() || !sparse["values"].is_object())
+            fail(place, "expected 'count', 'indices' and 'values'");
+        const std::size_t count = needed(sparse, "count", place);
+        const auto part = [&](const char* key, std::size_t bytes) {
+            const std::string inner = in(place, key);
+            const std::string_view out = view(
+                needed(sparse[key], "bufferView", inner), whole(sparse[key], "byteOffset", inner).value_or(0), inner)
+                                             .first;
+            need_bytes(inner, out.size(), count, bytes, bytes);
+            return out;
+        };
+        const std::size_t type = needed(sparse["indices"], "componentType", in(place, "indices"));
+        const std::size_t index_size = bytes_of_type(type, place), size = bytes_of_type(from.type, place);
+        const std::string_view indices = part("indices", index_size), values = part("values", from.components * size);
+        for (std::size_t k = 0; k < count; ++k) {
+            const double row = value_at(indices.data() + k * index_size, type, false);
+            if (!(row >= 0 && row < static_cast<double>(from.count)))
+                fail(in(place, "indices"), fmt::format("{} is beyond the {} elements", row, from.count));
+            for (std::size_t c = 0; c < from.components; ++c)
+                to[static_cast<std::size_t>(row) * from.components + c] =
+                    value_at(values.data() + (k * from.components + c) * size, from.type, from.normalized);
+        }
+    }
+
+    // ---- The scene.
+
+    static Placement placement_of(const Json& node, const std::string& place) {
+        Placement out;
+        if (const auto m = numbers<16>(node, "matrix", place)) {
+            for (std::size_t k = 0; k < 3; ++k) out.columns[k] = {(*m)[4 * k], (*m)[4 * k + 1], (*m)[4 * k + 2]};
+            out.origin = {(*m)[12], (*m)[13], (*m)[14]};
+            return out;
+        }
+        const auto t = numbers<3>(node, "translation", place).value_or(std::array<double, 3>{0, 0, 0});
+        const auto q = numbers<4>(node, "rotation", place).value_or(std::array<double, 4>{0, 0, 0, 1});
+        const auto s = numbers<3>(node, "scale", place).value_or(std::array<double, 3>{1, 1, 1});
+        const double x = q[0], y = q[1], z = q[2], w = q[3];
+        out.columns[0] = s[0] * Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+        out.columns[1] = s[1] * Vec3d{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+        out.columns[2] = s[2] * Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+        out.origin = {t[0], t[1], t[2]};
+        return out;
+    }
+
+    std::vector<std::size_t> children(const Json& of, const char* key, const std::string& place) const {
+        std::vector<std::size_t> out;
+        if (!of.contains(key)) return out;
+        const std::string list = in(place, key);
+        if (!of[key].is_array()) fail(list, "expected an array");
+        for (const Json& one : of[key]) {
+            if (!one.is_number_unsigned()) fail(list, "expected whole numbers");
+            out.push_back(one.get<std::size_t>());
+        }
+        return out;
+    }
+
+    void place_scene() {
+        struct Open {
+            std::size_t node;
+            Placement parent;
+            std::string from;
+        };
+        std::vector<Open> open;
+        if (size_of("scenes") > 0) {
+            const std::size_t index = whole(root_, "scene", "").value_or(0);
+            const std::string place = at("scenes", index);
+            for (const std::size_t node : children(element("scenes", index, "scene"), "nodes", place))
+                open.push_back({node, {}, in(place, "nodes")});
+        } else {
+            std::vector<bool> has_parent(size_of("nodes"));
+            for (std::size_t k = 0; k < has_parent.size(); ++k)
+                for (const std::size_t child : children(element("nodes", k, "nodes"), "children", at("nodes", k)))
+                    if (child < has_parent.size()) has_parent[child] = true;
+            for (std::size_t k = 0; k < has_parent.size(); ++k)
+                if (!has_parent[k]) open.push_back({k, {}, "nodes"});
+        }
+        std::ranges::reverse(open);
+        std::vector<bool> visited(size_of("nodes"));
+        while (!open.empty()) {
+            const Open next = std::move(open.back());
+            open.pop_back();
+            const Json& node = element("nodes", next.node, next.from);
+            const std::string place = at("nodes", next.node);
+            if (visited[next.node]) fail(next.from, fmt::format("the node {} is placed twice", next.node));
+            visited[next.node] = true;
+            const Placement placement = next.parent.then(placement_of(node, place));
+            if (const auto mesh = whole(node, "mesh", place)) add_mesh(*mesh, placement, in(place, "mesh"));
+            std::vector<std::size_t> inner = children(node, "children", place);
+            std::ranges::reverse(inner);
+            for (const std::size_t child : inner) open.push_back({child, placement, in(place, "children")});
+        }
+    }
+
+    void add_mesh(std::size_t index, const Placement& placement, const std::string& from) {
+        const Json& mesh = element("meshes", index, from);
+        const std::string place = at("meshes", index);
+        if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) fail(place, "expected 'primitives'");
+        for (std::size_t k = 0; k < mesh["primitives"].size(); ++k)
+            add_primitive(mesh["primitives"][k], placement, at(in(place, "primitives"), k));
+    }
+
+    void add_primitive(const Json& from, const Placement& placement, const std::string& place) {
+        constexpr std::size_t list = 4, strip = 5, fan = 6;
+        if (!from.is_object() || !from.contains("attributes") || !from["attributes"].is_object())
+            fail(place, "expected 'attributes'");
+        const std::size_t mode = whole(from, "mode", place).value_or(list);
+        if (mode > fan) fail(in(place, "mode"), fmt::format("expected a number from 0 to 6, not {}", mode));
+        const Json& attributes = from["attributes"];
+        if (mode < list || !attributes.contains("POSITION")) {
+            ++points_and_lines_;
+            return;
+        }
+        if (from.contains("targets")) ++targets_;
+        Part part;
+        part.material = material(from, place);
+        const std::size_t count = add_vertices(attributes, placement, in(place, "attributes"), part);
+        const std::vector<std::uint32_t> corners = corners_of(from, place, count);
+        if (mode == list && corners.size() % 3 != 0)
+            fail(place, fmt::format("expected three indices for each triangle, found {}", corners.size()));
+        const bool mirrored = placement.determinant() < 0;
+        for (std::size_t k = 0; k + 2 < corners.size(); k += mode == list ? 3 : 1) {
+            Triangle triangle{corners[k], corners[k + 1], corners[k + 2]};
+            if (mode == strip && k % 2 == 1) std::swap(triangle[1], triangle[2]);
+            if (mode == fan) triangle = {corners[k + 1], corners[k + 2], corners[0]};
+            if (mirrored) std::swap(triangle[1], triangle[2]);
+            part.triangles.push_back(triangle);
+        }
+        model.parts.push_back(std::move(part));
+    }
+
+    std::size_t material(const Json& primitive, const std::string& place) {
+        const std::optional<std::size_t> index = whole(primitive, "material", place);
+        if (index) return (void)element("materials", *index, in(place, "material")), *index;
+        if (model.materials.size() == size_of("materials")) model.materials.push_back({});
+        return size_of("materials");
+    }
+
+    /// Returns the number of vertices.
+    std::size_t add_vertices(const Json& attributes, const Placement& placement, const std::string& place, Part& to) {
+        const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
+            const std::optional<std::size_t> index = whole(attributes, name, place);
+            if (!index) return std::nullopt;
+            const Array array = this->array(*index, in(place, name), type);
+            if (!to.positions.empty() && array.count != to.positions.size())
+                fail(in(place, name),
+                    fmt::format("expected {} elements, as POSITION has, not {}", to.positions.size(), array.count));
+            return values_of(array);
+        };
+        const std::vector<double> positions = *read("POSITION", "VEC3");
+        for (std::size_t k = 0; k < positions.size(); k += 3)
+            to.positions.push_back(narrow(placement.placed({positions[k], positions[k + 1], positions[k + 2]})));
+        if (to.positions.empty()) return 0;
+        if (const auto normals = read("NORMAL", "VEC3")) {
+            // By the cofactors, which are the inverse transpose times the determinant.
+            Placement cofactors;
+            for (int k = 0; k < 3; ++k)
+                cofactors.columns[k] = cross(placement.columns[(k + 1) % 3], placement.columns[(k + 2) % 3]);
+            const double sign = placement.determinant() < 0 ? -1 : 1;
+            for (std::size_t k = 0; k < normals->size(); k += 3) {
+                const Vec3d n = sign * cofactors.turned({(*normals)[k], (*normals)[k + 1], (*normals)[k + 2]});
+                const double length = std::sqrt(dot(n, n));
+                to.normals.push_back(length > 0 ? narrow((1 / length) * n) : Vec3f{});
+            }
+        }
+        if (const auto uv = read("TEXCOORD_0", "VEC2"))
+            for (std::size_t k = 0; k < uv->size(); k += 2)
+                // v of glTF goes down the image.
+                to.uv.push_back({static_cast<float>((*uv)[k]), static_cast<float>(1 - (*uv)[k + 1])});
+        return to.positions.size();
+    }
+
+    std::vector<std::uint32_t> corners_of(const Json& primitive, const std::string& place, std::size_t vertices) {
+        std::vector<std::uint32_t> out;
+        const std::optional<std::size_t> index = whole(primitive, "indices", place);
+        if (!index) {
+            for (std::size_t k = 0; k < vertices; ++k) out.push_back(static_cast<std::uint32_t>(k));
+            return out;
+        }
+        const Array array = this->array(*index, in(place, "indices"), "SCALAR");
+        const std::vector<double> values = values_of(array);
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            if (!(values[k] >= 0 && values[k] < static_cast<double>(vertices)) || values[k] != std::floor(values[k]))
+                fail(in(place, "indices"),
+                    fmt::format("number {} of {} is {}, beyond the {} vertices", k, array.place, values[k], vertices));
+            out.push_back(static_cast<std::uint32_t>(values[k]));
+        }
+        return out;
+    }
+
+    std::filesystem::path folder_;
+    Container container_;
+    Json root_;
+    std::map<std::size_t, std::string> buffers_;
+    std::size_t points_and_lines_ = 0, targets_ = 0;
+};
+
+}  // namespace
+
+Model read_gltf(const std::filesystem::path& file) {
+    return Reader(bytes_of(file), std::filesystem::absolute(file).parent_path()).model;
+}
+
+}  // namespace crescent::importer
