@@ -78,6 +78,9 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
             out.push_back(fmt::format("{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives",
                 experiment.surface_name(k), albedo));
     }
+    if (experiment.sky && experiment.sky->raised > 0)
+        out.push_back(fmt::format("sky: {} numbers below 0 by less than {:g} of the largest count as 0",
+            experiment.sky->raised, rounding_below_zero));
     if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
         out.push_back("note_evidence measures nothing: " + why);
     return out;

@@ -17,6 +17,12 @@ namespace crescent::inline experiment {
 
 void load_sky(SkyLight& sky) {
     std::shared_ptr<const RgbImage> image = sky_in_file(sky.file);
+    sky.raised = 0;
+    if (std::ranges::any_of(image->rgb, [](float x) { return x < 0; })) {
+        const auto raised = std::make_shared<RgbImage>(*image);
+        sky.raised = raise_to_zero(raised->rgb);
+        image = raised;
+    }
     if (const std::string why = why_no_sky(*image, sky.scale); !why.empty()) throw InputError({sky.file, 0, 0}, why);
     const std::string content = content_hash(*image);
     if (sky.content && sky.content != content)

@@ -57,6 +57,19 @@ std::size_t entry_of(double x, std::size_t entries) {
 constexpr double darkest_sky =
     1e-9;  // W/(sr m^2), of its brightest texel, as of every radiance of a file that is not 0
 
+std::size_t raise_to_zero(std::vector<float>& rgb) {
+    float largest = 0;
+    for (const float x : rgb)
+        if (std::isfinite(x)) largest = std::max(largest, x);
+    std::size_t count = 0;
+    for (float& x : rgb) {
+        if (!(x < 0 && x >= -rounding_below_zero * largest)) continue;
+        x = 0;
+        ++count;
+    }
+    return count;
+}
+
 std::string why_no_sky(const RgbImage& image, double scale) {
     if (const std::string why = why_no_sky_of(image.width, image.height); !why.empty()) return why;
     double largest = 0;

@@ -35,7 +35,12 @@ struct SkyLight {
     std::optional<std::string> content{};  // 16 hexadecimal digits of RgbImage::hash; none: not known
     SourceLocation at{};
     std::shared_ptr<const RgbImage> image{};  // none before the file is read
+    std::size_t raised = 0;                   // numbers of the file that raise_to_zero() set to 0
 };
+
+inline constexpr float rounding_below_zero = 1e-4f;  // of the largest number of an image: resampling leaves such texels
+/// Sets the numbers that are below 0 by less than that to 0, and returns how many there were.
+std::size_t raise_to_zero(std::vector<float>& rgb);
 
 /// Where an image cannot be a sky: the texel and what is wrong there; "" if it can.
 std::string why_no_sky(const RgbImage& image, double scale);

@@ -153,6 +153,15 @@ TEST(SkyTable, TurnsDrawsWithTheSky) {
     }
 }
 
+TEST(Skies, MayHaveNumbersJustBelowZero) {
+    std::vector<float> rgb{2, -1e-6f, -1e-4f, -3e-4f, std::nanf(""), -HUGE_VALF, 0};
+    EXPECT_EQ(raise_to_zero(rgb), 2u);
+    EXPECT_EQ(rgb[1], 0);
+    EXPECT_EQ(rgb[2], 0);
+    EXPECT_EQ(rgb[3], -3e-4f);
+    EXPECT_FALSE(rgb[5] == 0);
+}
+
 TEST(Skies, AreRefusedWithTheTexel) {
     const auto why = [](float value, double scale = 1) {
         std::vector<float> rgb(3 * 8 * 4, 1.0f);
