@@ -24,7 +24,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* importer_name = "crescent-import";
-constexpr std::size_t longest_description = std::size_t{1} << 20;
+constexpr std::size_t longest_description = std::size_t{16} << 20;  // bytes
+constexpr std::size_t longest_name = 200;                           // characters
 
 /// The importer next to this program, otherwise the one in PATH.
 std::string importer() {
@@ -89,13 +90,15 @@ Imported import_model(const ImportFlags& flags) {
         const ssize_t n = process.read(part, sizeof part);
         if (n == 0) break;
         if (n > 0) text.append(part, static_cast<std::size_t>(n));
-        if (text.size() > longest_description) break;
+        if (text.size() > longest_description)
+            refuse(
+                flags.file, fmt::format("expected names and materials of at most {} MiB", longest_description >> 20));
     }
     end = process.ended(std::max(left_ms(), 0));
     if (!end) refuse(flags.file, fmt::format("the importer takes more than {} s (--timeout)", flags.timeout));
     Json description = Json::parse(text, nullptr, false);
     if (description.is_object() && description.contains("error") && description["error"].is_string())
-        refuse(flags.file, description["error"].get<std::string>());
+        refuse(flags.file, printable(description["error"].get<std::string>(), 1000));
     if (!end->well() || !description.is_object())
         refuse(flags.file, fmt::format("expected a model that can be read; the importer ended with {}", end->text()));
     return {contents_of_descriptor(plan.shared), std::move(description)};
@@ -139,13 +142,8 @@ int import(const ImportFlags& flags) {
         refuse(flags.file, "expected a file that can be read");
     can_write(flags.out);
     const Imported imported = import_model(flags);
-    auto pack = read_mesh(imported.mesh, flags.file);
-    const std::size_t degenerate = pack->degenerate, duplicate = pack->duplicate;
-    Mesh moved = pack->mesh;
-    const std::optional<Rescaled> rescaled = bring_into_range(moved);
-    const std::string file = rescaled ? mesh_file(moved) : imported.mesh;
-    if (rescaled) pack = read_mesh(file, flags.file);
-    write_whole(flags.out, file);
+    const auto pack = read_mesh(imported.mesh, flags.file);
+    write_whole(flags.out, imported.mesh);
 
     const Mesh& mesh = pack->mesh;
     const Bounds box = mesh.bounds();
@@ -154,20 +152,22 @@ int import(const ImportFlags& flags) {
     out += fmt::format("# box {} to {}\n", point(widen(box.low)), point(widen(box.high)));
     out += fmt::format("# normals: {}; texture coordinates: {}\n", mesh.normals.empty() ? "of the triangles" : "smooth",
         mesh.uv.empty() ? "none" : "one set");
-    if (rescaled) {
-        const Vec3d& from = rescaled->from;
+    if (imported.description.contains("moved")) {
+        const Json& by = imported.description["moved"];
+        const double scaled = imported.description["scaled"].get<double>();
         out += fmt::format("# moved by [{:.9g}, {:.9g}, {:.9g}]{}: an experiment holds sizes of 1e-3 to 1e5 m\n",
-            -from.x, -from.y, -from.z, rescaled->by == 1 ? "" : fmt::format(", then scaled by {:.9g}", rescaled->by));
+            by[0].get<double>(), by[1].get<double>(), by[2].get<double>(),
+            scaled == 1 ? "" : fmt::format(", then scaled by {:.9g}", scaled));
     }
-    if (degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", degenerate);
-    if (duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", duplicate);
+    if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);
+    if (pack->duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", pack->duplicate);
     for (const Json& what : imported.description.value("left_out", Json::array()))
-        out += fmt::format("# left out: {}\n", what.get<std::string>());
+        out += fmt::format("# left out: {}\n", printable(what.get<std::string>(), longest_name));
     const Json materials = imported.description.value("materials", Json::array());
     for (const Json& material : materials)
-        out += fmt::format("# material '{}': {} triangles{}{}\n", material.value("name", ""),
+        out += fmt::format("# material '{}': {} triangles{}{}\n", printable(material.value("name", ""), longest_name),
             material.value("triangles", 0),
-            material.contains("texture") ? ", texture " + material.value("texture", "") : "",
+            material.contains("texture") ? ", texture " + printable(material.value("texture", ""), longest_name) : "",
             materials.size() > 1 && flags.material.empty() ? " (alone: --material NAME)" : "");
     out += "\n" + camera_table(box);
     out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name_of(flags.out),

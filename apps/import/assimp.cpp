@@ -1,4 +1,5 @@
 // OBJ and STL by assimp. The files that a model names are opened in its folder and below it only.
+#include <cctype>
 #include <cstring>
 
 #include <assimp/DefaultIOSystem.h>
@@ -8,6 +9,7 @@
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 
 #include "model.h"
 #include "obj.h"
@@ -23,8 +25,16 @@ public:
         : model_(std::move(model)), folder_(std::filesystem::absolute(model_).parent_path()), text_(bytes_of(model_)) {
         std::string extension = model_.extension().string();
         for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        if (extension == ".obj") text_ = checked_obj(std::move(text_));
+        if (extension != ".obj") return;
+        ObjText checked = checked_obj(text_);
+        text_ = std::move(checked.text);
+        left_out = std::move(checked.left_out);
+        for (const std::string& library : checked.libraries)
+            if (!can_open(folder_ / library))
+                left_out.push_back(fmt::format("the materials of '{}', which cannot be opened", library));
     }
+
+    std::vector<std::string> left_out;
 
     bool Exists(const char* file) const override { return file == model_.string() || can_open(file); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
@@ -59,7 +69,7 @@ Part part_of(const aiMesh& from) {
     Part out;
     out.material = from.mMaterialIndex;
     for (unsigned k = 0; k < from.mNumVertices; ++k) {
-        out.positions.push_back(vector_of(from.mVertices[k]));
+        out.positions.push_back(widen(vector_of(from.mVertices[k])));
         if (from.HasNormals()) out.normals.push_back(vector_of(from.mNormals[k]));
         if (from.HasTextureCoords(0)) out.uv.push_back({from.mTextureCoords[0][k].x, from.mTextureCoords[0][k].y});
     }
@@ -77,12 +87,14 @@ Part part_of(const aiMesh& from) {
 
 Model read_by_assimp(const std::filesystem::path& file) {
     Assimp::Importer importer;
-    importer.SetIOHandler(new ModelFiles(file));  // the importer deletes it
+    auto* const files = new ModelFiles(file);
+    importer.SetIOHandler(files);  // which deletes it
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const aiScene* scene = importer.ReadFile(
         file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
     if (!scene) throw ModelError(importer.GetErrorString());
     Model out;
+    out.left_out = files->left_out;
     for (unsigned m = 0; m < scene->mNumMaterials; ++m) out.materials.push_back(material_of(*scene->mMaterials[m]));
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
         out.parts.push_back(part_of(*scene->mMeshes[m]));

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -171,21 +172,19 @@ double value_at(const char* bytes, std::size_t type, bool normalized) {
 }
 
 /// x' = columns x + origin.
-struct Placement {
+struct Transform {
     Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin{};
 
     Vec3d turned(Vec3d v) const { return v.x * columns[0] + v.y * columns[1] + v.z * columns[2]; }
     Vec3d placed(Vec3d p) const { return turned(p) + origin; }
-    Placement then(const Placement& inner) const {
-        Placement out;
+    Transform then(const Transform& inner) const {
+        Transform out;
         for (int k = 0; k < 3; ++k) out.columns[k] = turned(inner.columns[k]);
         out.origin = placed(inner.origin);
         return out;
     }
     double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
 };
-
-Vec3f narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
 class Reader {
 public:
@@ -208,6 +207,7 @@ public:
         left_out(size_of("skins"), "skins");
         left_out(size_of("animations"), "animations");
         left_out(targets_, "primitives' morph targets");
+        for (const std::string& name : attributes_) model.left_out.push_back(fmt::format("the attribute {}", name));
     }
 
 private:
@@ -227,10 +227,13 @@ private:
     /// name.
     void look_at_extensions() {
         const auto names = [&](const char* key) {
-            std::vector<std::string> out;
-            if (root_.contains(key) && root_[key].is_array())
-                for (const Json& name : root_[key])
-                    if (name.is_string()) out.push_back(name.get<std::string>());
+            std::set<std::string> out;
+            if (!root_.contains(key)) return out;
+            if (!root_[key].is_array()) fail(key, "expected an array of names");
+            for (const Json& name : root_[key]) {
+                if (!name.is_string()) fail(key, "expected an array of names");
+                out.insert(name.get<std::string>());
+            }
             return out;
         };
         const auto is_read = [](const std::string& name) { return name == "KHR_mesh_quantization"; };
@@ -238,10 +241,13 @@ private:
             return name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" ||
                 name == "KHR_texture_basisu" || name == "EXT_texture_webp" || name.starts_with("KHR_xmp");
         };
-        for (const std::string& name : names("extensionsRequired"))
+        std::set<std::string> left_out = names("extensionsUsed");
+        for (const std::string& name : names("extensionsRequired")) {
             if (!is_read(name) && !shapes_nothing(name))
                 fail("extensionsRequired", fmt::format("the extension '{}' is not supported", name));
-        for (const std::string& name : names("extensionsUsed"))
+            left_out.insert(name);
+        }
+        for (const std::string& name : left_out)
             if (!is_read(name)) model.left_out.push_back(fmt::format("the extension {}", name));
     }
 
@@ -296,7 +302,9 @@ private:
         }
         const std::filesystem::path path = folder_ / percent_decoded(uri);
         if (!is_inside(folder_, path)) fail(in(place, "uri"), "expected a file in the folder of the model or below it");
-        return bytes_of(path);
+        try {
+            return bytes_of(path);
+        } catch (const ModelError& error) { fail(in(place, "uri"), error.what()); }
     }
 
     /// The bytes of a view from an offset on, and its stride: 0 for none.
@@ -384,8 +392,8 @@ private:
 
     // ---- The scene.
 
-    static Placement placement_of(const Json& node, const std::string& place) {
-        Placement out;
+    static Transform transform_of(const Json& node, const std::string& place) {
+        Transform out;
         if (const auto m = numbers<16>(node, "matrix", place)) {
             for (std::size_t k = 0; k < 3; ++k) out.columns[k] = {(*m)[4 * k], (*m)[4 * k + 1], (*m)[4 * k + 2]};
             out.origin = {(*m)[12], (*m)[13], (*m)[14]};
@@ -417,7 +425,7 @@ private:
     void place_scene() {
         struct Open {
             std::size_t node;
-            Placement parent;
+            Transform parent;
             std::string from;
         };
         std::vector<Open> open;
@@ -443,23 +451,23 @@ private:
             const std::string place = at("nodes", next.node);
             if (visited[next.node]) fail(next.from, fmt::format("the node {} is placed twice", next.node));
             visited[next.node] = true;
-            const Placement placement = next.parent.then(placement_of(node, place));
-            if (const auto mesh = whole(node, "mesh", place)) add_mesh(*mesh, placement, in(place, "mesh"));
+            const Transform transform = next.parent.then(transform_of(node, place));
+            if (const auto mesh = whole(node, "mesh", place)) add_mesh(*mesh, transform, in(place, "mesh"));
             std::vector<std::size_t> inner = children(node, "children", place);
             std::ranges::reverse(inner);
-            for (const std::size_t child : inner) open.push_back({child, placement, in(place, "children")});
+            for (const std::size_t child : inner) open.push_back({child, transform, in(place, "children")});
         }
     }
 
-    void add_mesh(std::size_t index, const Placement& placement, const std::string& from) {
+    void add_mesh(std::size_t index, const Transform& transform, const std::string& from) {
         const Json& mesh = element("meshes", index, from);
         const std::string place = at("meshes", index);
         if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) fail(place, "expected 'primitives'");
         for (std::size_t k = 0; k < mesh["primitives"].size(); ++k)
-            add_primitive(mesh["primitives"][k], placement, at(in(place, "primitives"), k));
+            add_primitive(mesh["primitives"][k], transform, at(in(place, "primitives"), k));
     }
 
-    void add_primitive(const Json& from, const Placement& placement, const std::string& place) {
+    void add_primitive(const Json& from, const Transform& transform, const std::string& place) {
         constexpr std::size_t list = 4, strip = 5, fan = 6;
         if (!from.is_object() || !from.contains("attributes") || !from["attributes"].is_object())
             fail(place, "expected 'attributes'");
@@ -471,13 +479,15 @@ private:
             return;
         }
         if (from.contains("targets")) ++targets_;
+        for (const auto& [name, index] : attributes.items())
+            if (name != "POSITION" && name != "NORMAL" && name != "TEXCOORD_0") attributes_.insert(name);
         Part part;
         part.material = material(from, place);
-        const std::size_t count = add_vertices(attributes, placement, in(place, "attributes"), part);
+        const std::size_t count = add_vertices(attributes, transform, in(place, "attributes"), part);
         const std::vector<std::uint32_t> corners = corners_of(from, place, count);
         if (mode == list && corners.size() % 3 != 0)
             fail(place, fmt::format("expected three indices for each triangle, found {}", corners.size()));
-        const bool mirrored = placement.determinant() < 0;
+        const bool mirrored = transform.determinant() < 0;
         for (std::size_t k = 0; k + 2 < corners.size(); k += mode == list ? 3 : 1) {
             Triangle triangle{corners[k], corners[k + 1], corners[k + 2]};
             if (mode == strip && k % 2 == 1) std::swap(triangle[1], triangle[2]);
@@ -496,7 +506,7 @@ private:
     }
 
     /// Returns the number of vertices.
-    std::size_t add_vertices(const Json& attributes, const Placement& placement, const std::string& place, Part& to) {
+    std::size_t add_vertices(const Json& attributes, const Transform& transform, const std::string& place, Part& to) {
         const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
             const std::optional<std::size_t> index = whole(attributes, name, place);
             if (!index) return std::nullopt;
@@ -508,14 +518,14 @@ private:
         };
         const std::vector<double> positions = *read("POSITION", "VEC3");
         for (std::size_t k = 0; k < positions.size(); k += 3)
-            to.positions.push_back(narrow(placement.placed({positions[k], positions[k + 1], positions[k + 2]})));
+            to.positions.push_back(transform.placed({positions[k], positions[k + 1], positions[k + 2]}));
         if (to.positions.empty()) return 0;
         if (const auto normals = read("NORMAL", "VEC3")) {
             // By the cofactors, which are the inverse transpose times the determinant.
-            Placement cofactors;
+            Transform cofactors;
             for (int k = 0; k < 3; ++k)
-                cofactors.columns[k] = cross(placement.columns[(k + 1) % 3], placement.columns[(k + 2) % 3]);
-            const double sign = placement.determinant() < 0 ? -1 : 1;
+                cofactors.columns[k] = cross(transform.columns[(k + 1) % 3], transform.columns[(k + 2) % 3]);
+            const double sign = transform.determinant() < 0 ? -1 : 1;
             for (std::size_t k = 0; k < normals->size(); k += 3) {
                 const Vec3d n = sign * cofactors.turned({(*normals)[k], (*normals)[k + 1], (*normals)[k + 2]});
                 const double length = std::sqrt(dot(n, n));
@@ -552,6 +562,7 @@ private:
     Json root_;
     std::map<std::size_t, std::string> buffers_;
     std::size_t points_and_lines_ = 0, targets_ = 0;
+    std::set<std::string> attributes_;  // that are left out
 };
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model.h"
+#include "placement.h"
 
 namespace {
 
@@ -43,7 +44,8 @@ float length_of(Vec3f v) { return std::sqrt(dot(v, v)); }
 /// Gathers the triangles of one material, or of all, with common vertices.
 class Gatherer {
 public:
-    Gatherer(const Model& model, const std::string& material) : model_(model), wanted_(material) {
+    Gatherer(const Model& model, const Placement& placement, const std::string& material)
+        : model_(model), placement_(placement), wanted_(material) {
         for (const Part& part : model.parts) {
             if (!is_wanted(part)) continue;
             has_normals_ = has_normals_ || is_smooth(part);
@@ -61,10 +63,10 @@ private:
         return wanted_.empty() || model_.materials[part.material].name == wanted_;
     }
     static Vec3f face_normal(const Part& part, const Triangle& triangle) {
-        const Vec3f a = part.positions[triangle[0]];
-        const Vec3f n = cross(part.positions[triangle[1]] - a, part.positions[triangle[2]] - a);
-        const float length = length_of(n);
-        return length > 0 && std::isfinite(length) ? (1 / length) * n : Vec3f{0, 0, 1};
+        const Vec3d a = part.positions[triangle[0]];
+        const Vec3d n = cross(part.positions[triangle[1]] - a, part.positions[triangle[2]] - a);
+        const double length = std::sqrt(dot(n, n));
+        return length > 0 && std::isfinite(length) ? narrow((1 / length) * n) : Vec3f{0, 0, 1};
     }
     static Vec3f normal_of(const Part& part, const Triangle& triangle, unsigned k) {
         if (part.normals.empty()) return face_normal(part, triangle);
@@ -87,7 +89,8 @@ private:
         result.triangles.push_back(corners);
     }
     std::uint32_t vertex(const Part& part, const Triangle& triangle, unsigned k) {
-        const Vec3f p = part.positions[triangle[k]], n = has_normals_ ? normal_of(part, triangle, k) : Vec3f{};
+        const Vec3f p = narrow(placement_.placed(part.positions[triangle[k]]));
+        const Vec3f n = has_normals_ ? normal_of(part, triangle, k) : Vec3f{};
         const Vec2<float> uv = has_uv_ && !part.uv.empty() ? part.uv[triangle[k]] : Vec2<float>{};
         // 0 is added, so that -0 becomes 0.
         const Corner corner{p.x + 0, p.y + 0, p.z + 0, n.x + 0, n.y + 0, n.z + 0, uv.x + 0, uv.y + 0};
@@ -100,10 +103,18 @@ private:
     }
 
     const Model& model_;
+    Placement placement_;
     std::string wanted_;
     bool has_normals_ = false, has_uv_ = false;
     std::unordered_map<Corner, std::uint32_t, CornerHash> known_;
 };
+
+/// JSON has no numbers that are not finite: 0 in their place.
+Json numbers_of(Vec3f v) {
+    Json out = Json::array();
+    for (const float x : {v.x, v.y, v.z}) out.push_back(std::isfinite(x) ? x : 0);
+    return out;
+}
 
 Json materials_of(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size());
@@ -112,8 +123,8 @@ Json materials_of(const Model& model) {
     for (std::size_t m = 0; m < model.materials.size(); ++m) {
         if (triangles[m] == 0) continue;
         const auto& [name, rho_d, emission, texture] = model.materials[m];
-        Json one = {{"name", name}, {"triangles", triangles[m]}, {"rho_d", {rho_d.x, rho_d.y, rho_d.z}},
-            {"emission", {emission.x, emission.y, emission.z}}};
+        Json one = {{"name", name}, {"triangles", triangles[m]}, {"rho_d", numbers_of(rho_d)},
+            {"emission", numbers_of(emission)}};
         if (!texture.empty()) one["texture"] = texture;
         all.push_back(std::move(one));
     }
@@ -138,13 +149,18 @@ Model read_model(const std::filesystem::path& file) {
 
 Json import(const std::string& file, const std::string& material) {
     const Model model = read_model(file);
-    const Gatherer gathered(model, material);
+    const Placement placement = placement_of(model);
+    const Gatherer gathered(model, placement, material);
     Json out = {{"materials", materials_of(model)}, {"left_out", model.left_out}};
     if (gathered.result.triangles.empty())
         throw ModelError(
             material.empty() ? "found no triangle" : "found no triangle of the material '" + material + "'");
     out["normals"] = !gathered.result.normals.empty();
     out["uv"] = !gathered.result.uv.empty();
+    if (placement.is_needed()) {
+        out["moved"] = {-placement.from.x, -placement.from.y, -placement.from.z};
+        out["scaled"] = placement.by;
+    }
     write_all(3, mesh_file(gathered.result));
     return out;
 }

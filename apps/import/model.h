@@ -16,7 +16,7 @@ struct ModelError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The largest polygon: triangulation takes the square of it.
+/// The largest polygon: its triangulation takes seconds.
 inline constexpr std::size_t most_corners = 4096;
 
 struct Material {
@@ -28,7 +28,7 @@ struct Material {
 /// Triangles of one material.
 struct Part {
     std::size_t material = 0;
-    std::vector<Vec3f> positions;
+    std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;   // one for each position, of any length; empty: none
     std::vector<Vec2<float>> uv;  // one for each position; empty: none
     std::vector<Triangle> triangles;
@@ -39,6 +39,8 @@ struct Model {
     std::vector<Part> parts;
     std::vector<std::string> left_out;  // what the file has besides, "12 edges"
 };
+
+inline Vec3f narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
 /// Returns the bytes of a regular file. Throws ModelError.
 std::string bytes_of(const std::filesystem::path& file);

@@ -2,12 +2,20 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace crescent::importer {
 
-/// Returns the text without byte order mark and line continuations, with '\n' as the end of each line. Throws
-/// ModelError with the line for an index of a face that no vertex has, and for a face of more than most_corners
-/// corners.
-std::string checked_obj(std::string text);
+struct ObjText {
+    std::string text;
+    std::vector<std::string> libraries;  // of materials, as `mtllib` names them
+    std::vector<std::string> left_out;   // "3 curves and surfaces"
+};
+
+/// Returns the text without byte order mark, comments and line continuations, with '\n' as the end of each line and
+/// nothing before its first word. Throws ModelError with the line for a vertex without its numbers, for an index of a
+/// face that no vertex has, and for a face of more than most_corners corners.
+ObjText checked_obj(std::string_view file);
 
 }  // namespace crescent::importer

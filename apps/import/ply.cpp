@@ -4,6 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 
@@ -124,6 +125,12 @@ public:
         return count <= (rest_.size() + 1) / (format_ == Format::ascii ? 1 : type.bytes);
     }
 
+    /// The number of bytes after the last number, but for spaces.
+    std::size_t rest() const {
+        const bool is_blank = format_ == Format::ascii && rest_.find_first_not_of(" \t\r\n") == rest_.npos;
+        return is_blank ? 0 : rest_.size();
+    }
+
     std::optional<double> next(const Type& type) {
         if (format_ == Format::ascii) return next_word();
         if (rest_.size() < type.bytes) return std::nullopt;
@@ -157,7 +164,8 @@ private:
         double out = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
         if (error == std::errc::invalid_argument || end != word.data() + word.size()) return std::nullopt;
-        return out;
+        // Beyond the range of a double: 0 or infinity, which from_chars does not give.
+        return error == std::errc::result_out_of_range ? std::strtod(std::string(word).c_str(), nullptr) : out;
     }
 
     std::string_view rest_;
@@ -178,8 +186,10 @@ public:
         model.parts.emplace_back();
         for (const Element& element : header_.elements) {
             in_.need_rows(element);
-            if (element.name == "vertex") read_vertices(element);
-            else if (element.name == "face") read_lists(element, polygons_);
+            if (element.name == "vertex") {
+                if (!part().positions.empty()) throw ModelError("expected one element 'vertex', found a second one");
+                read_vertices(element);
+            } else if (element.name == "face") read_lists(element, polygons_);
             else if (element.name == "tristrips") read_lists(element, strips_);
             else {
                 for (std::size_t row = 0; row < element.count; ++row)
@@ -189,6 +199,7 @@ public:
         }
         for (std::size_t k = 0; k < polygons_.size(); ++k) add_polygon(polygons_[k], k);
         for (std::size_t k = 0; k < strips_.size(); ++k) add_strip(strips_[k], k);
+        if (in_.rest() > 0) model.left_out.push_back(fmt::format("{} bytes after the last element", in_.rest()));
         if (points_and_lines_ > 0)
             model.left_out.push_back(fmt::format("{} faces of one or two corners", points_and_lines_));
     }
@@ -210,9 +221,11 @@ private:
         };
         if (!property.count_type) return {number(*property.type)};
         const double count = number(*property.count_type);
-        if (!(count >= 0) || !in_.has(static_cast<std::size_t>(count), *property.type))
-            throw ModelError(fmt::format(
-                "{} {}: a list '{}' of {} numbers, more than the file has", element.name, row, property.name, count));
+        constexpr double most = 4294967296;
+        if (!(count >= 0 && count < most) || count != std::floor(count) ||
+            !in_.has(static_cast<std::size_t>(count), *property.type))
+            throw ModelError(fmt::format("{} {}: a list '{}' of {} numbers, expected a whole number that the file has",
+                element.name, row, property.name, count));
         List out(static_cast<std::size_t>(count));
         for (double& value : out) value = number(*property.type);
         return out;
@@ -234,14 +247,14 @@ private:
         if (!others.empty() && element.count > 0) model.left_out.push_back("of the vertices: " + others);
         const bool normals = has[3] && has[4] && has[5], uv = has[6] && has[7];
         for (std::size_t row = 0; row < element.count; ++row) {
-            float values[8] = {};
+            double values[8] = {};
             for (std::size_t k = 0; k < meaning.size(); ++k) {
                 const List list = read(element.properties[k], element, row);
-                if (meaning[k] >= 0) values[meaning[k]] = static_cast<float>(list[0]);
+                if (meaning[k] >= 0) values[meaning[k]] = list[0];
             }
             part().positions.push_back({values[0], values[1], values[2]});
-            if (normals) part().normals.push_back({values[3], values[4], values[5]});
-            if (uv) part().uv.push_back({values[6], values[7]});
+            if (normals) part().normals.push_back(narrow({values[3], values[4], values[5]}));
+            if (uv) part().uv.push_back({static_cast<float>(values[6]), static_cast<float>(values[7])});
         }
     }
 

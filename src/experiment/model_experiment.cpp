@@ -50,24 +50,6 @@ std::string arm(const std::string& name, const std::string& more = "") {
 
 }  // namespace
 
-std::optional<Rescaled> bring_into_range(Mesh& mesh) {
-    const Bounds box = mesh.bounds();
-    const Vec3d low = widen(box.low), high = widen(box.high);
-    double largest = 0, size = 0;
-    for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-        largest = std::max({largest, std::fabs(low.*axis), std::fabs(high.*axis)});
-        size = std::max(size, high.*axis - low.*axis);
-    }
-    if (!(size > 0) || (largest <= 1e5 && size >= 1e-3 && largest <= 1e4 * size)) return std::nullopt;
-    const bool fits = size >= 1e-3 && size <= 1e5;
-    const Rescaled out{0.5 * (low + high), fits ? 1 : std::ldexp(1, -std::ilogb(size))};
-    for (Vec3f& p : mesh.positions) {
-        const Vec3d moved = out.by * (widen(p) - out.from);
-        p = {static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z)};
-    }
-    return out;
-}
-
 std::string camera_table(const Bounds& box) {
     const Ball ball(box);
     const Vec3d towards = normalize(Vec3d{0.5, 0.4, 1});

@@ -11,15 +11,6 @@
 
 namespace crescent::inline experiment {
 
-/// How a mesh was placed: x' = by * (x - from).
-struct Rescaled {
-    Vec3d from;
-    double by;
-};
-/// Moves a mesh to the origin, and scales it by a power of two to a size of 1 to 2, if an experiment could not place it
-/// as it is: its coordinates are above 1e5, its size is below 1e-3, or its coordinates are above 1e4 times its size.
-std::optional<Rescaled> bring_into_range(Mesh& mesh);
-
 /// Returns the table [camera] of a view in which the whole box is seen, from above and the side.
 std::string camera_table(const Bounds& box);
 

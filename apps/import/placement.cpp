@@ -1,0 +1,30 @@
+#include "placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crescent::importer {
+
+Placement placement_of(const Model& model) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+    for (const Part& part : model.parts)
+        for (const Triangle& triangle : part.triangles)
+            for (const std::uint32_t corner : triangle)
+                for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+                    low.*axis = std::min(low.*axis, part.positions[corner].*axis);
+                    high.*axis = std::max(high.*axis, part.positions[corner].*axis);
+                }
+    double largest = 0, size = 0;
+    for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+        largest = std::max({largest, std::fabs(low.*axis), std::fabs(high.*axis)});
+        size = std::max(size, high.*axis - low.*axis);
+    }
+    const bool is_placeable = largest <= 1e5 && size >= 1e-3 && largest <= 1e4 * size;
+    if (!(size > 0) || !std::isfinite(size) || is_placeable) return {};
+    const bool fits = size >= 1e-3 && size <= 1e5;
+    return {0.5 * (low + high), fits ? 1 : std::ldexp(1, -std::ilogb(size))};
+}
+
+}  // namespace crescent::importer
