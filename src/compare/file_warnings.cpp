@@ -181,13 +181,17 @@ private:
 
 }  // namespace
 
+std::uint32_t touching_groups(const std::vector<std::uint32_t>& pixels, int width) {
+    return Groups(width).count(pixels);
+}
+
 std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& all) {
     std::vector<std::uint32_t> out;
     for (const PixelSet& set : all.regions) {
         std::vector<std::uint32_t> bad;
         std::copy_if(set.left_out.begin(), set.left_out.end(), std::back_inserter(bad),
             [&](std::uint32_t i) { return !finite(render, i); });
-        out.push_back(Groups(all.width).count(bad));
+        out.push_back(touching_groups(bad, all.width));
     }
     return out;
 }

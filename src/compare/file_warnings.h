@@ -26,6 +26,9 @@ private:
 
 // ---- Values that are NaN or infinite: two sides differ if one has them and the other has not.
 
+/// Returns the number of groups of touching pixels (8 neighbours); `pixels` ascending.
+std::uint32_t touching_groups(const std::vector<std::uint32_t>& pixels, int width);
+
 /// Counts the groups of touching pixels (8 neighbours) of a render that are not finite, one count per region.
 std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& all);
 

@@ -48,9 +48,10 @@ struct ComparePlan {
     std::vector<Region> regions;
     std::vector<MaskPlan> masks;
     std::vector<AssertionPlan> assertions;
-    bool pair = false;          // renders of two arms with the same number in their names share their random numbers
-    bool find_pairs = true;     // without `pair`: renders that share random numbers are looked for
-    bool shared_noise = false;  // the noise of a side with few renders is estimated with that of the other
+    bool pair = false;           // renders of two arms with the same number in their names share their random numbers
+    bool find_pairs = true;      // without `pair`: renders that share random numbers are looked for
+    bool find_outliers = false;  // of two arms with the same noise, see outliers.h
+    bool shared_noise = false;   // the noise of a side with few renders is estimated with that of the other
     Alignment align = Alignment::windows;
     bool crop = false;                   // compare the pixels that all data windows share
     double exposure = 1;                 // of photographs

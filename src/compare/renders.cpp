@@ -209,6 +209,8 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const Re
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
     all.quantities = quantities_of(all);
     regions(plan, all, *view);
+    if (plan.find_outliers && !plan.arms[0].moments && !plan.arms[1].moments)
+        all.outliers = find_outliers(all, {plan.arms[0].layer, plan.arms[1].layer}, monitor);
     monitor.begin("second pass: statistics of each render", static_cast<double>(files.total));
     const MeanFilm* truth = all.reference ? &all.reference->film : nullptr;
     for (std::size_t a = 0; a < plan.arms.size(); ++a)

@@ -17,6 +17,7 @@
 #include "base/progress.h"
 #include "compare/exr_file.h"
 #include "compare/open_file.h"
+#include "compare/outliers.h"
 #include "compare/plan.h"
 #include "metrics/metrics.h"
 
@@ -193,8 +194,9 @@ struct RenderStats {
     std::vector<PixelSet> regions;  // those of the plan, masks, then the whole frame
     std::vector<ArmStats> arms;     // as in the plan
     std::optional<ArmStats> reference;
-    std::vector<bool> bad;  // pixels that are not finite in some render: left out everywhere
-    std::uint64_t bad_pixels = 0;
+    std::vector<bool> bad;         // pixels that are not finite in some render, or set apart: left out everywhere
+    std::uint64_t bad_pixels = 0;  // that are not finite
+    OutlierPixels outliers;        // if the plan asks for them
     std::vector<std::string> warnings;
     Box frame() const { return {0, 0, width - 1, height - 1}; }
 };

@@ -2,16 +2,32 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "compare/renders.h"
 #include "compare/suite/suite.h"
+#include "math/functions.h"
 #include "output/format.h"
 
 namespace crescent::inline comparison {
 
 namespace {
 
-/// Returns p of "neither the means nor the variances differ"; the level is shared as in share_of_means.
+/// Divides the level of the suite between the numbers of outlier pixels and all else. Whether a number is tested
+/// depends on the sum over both sides alone, which says nothing about a difference.
+void share_level(std::vector<ViewResult>& views, double alpha) {
+    const auto tested =
+        std::count_if(views.begin(), views.end(), [](const ViewResult& view) { return !std::isnan(view.outliers.p); });
+    for (ViewResult& view : views) {
+        view.outlier_level = alpha * share_of_outliers / static_cast<double>(std::max<std::ptrdiff_t>(1, tested));
+        view.share_of_variances = 1 - share_of_means - (tested > 0 ? share_of_outliers : 0) -
+            (std::isnan(view.outlier_render.p) ? 0 : share_of_render);
+    }
+}
+
+/// Returns p of "neither the means nor the variances differ, and no render deviates"; the level is shared as in
+/// suite.h.
 double view_p(const ViewResult& view) {
-    return std::fmin(view.mean_p / share_of_means, view.variance_p / (1 - share_of_means));
+    const double noise = std::fmin(view.variance_p / view.share_of_variances, view.outlier_render.p / share_of_render);
+    return std::fmin(view.mean_p / share_of_means, noise);
 }
 
 /// Sets the level of each view by Holm 1979; all views that are not rejected have the level at which the method
@@ -48,7 +64,7 @@ int compare_variances(ViewResult& view) {
     const double tests = static_cast<double>(
         std::count_if(view.variances.begin(), view.variances.end(), [](const auto& t) { return t.why.empty(); }));
     for (VarianceTest& t : view.variances) {
-        t.different = t.why.empty() && t.welch.p * tests / (1 - share_of_means) <= view.level;
+        t.different = t.why.empty() && t.welch.p * tests / view.share_of_variances <= view.level;
         if (!t.different) continue;
         if (t.candidate > t.baseline) sign = 1;
         else if (sign == 0) sign = -1;
@@ -95,9 +111,58 @@ std::string exact_sentence(const ViewResult& view) {
         s.different, s.pixels, figures(s.largest, 3), s.at.x0, s.at.y0);
 }
 
+std::string outlier_place(const ViewOutliers::Place& at) {
+    return fmt::format("({}, {}) of {} is {}{} where the other renders have {}", at.x, at.y, at.file,
+        at.quantity == 0 ? "" : fmt::format("{} ", quantity_names[at.quantity]), figures(at.value, 3),
+        figures(at.others, 3));
+}
+
+/// Returns the smallest number of outlier pixels of the candidate, against none of the baseline, that is a change.
+int least_outliers_found(const ViewResult& view) {
+    const double renders = static_cast<double>(view.baseline_renders + view.candidate_renders),
+                 share = static_cast<double>(view.candidate_renders) / renders;
+    return static_cast<int>(std::ceil(math::log(view.outlier_level / 2) / math::log(share)));
+}
+
+/// States the numbers of outlier pixels, whether they differ, and whether the pixels are left out; "" if there are
+/// none.
+std::string outliers_sentence(const ViewResult& view, bool differ) {
+    const ViewOutliers& o = view.outliers;
+    if (o.baseline + o.candidate == 0) return "";
+    std::vector<std::string> places;
+    for (const ViewOutliers::Place& at : o.first) places.push_back(outlier_place(at));
+    std::string out = fmt::format("{} in {} of the candidate and {} in {} of the baseline ({}): {}{}.",
+        plural(o.candidate, "outlier pixel"), plural(view.candidate_renders, "render"), o.baseline,
+        view.baseline_renders, std::isnan(o.p) ? "too few to differ" : fmt::format("p = {:.2g}", o.p),
+        fmt::join(places, "; "), o.baseline + o.candidate > places.size() ? "; and more" : "");
+    if (o.set_apart) out += " These pixels are left out of the tests of means and variances.";
+    if (!differ && o.baseline == 0) out += fmt::format(" {} would be a change.", least_outliers_found(view));
+    return out;
+}
+
+/// Names the render that does not belong to the others.
+std::string outlier_render_sentence(const ViewOutlierRender& r, bool differs) {
+    const std::string how = r.pixels > 0
+        ? fmt::format("it has {} outlier pixels, more than renders of equal noise have", r.pixels)
+        : fmt::format("it deviates by {} of their standard deviations, and its mean Y is {} times theirs",
+              figures(r.deviation, 2), figures(r.ratio, 3));
+    return fmt::format("{} {} to the other renders of the {}: {} (p = {:.2g}).", r.file,
+        differs ? "does not belong" : "may not belong", r.candidate ? "candidate" : "baseline", how, r.p);
+}
+
+void add_sentence(std::string& to, const std::string& sentence) {
+    if (sentence.empty()) return;
+    to += to.empty() ? sentence : " " + sentence;
+}
+
 void decide_compared(ViewResult& view) {
     BiasResult& means = *view.means;
     const bool changed = view.mean_p / share_of_means <= view.level;
+    const bool outliers = view.outliers.p <= view.outlier_level;
+    const bool render = view.outlier_render.p / share_of_render <= view.level;
+    constexpr double named = 0.01;  // a deviation this rare is named at any level: it widens the variance
+    const bool doubtful = !view.exact && (render || view.outlier_render.p <= named);
+    if (doubtful) view.renders_needed.reset();
     const int variance = compare_variances(view);
     if (!changed) forget_places(means);
     if (!view.non_finite.empty()) {
@@ -105,8 +170,10 @@ void decide_compared(ViewResult& view) {
         view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");
     } else if (view.exact)
         view.state = changed ? ViewState::changed : ViewState::same, view.sentence = exact_sentence(view);
-    else if (changed) view.state = ViewState::changed, view.sentence = means.sentence;
-    else if (variance > 0) view.state = ViewState::noisier, view.sentence = variance_sentence(view, 1);
+    else if (changed || outliers || render) {
+        view.state = ViewState::changed;
+        view.sentence = changed ? means.sentence : "";
+    } else if (variance > 0) view.state = ViewState::noisier, view.sentence = variance_sentence(view, 1);
     else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
     else if (variance < 0)
         view.state = ViewState::improved,
@@ -114,6 +181,8 @@ void decide_compared(ViewResult& view) {
     else if (means.identical)
         view.state = ViewState::same, view.sentence = "Identical: every render has the same R, G and B in every pixel.";
     else view.state = ViewState::same, view.sentence = power_sentence(means);
+    if (doubtful) add_sentence(view.sentence, outlier_render_sentence(view.outlier_render, render));
+    if (!view.exact) add_sentence(view.sentence, outliers_sentence(view, outliers));
     if (view.candidate_renders == 1 && view.baseline_renders > 1 && !view.exact)
         view.sentence +=
             " The one render of the candidate was tested with the variance of the baseline; its noise was not "
@@ -153,6 +222,7 @@ void decide(const Suite& suite, SuiteResult& result) {
     for (ViewResult& view : result.views)
         if (view.means && !view.exact && !std::isnan(view_p(view))) tested.push_back(&view);
     result.tested = tested.size();
+    share_level(result.views, suite.options.alpha);
     set_levels(tested, suite.options.alpha);
     for (ViewResult& view : result.views) {
         if (view.state == ViewState::unreadable) continue;

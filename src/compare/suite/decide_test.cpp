@@ -61,6 +61,32 @@ TEST(SuiteDecisions, OfVariancesAreNoisierOrImproved) {
     EXPECT_THAT(states_of({mixed}), ElementsAre(ViewState::noisier));  // in one of its regions
 }
 
+// A fifth of the level 0.04 is for the numbers of outlier pixels, over the views that have enough of them: 0.008, or
+// 0.004 each of two views; a twentieth then remains for the variances.
+TEST(SuiteDecisions, OfOutlierPixelsShareAPartOfTheLevel) {
+    ViewResult one = view("a", 1), other = view("b", 1), quiet = view("c", 1, 0.0021, 2);
+    one.outliers.p = 0.0079;
+    EXPECT_THAT(states_of({one}), ElementsAre(ViewState::changed));
+    EXPECT_THAT(states_of({one, view("b", 1), view("c", 1)}),
+        ElementsAre(ViewState::changed, ViewState::same, ViewState::same));
+    other.outliers.p = 0.0039;
+    EXPECT_THAT(states_of({one, other}), ElementsAre(ViewState::same, ViewState::changed));
+    EXPECT_THAT(states_of({quiet}), ElementsAre(ViewState::noisier));
+    EXPECT_THAT(states_of({one, quiet}), ElementsAre(ViewState::changed, ViewState::same));
+}
+
+TEST(SuiteDecisions, AnOutlierRenderHasAShareOfTheLevelAndIsNamedFromOnePerCent) {
+    ViewResult rare = view("a", 1), doubtful = view("b", 1);
+    rare.outlier_render = {"a.exr", true, 0, 30, 0.0005};
+    doubtful.outlier_render = {"b.exr", true, 0, 10, 0.009};
+    doubtful.too_few = "in frame: too few", doubtful.renders_needed = 99;
+    SuiteResult found;
+    EXPECT_THAT(states_of({rare, doubtful}, &found), ElementsAre(ViewState::changed, ViewState::too_few));
+    EXPECT_THAT(found.views[0].sentence, ::testing::HasSubstr("a.exr does not belong"));
+    EXPECT_THAT(found.views[1].sentence, ::testing::HasSubstr("b.exr may not belong"));
+    EXPECT_THAT(found.views[1].sentence, ::testing::Not(::testing::HasSubstr("99")));
+}
+
 TEST(SuiteDecisions, TooFewRendersDoNotHideADifference) {
     ViewResult same = view("a", 1), changed = view("b", 0.001), improved = view("c", 1, 0.001, 0.5);
     for (ViewResult* v : {&same, &changed, &improved}) v->too_few = "in frame: too few";

@@ -117,7 +117,7 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
     plan.regions = view.regions;
     constexpr int blocks = 256;  // a quarter of the default: enough to find correlation over the renders of a side
     plan.flip = plan.count_pixel_p = false, plan.spectrum_blocks = blocks;
-    plan.shared_noise = true;
+    plan.find_outliers = plan.shared_noise = true;
     plan.pair = suite.options.pair == Pairing::always;
     plan.find_pairs = suite.options.pair == Pairing::automatic;
     plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
@@ -247,7 +247,8 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
             "the other",
             means.non_finite.undecided),
         known = false;
-    if (!out.too_few.empty() && known) out.renders_needed = needed;
+    const std::size_t present = std::min(all.arms[0].files.size(), all.arms[1].files.size());
+    if (!out.too_few.empty() && known && needed > present) out.renders_needed = needed;
 }
 
 /// Removes the results per pixel and tile, so that the memory of a suite does not grow with the pixels of its views.
@@ -285,6 +286,37 @@ std::string one_sided_failures(const RenderStats& all) {
         pixels[side] == 1 ? "1 pixel is" : fmt::format("{} pixels are", pixels[side]), files.size(),
         plural(arm.files.size(), "render"), names[side], index % all.width, index / all.width,
         files.empty() ? "unknown" : files.front(), names[1 - side]);
+}
+
+/// Returns the outlier pixels with the test of their numbers. A test that cannot find a change at `alpha` is not made,
+/// so that it takes no share of the level; whether it can depends on the sum over both sides alone.
+ViewOutliers view_outliers(const RenderStats& all, double alpha) {
+    constexpr std::size_t named = 3;
+    ViewOutliers out;
+    const OutlierPixels& found = all.outliers;
+    out.baseline = found.groups[0], out.candidate = found.groups[1], out.set_apart = found.set_apart;
+    const double baseline = static_cast<double>(all.arms[0].files.size()),
+                 candidate = static_cast<double>(all.arms[1].files.size());
+    const std::size_t more =
+        static_cast<double>(out.candidate) * baseline >= static_cast<double>(out.baseline) * candidate ? 1 : 0;
+    for (const OutlierPixel& p : found.pixels) {
+        if (p.side != more || out.first.size() == named) continue;
+        const int i = static_cast<int>(p.pixel);
+        out.first.push_back(
+            {all.arms[p.side].files[p.render].path, i % all.width, i / all.width, p.quantity, p.value, p.others});
+    }
+    const std::uint64_t total = found.total();
+    const double share = candidate / (baseline + candidate);
+    const double least = std::min(binomial_exact(total, total, share), binomial_exact(0, total, share));
+    if (total > 0 && least <= alpha * share_of_outliers) out.p = binomial_exact(out.candidate, total, share);
+    return out;
+}
+
+ViewOutlierRender view_outlier_render(const RenderStats& all) {
+    const auto found = outlier_render(all);
+    if (!found) return {};
+    return {all.arms[found->side].files[found->render].path, found->side == 1, found->ratio, found->deviation, found->p,
+        found->pixels};
 }
 
 /// Returns a view whose files cannot be compared.
@@ -330,7 +362,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     if (moments)
         out.notes.push_back(
             "The baseline is stored as moments: whether it shares random numbers or renders with the "
-            "candidate is not tested.");
+            "candidate is not tested, and outlier pixels are neither counted nor left out.");
     const bool constant_baseline = moments ? moments->constant : is_constant(view.baseline, baseline),
                constant_candidate = is_constant(view.candidate, candidate);
     out.exact = out.baseline_renders == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
@@ -349,6 +381,10 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
     if (out.exact) out.mean_p = out.means->identical ? 1 : 0;
     else {
+        if (!out.means->identical) {
+            out.outliers = view_outliers(all, suite.options.alpha);
+            out.outlier_render = view_outlier_render(all);
+        }
         test_variances(all, measured, out);
         if (!out.means->identical) {
             restate_power(all, level.each, *out.means);

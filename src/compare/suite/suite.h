@@ -20,8 +20,14 @@
 
 namespace crescent::inline comparison {
 
-/// The share of a view's level for the tests of equal means and of finite values; the rest is for the variances.
+/// The share of a view's level for the tests of equal means and of finite values; the rest is for the noise.
 inline constexpr double share_of_means = 0.75;
+/// The share of a view's level for an outlier render, if it is tested.
+inline constexpr double share_of_render = 0.03;
+/// The share of the level of a suite for the numbers of outlier pixels, if some view has enough of them; the views that
+/// have share it. Ten outlier pixels against none, with as many renders of each side, have p = 0.00195: a change at
+/// this share of a level of 0.01. What remains of the noise's share is for the variances.
+inline constexpr double share_of_outliers = 0.2;
 
 /// How --accept stores a baseline: its renders, or the mean and the variance of each pixel.
 enum class BaselineStorage { renders, moments };
@@ -92,6 +98,30 @@ struct VarianceTest {
     bool different = false;  // at the level of the view
 };
 
+/// The outlier pixels of both sides, and the test that their numbers are in proportion to the numbers of renders (exact
+/// binomial test of groups).
+struct ViewOutliers {
+    /// One of them: its file, place and quantity, its value, and the mean of the other renders there.
+    struct Place {
+        std::string file;
+        int x = 0, y = 0;
+        std::size_t quantity = 0;
+        double value = 0, others = 0;
+    };
+    std::uint64_t baseline = 0, candidate = 0;  // groups
+    std::vector<Place> first;                   // the first few of the side with more for its renders
+    bool set_apart = false;                     // left out of the tests of means and variances
+    double p = std::nan("");                    // NaN: too few for any split to be a change
+};
+
+/// The render that deviates the most from the others of its side, and p of none; see outliers.h.
+struct ViewOutlierRender {
+    std::string file;  // "": not tested
+    bool candidate = false;
+    double ratio = 1, deviation = 0, p = std::nan("");
+    std::uint64_t pixels = 0;  // its outlier pixels, if their number is what deviates
+};
+
 /// PNG files of one view, all of the same size.
 struct ViewPictures {
     int width = 0, height = 0;
@@ -112,8 +142,12 @@ struct ViewResult {
     bool moments = false;                                     // the baseline is stored as moments
     std::optional<BiasResult> means;  // of the candidate against the baseline; without what grows with the pixels
     std::vector<VarianceTest> variances;
+    ViewOutliers outliers;
+    ViewOutlierRender outlier_render;
     double mean_p = std::nan(""), variance_p = std::nan("");  // of no difference in any region; NaN: not tested
     double level = 0;                                         // at which the view was decided
+    double outlier_level = 0;                                 // at which the number of outlier pixels was
+    double share_of_variances = 1 - share_of_means;           // of the level
     std::string too_few;                                      // why equality cannot be stated; "" if it can
     std::string non_finite;                     // the pixels that are not finite on one side only; "" if there are none
     std::optional<std::size_t> renders_needed;  // of each side

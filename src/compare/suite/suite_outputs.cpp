@@ -40,6 +40,21 @@ Json places_json(const std::vector<Found>& found) {
     return out;
 }
 
+Json outliers_json(const ViewOutliers& o) {
+    Json first = Json::array();
+    for (const ViewOutliers::Place& at : o.first)
+        first.push_back({{"file", at.file}, {"pixel", {at.x, at.y}}, {"channel", quantity_names[at.quantity]},
+            {"value", output::number(at.value)}, {"others", output::number(at.others)}});
+    return {{"baseline", o.baseline}, {"candidate", o.candidate}, {"p", p_json(o.p)}, {"left_out", o.set_apart},
+        {"first", first}};
+}
+
+Json outlier_render_json(const ViewOutlierRender& r) {
+    if (r.file.empty()) return nullptr;
+    return {{"file", r.file}, {"deviation", output::number(r.deviation)}, {"ratio", output::number(r.ratio)},
+        {"outlier_pixels", r.pixels}, {"p", p_json(r.p)}};
+}
+
 Json view_json(const ViewResult& view) {
     Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"sentence", view.sentence}, {"width", view.width},
         {"height", view.height},
@@ -51,6 +66,8 @@ Json view_json(const ViewResult& view) {
         {"means", Json::object()}, {"variances", Json::object()}};
     for (const VarianceTest& t : view.variances) out["variances"][t.region] = variance_json(t);
     out["non_finite"] = view.non_finite;
+    out["outliers"] = outliers_json(view.outliers);
+    out["outlier_render"] = outlier_render_json(view.outlier_render);
     if (!view.means) return out;
     const BiasResult& means = *view.means;
     for (const MeanTest& t : means.regions) out["means"][t.region] = mean_json(t);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 
 #include "compare/suite/suite.h"
@@ -101,6 +102,101 @@ TEST(Suites, TheStatedNumberOfRendersIsEnough) {
     enough.suite.options.smallest = 0.004;
     enough.put_both("view", noise, noise, 1000, static_cast<int>(*first.renders_needed * 3 / 2));
     EXPECT_EQ(enough.compare().views[0].state, ViewState::same);
+}
+
+/// Adds `size` to some pixels of a render that do not touch.
+void add_bright_pixels(MemorySuite& s, const std::string& path, int count, float size = 500) {
+    Render& render = s.renders.at(path);
+    for (int k = 0; k < count; ++k) {
+        const auto i = static_cast<std::size_t>(37 * (k + 1) % (side * side));
+        render.r[i] += size, render.g[i] += size, render.b[i] += size;
+    }
+}
+
+TEST(Suites, OneOutlierPixelOnEitherSideIsNoChange) {
+    for (const char* which : {"baseline", "candidate"}) {
+        MemorySuite s;
+        s.suite.options.smallest = 0.05;
+        s.put_both("view", noise, noise, 3000);
+        add_bright_pixels(s, fmt::format("view/{}/3", which), 1);
+        const ViewResult view = s.compare().views[0];
+        EXPECT_EQ(view.state, ViewState::same) << view.sentence;
+        EXPECT_TRUE(view.outliers.set_apart);
+        EXPECT_EQ(view.outliers.baseline + view.outliers.candidate, 1u);
+        ASSERT_EQ(view.outliers.first.size(), 1u);
+        EXPECT_EQ(view.outliers.first[0].file, fmt::format("view/{}/3", which));
+        EXPECT_THAT(view.sentence, HasSubstr("(5, 1) of"));
+        EXPECT_NEAR(view.outliers.first[0].value, 501, 1);
+    }
+}
+
+TEST(Suites, ADifferenceIsFoundBesidesAnOutlierPixel) {
+    MemorySuite s;
+    s.put_both("view", noise, brighter, 3100);
+    add_bright_pixels(s, "view/baseline/3", 1);
+    EXPECT_EQ(s.compare().views[0].state, ViewState::changed);
+}
+
+// Without a change: 5 and 5 of ten are ordinary, 10 and 0 are not (p = 2^-9).
+TEST(Suites, NumbersOfOutlierPixelsAreCompared) {
+    MemorySuite equal, more, fewer;
+    for (MemorySuite* s : {&equal, &more, &fewer}) s->put_both("view", noise, noise, 3200);
+    for (int k = 0; k < 5; ++k)
+        for (const char* which : {"baseline", "candidate"})
+            add_bright_pixels(equal, fmt::format("view/{}/{}", which, k), 1, 300 + 50 * static_cast<float>(k));
+    for (int k = 0; k < 5; ++k) {
+        for (auto [s, which] : {std::pair(&more, "candidate"), std::pair(&fewer, "baseline")}) {
+            Render& render = s->renders.at(fmt::format("view/{}/{}", which, k));
+            for (const int i : {100 + 7 * k, 600 + 7 * k}) render.r[static_cast<std::size_t>(i)] += 900;
+        }
+    }
+    EXPECT_NE(equal.compare().views[0].state, ViewState::changed);
+    const ViewResult found = more.compare().views[0];
+    EXPECT_EQ(found.state, ViewState::changed) << found.sentence;
+    EXPECT_EQ(found.outliers.candidate, 10u);
+    EXPECT_NEAR(found.outliers.p, std::pow(2.0, -9), 1e-12);
+    EXPECT_THAT(
+        found.sentence, HasSubstr("10 outlier pixels in 8 renders of the candidate and 0 in 8 of the baseline"));
+    EXPECT_EQ(fewer.compare().views[0].state, ViewState::changed);
+}
+
+TEST(Suites, TouchingOutlierPixelsAreOneEvent) {
+    MemorySuite s;
+    s.put_both("view", noise, noise, 3300);
+    Render& render = s.renders.at("view/candidate/2");
+    for (const std::size_t i : {200u, 201u, 202u, 232u, 233u, 234u, 264u, 265u, 266u}) render.g[i] += 700;
+    const ViewResult view = s.compare().views[0];
+    EXPECT_EQ(view.outliers.candidate, 1u);
+    EXPECT_NE(view.state, ViewState::changed) << view.sentence;
+}
+
+TEST(Suites, ARenderThatDoesNotBelongToTheOthersIsNamed) {
+    for (const float factor : {0.0f, 2.0f}) {
+        for (const char* which : {"baseline", "candidate"}) {
+            MemorySuite s;
+            s.put_both("view", noise, noise, 3400);
+            const std::string path = fmt::format("view/{}/6", which);
+            Render& render = s.renders.at(path);
+            for (std::vector<float>* plane : {&render.r, &render.g, &render.b})
+                for (float& x : *plane) x *= factor;
+            const ViewResult view = s.compare().views[0];
+            EXPECT_EQ(view.state, ViewState::changed) << view.sentence;
+            EXPECT_EQ(view.outlier_render.file, path);
+            EXPECT_THAT(view.sentence, HasSubstr(path + " does not belong to the other renders of the " + which));
+            EXPECT_NEAR(view.outlier_render.ratio, static_cast<double>(factor), 0.05);
+        }
+    }
+}
+
+TEST(Suites, ARenderWithManyOutlierPixelsIsNamedAmongManyViews) {
+    MemorySuite s;
+    for (int v = 0; v < 12; ++v)
+        s.put_both(std::to_string(v), noise, noise, 3500 + 100 * static_cast<std::uint32_t>(v));
+    add_bright_pixels(s, "7/candidate/2", 10);
+    const SuiteResult result = s.compare();
+    for (const ViewResult& view : result.views)
+        EXPECT_EQ(view.state == ViewState::changed, view.name == "7") << view.sentence;
+    EXPECT_EQ(view_of(result, "7").outlier_render.file, "7/candidate/2");
 }
 
 TEST(Suites, CopiesWithinASideAreLeftOut) {

@@ -2,7 +2,9 @@
 // report a change, and how often a change of the size that a view states is found. Prints a section of
 // docs/error-rates.md. Renders are synthetic, so the true values are known.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <map>
 
@@ -183,20 +185,123 @@ void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std:
     }
 }
 
+// ---- Nights: suites of a few views whose renders have rare bright pixels.
+
+/// What is planted in the candidate of the first view of a suite.
+struct Planted {
+    std::string name;
+    int white_pixels = 0;     // of one render
+    int white_in_each = 0;    // of each render
+    double one_exposure = 1;  // factor of one render
+    double bias = 0;          // of all renders
+};
+
+/// The views of one night: heavy-tailed noise of different strength, 3 to 8 renders a side.
+class Night {
+public:
+    static constexpr int width = 48, views = 5;
+    static constexpr double fireflies = 0.02;  // expected number in a render
+
+    Night(std::uint32_t seed, const Planted& planted) : seed_(seed), planted_(planted) {}
+
+    Suite suite() const {
+        Suite out;
+        out.options.alpha = 0.01, out.options.smallest = 1;
+        for (std::uint32_t v = 0; v < views; ++v) {
+            SuiteView& view = out.views.emplace_back();
+            view.name = std::to_string(v);
+            for (int k = 0; k < renders_of(v); ++k) {
+                view.baseline.push_back(fmt::format("{} b {}", v, k));
+                view.candidate.push_back(fmt::format("{} c {}", v, k));
+            }
+        }
+        return out;
+    }
+    RenderSource source() const {
+        RenderSource out;
+        out.read = [this](const std::string& path, const std::string&) { return render(path); };
+        return out;
+    }
+
+private:
+    int renders_of(std::uint32_t view) const { return 3 + static_cast<int>(seed_of(seed_, 77 + view) % 6); }
+    Render render(const std::string& path) const {
+        constexpr SyntheticNoise noises[] = {
+            {Kind::gamma, 0.3}, {Kind::lognormal, 0.5}, {Kind::gamma, 0.5}, {Kind::lognormal, 0.3}, {Kind::hits, 0.3}};
+        const std::size_t gap = path.find(' ');
+        const auto view = static_cast<std::uint32_t>(std::stoul(path.substr(0, gap)));
+        const auto k = static_cast<std::uint32_t>(std::stoul(path.substr(gap + 3)));
+        const bool candidate = path[gap + 1] == 'c', planted = candidate && view == 0;
+        const std::uint32_t seed = seed_for(seed_, 0, view, 2 * k + (candidate ? 1 : 0));
+        SyntheticNoise noise = noises[view];
+        if (planted) noise.bias = planted_.bias;
+        SyntheticScene scene;
+        scene.width = width;
+        Render out = synthetic_render(path, noise, seed, scene);
+        const auto uniform = [&](std::uint32_t stream) { return seed_of(seed_of(seed, 12345), stream) / 4294967296.0; };
+        const auto add = [&](std::uint32_t stream, float size) {
+            const auto i = static_cast<std::size_t>(uniform(stream) * static_cast<double>(out.size()));
+            out.r[i] += size, out.g[i] += size, out.b[i] += size;
+        };
+        if (uniform(0) < fireflies) add(1, static_cast<float>(30 * std::pow(100.0, uniform(2))));
+        if (!planted) return out;
+        const int white = planted_.white_in_each + (k == 1 ? planted_.white_pixels : 0);
+        for (int w = 0; w < white; ++w) add(100 + static_cast<std::uint32_t>(w), 1000);
+        for (std::vector<float>* plane : {&out.r, &out.g, &out.b})
+            for (float& x : *plane) x *= k == 1 ? static_cast<float>(planted_.one_exposure) : 1.0f;
+        return out;
+    }
+    std::uint32_t seed_;
+    Planted planted_;
+};
+
+void print_nights(std::uint32_t most_nights, std::uint32_t seed) {
+    const std::vector<Planted> kinds = {{"nothing"}, {"10 white pixels in one render", 10},
+        {"10 white pixels in each render", 0, 10}, {"one render is black", 0, 0, 0},
+        {"one render 1.5 times as bright", 0, 0, 1.5}, {"all renders 10 % brighter", 0, 0, 1, 0.1}};
+    fmt::print(
+        "\n### Nights with rare bright pixels\n\n{} suites of {} views, {} x {} pixels, 3 to 8 renders of each side, "
+        "gamma, lognormal and binary noise of 30 % to 55 %; {:.0f} % of the renders have a pixel that is 30 to 3000 "
+        "times "
+        "as bright as the mean. alpha = 0.01, smallest = 100 %. The change is in one view.\n\n| planted | exit 0 | "
+        "exit 1 "
+        "| exit 4 | of the planted view: changed |\n|---|---|---|---|---|\n",
+        most_nights, Night::views, Night::width, Night::width, 100 * Night::fireflies);
+    for (const Planted& planted : kinds) {
+        const std::uint32_t nights = &planted == &kinds[0] ? most_nights : (most_nights + 2) / 3;
+        std::vector<int> codes(nights), changed(nights);
+        parallel_for(std::uint32_t{0}, nights, [&](std::uint32_t n) {
+            const Night night(seed_of(seed, 5000 + n), planted);
+            ProgressMonitor monitor;
+            const SuiteResult result = compare_suite(night.suite(), monitor, night.source());
+            codes[n] = exit_code(result, false);
+            changed[n] = result.views[0].state == ViewState::changed;
+        });
+        const auto of = [&](int code) {
+            return rate_text(static_cast<std::uint64_t>(std::count(codes.begin(), codes.end(), code)), nights);
+        };
+        fmt::print("| {} | {} | {} | {} | {} |\n", planted.name, of(0), of(1), of(4),
+            rate_text(static_cast<std::uint64_t>(std::count(changed.begin(), changed.end(), 1)), nights));
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Measures the error rates of suites of golden images."};
-    std::uint32_t suites = 100, views = 50, repeats = 200, seed = 1;
+    std::uint32_t suites = 100, views = 50, repeats = 200, nights = 300, seed = 1;
     app.add_option("--suites", suites, "suites of unchanged views")->capture_default_str();
     app.add_option("--views", views, "views of each")->capture_default_str();
     app.add_option("--repeats", repeats, "of each measurement of power")->capture_default_str();
+    app.add_option("--nights", nights, "suites with rare bright pixels")->capture_default_str();
     app.add_option("--seed", seed, "of all renders")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {
         const std::vector<ViewKind> kinds = view_kinds();
-        print_false_alarms(kinds, suites, views, seed);
+        if (suites > 0) print_false_alarms(kinds, suites, views, seed);
         if (repeats > 0) print_power(kinds, repeats, views, seed);
+        if (nights > 0) print_nights(nights, seed);
     } catch (const std::exception& e) {
         fmt::print(stderr, "crescent_suites: {}\n", e.what());
         return 3;
