@@ -120,11 +120,20 @@ TestSettings test_settings_of(const CheckFlags& flags) {
     return r;
 }
 
+namespace {
+
+/// The time of a program, and of a combination, in all.
+double seconds_of(const CheckFlags& flags) {
+    if (flags.patience > 0) return flags.patience;
+    return flags.full ? 3600 : PipeLimits().total_seconds;
+}
+
+}  // namespace
+
 PipeLimits limits_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
     PipeLimits limits;
     limits.stop = &monitor.stop;
-    if (flags.full) limits.total_seconds = 3600;
-    if (flags.patience > 0) limits.total_seconds = flags.patience;
+    limits.total_seconds = seconds_of(flags);
     limits.limit_answers(flags.timeout);
     return limits;
 }
@@ -147,7 +156,7 @@ std::vector<CheckCase> cases_of_arm(const CheckFlags& flags, const std::string& 
     const Experiment experiment = load(flags.arm, flags.settings);
     if (flags.no_code) refuse_code(experiment);
     return arm_cases(experiment, name, open_external(with_arms_of(experiment, {name}), flags.timeout),
-        {flags.pixels, flags.full, grid_of(flags), flag});
+        {.pixels = flags.pixels, .full = flags.full, .wo = grid_of(flags), .flag = flag, .seconds = seconds_of(flags)});
 }
 
 std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
@@ -198,11 +207,11 @@ std::string given_sampler(const CheckFlags& flags) {
     return !flags.exec.empty() ? flags.exec : !flags.plugin.empty() ? flags.plugin : flags.arm;
 }
 
-/// --patience and --accept-few are for programs, a Python interpreter among them.
+/// --patience and --accept-few are for programs, a Python interpreter among them, and for arms of experiments.
 void check_limits(const CheckFlags& flags) {
-    if (!flags.exec.empty() || names_python_sampler(flags.arm)) return;
+    if (!flags.exec.empty() || names_python_sampler(flags.arm) || is_experiment(flags)) return;
     for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
-        if (given) throw InputError({flag, 0, 0}, "needs --exec or a sampler in a Python file");
+        if (given) throw InputError({flag, 0, 0}, "needs --exec, an experiment or a sampler in a Python file");
 }
 
 bool whole_list(const CheckFlags& flags) {

@@ -82,7 +82,8 @@ Own own_samplers(CLI::App& c, CheckFlags& f) {
 
 /// The time limits of a program.
 void limits(CLI::App& c, CheckFlags& f) {
-    c.add_option("--patience", f.patience, "s that a program may take in all; default 120, with --full 3600")
+    c.add_option("--patience", f.patience,
+         "s that a program, or an arm that combines, may take in all; default 120, with --full 3600")
         ->type_name("SECONDS")
         ->check(number(0.01, 1e6));
     timeout(c, f.timeout);

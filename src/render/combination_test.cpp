@@ -147,5 +147,30 @@ TEST(CombinationsInKernels, AreThoseOfBuiltInSamplers) {
     EXPECT_FALSE(Combination("tested", plan, std::move(of), nullptr, {}, {}).runs_in_kernels());
 }
 
+/// Counts how often its density is evaluated.
+class Counted : public Technique {
+public:
+    int numbers() const override { return 2; }
+    void draw(const PointRows& /*at*/, std::span<const double> /*u*/, std::span<PointDraw> /*out*/) const override {}
+    void density(const PointRows& /*at*/, std::span<const Vec3<float>> /*wi*/, std::span<double> out) const override {
+        ++calls;
+        std::ranges::fill(out, 0.25);
+    }
+    mutable int calls = 0;
+};
+
+TEST(Mixtures, EvaluateAPartThatOccursSeveralTimesOnce) {
+    const std::vector<ShadingPoints> groups = shading_points_of(scene_of(scenes[0]), {20, 20, 24, 24}, nullptr);
+    const PointRun run{0, {0, 0, 1}, 3};
+    const std::vector<Vec3<float>> wi(3, {0, 0, 1});
+    std::vector<double> p(3);
+    const auto counted = std::make_shared<Counted>();
+    std::shared_ptr<const Technique> chain = counted;
+    for (int level = 0; level < 30; ++level) chain = mixture_technique({chain, chain}, WeightList({}, 2, false, {}));
+    chain->density({groups[0], {&run, 1}}, wi, p);
+    EXPECT_EQ(counted->calls, 1);
+    EXPECT_EQ(p, std::vector<double>(3, 0.25));
+}
+
 }  // namespace combination_test
 }  // namespace crescent::inline render

@@ -136,7 +136,11 @@ public:
     void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
         const std::vector<double> weights = weights_at(at, weights_);
         std::vector<std::vector<double>> p(parts_.size(), std::vector<double>(wi.size()));
-        for (std::size_t k = 0; k < parts_.size(); ++k) parts_[k]->density(at, wi, p[k]);
+        for (std::size_t k = 0; k < parts_.size(); ++k) {
+            const auto first = static_cast<std::size_t>(std::ranges::find(parts_, parts_[k]) - parts_.begin());
+            if (first < k) p[k] = p[first];  // a part that occurs several times is evaluated once
+            else parts_[k]->density(at, wi, p[k]);
+        }
         std::size_t row = 0;
         for (std::size_t r = 0; r < at.runs.size(); ++r)
             for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) out[row] = sum(weights, p, r, row);

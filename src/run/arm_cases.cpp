@@ -228,12 +228,13 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
 
 class Cases {
 public:
-    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside, Grid wo)
+    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside, Grid wo, double seconds)
         : scene_(experiment),
           experiment_(experiment),
           sampler_(std::move(sampler)),
           outside_(outside),
           wo_(std::move(wo)),
+          seconds_(seconds),
           shapes_(shape_map(scene_)),
           limited_(std::ranges::any_of(with_arms_of(experiment, {sampler_}).arms,
               [](const ArmPlan& arm) { return arm.is_external() || arm.combination.weights_python; })) {
@@ -320,16 +321,22 @@ private:
         peers_.clear();
     }
 
+    /// A sample of many candidates costs as much as a sample of a slow program.
+    std::shared_ptr<const SamplerAdapter> combined_at(
+        const Point& point, const std::shared_ptr<const Combination>& combination) const {
+        if (combination->plan().kind == CombinationKind::ris)
+            return std::make_shared<Resampled>(sampler_, point, limited_, combination);
+        if (const auto technique = combination->technique())
+            return std::make_shared<OneTechnique>(sampler_, point, limited_, technique);
+        return std::make_shared<WeightedTechniques>(sampler_, point, limited_, combination);
+    }
+
     std::shared_ptr<const SamplerAdapter> adapter_at(const Point& point) const {
         const ArmPlan* arm = experiment_.find_arm(sampler_);
         if (const auto own = outside_.find(sampler_); own != outside_.end()) {
             if (own->second->as_combination()) {
                 const std::shared_ptr<const Combination> c(own->second, own->second->as_combination());
-                if (c->plan().kind == CombinationKind::ris)
-                    return std::make_shared<Resampled>(sampler_, point, limited_, c);
-                if (const auto technique = c->technique())
-                    return std::make_shared<OneTechnique>(sampler_, point, limited_, technique);
-                return std::make_shared<WeightedTechniques>(sampler_, point, limited_, c);
+                return limited_in_time(combined_at(point, c), seconds_);
             }
             return std::make_shared<OneTechnique>(sampler_, point, limited_, external_technique(own->second));
         }
@@ -353,6 +360,7 @@ private:
     std::string sampler_;
     const ExternalSamplers& outside_;
     Grid wo_;  // empty: that of the pixel, or the grid
+    double seconds_;
     ShapeMap shapes_;
     bool limited_;  // a part of the sampler is a program, a library or Python
     std::vector<CheckCase> cases_, peers_;
@@ -387,7 +395,7 @@ std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string
             fmt::format("no arm or sampler '{}' in {}: expected one of {}{}", printable(sampler, 64), experiment.file,
                 fmt::join(valid, ", "), did_you_mean(sampler, valid)));
     }
-    Cases cases(experiment, sampler, outside, plan.wo);
+    Cases cases(experiment, sampler, outside, plan.wo, plan.seconds);
     return plan.pixels > 0 ? cases.at_pixels(plan.pixels) : cases.on_grid(plan.full);
 }
 

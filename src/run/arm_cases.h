@@ -17,6 +17,7 @@ struct ArmCasesPlan {
     bool full = false;  // 16 w_o of the grid in place of 8
     Grid wo{};          // these w_o, in degrees from the normal and about it, on each material or at each pixel
     std::string flag = "--sampler";  // that named the sampler, for messages
+    double seconds = 0;  // of a combination: from then on w_o are not examined, see limited_in_time; 0: no limit
 };
 
 /// Returns the experiment with these arms and the arms that they combine alone.

@@ -90,6 +90,25 @@ TEST(ArmCases, UnknownNamesAndEmptyViewsAreRefused) {
     EXPECT_THROW((void)arm_cases(away, "cosine", {}, {}), InputError);
 }
 
+TEST(ArmCases, OfACombinationEndWithItsTime) {
+    Experiment e = scene();
+    ArmPlan ris;
+    ris.name = "ris", ris.combination.kind = CombinationKind::ris;
+    ris.combination.of = {"cosine", "uniform"}, ris.combination.candidates = 4096;
+    e.arms.push_back(ris);
+    ExternalSamplers outside;
+    add_combinations(e, outside);
+    const PrimarySample u(0.25, 0.5);
+    const auto draw = [&](const CheckCase& c) {
+        Draw draw;
+        c.adapter->sample(0, c.wo, {&u, 1}, {&draw, 1});
+    };
+    for (const CheckCase& c : arm_cases(e, "ris", outside, {.wo = {{30, 0}}, .seconds = 1e-9}))
+        if (c.baseline) EXPECT_NO_THROW(draw(c));
+        else EXPECT_THROW(draw(c), SamplerTimeout);
+    for (const CheckCase& c : arm_cases(e, "ris", outside, {.wo = {{30, 0}}})) EXPECT_NO_THROW(draw(c));
+}
+
 TEST(ArmCases, KeepTheArmsThatAnArmCombines) {
     Experiment e = scene();
     ArmPlan both;
