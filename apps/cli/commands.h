@@ -91,7 +91,6 @@ struct CompareFlags {
     std::vector<std::string> layers, spp, seconds, assertions;  // [NAME=]LAYER, [NAME=]N, [NAME=]S, a check
     std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
     bool crop = false, pair = false, schema = false, schema_as_json = false, quiet = false;
-    unsigned error_rates = 0, seed = 1;  // error_rates: number of calls; 0: not requested
     // Of a suite.
     std::string baseline, candidate;    // folders; "": the file's patterns
     std::string json, junit, markdown;  // files to write

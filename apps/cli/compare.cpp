@@ -135,20 +135,6 @@ void forbid_suite_flags(const CompareFlags& f) {
                 {flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
 }
 
-/// Prints a section of docs/error-rates.md.
-int error_rates(const CompareFlags& flags) {
-    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
-    const StopOnSignal stop(progress);
-    const std::string text = compare_error_rates(flags.error_rates, flags.seed, progress);
-    progress.clear();
-    print(fmt::format(
-        "\n## Error rates of compare\n\nWritten by crescent {}, commit {}. To reproduce:\n\n"
-        "```sh\ncrescent compare --error-rates {} --seed {}\n```\n\nNot run in the tests: needs minutes of every "
-        "core.\n\n{}",
-        crescent::version(), commit(), flags.error_rates, flags.seed, text));
-    return passed;
-}
-
 int compare_arms(const CompareFlags& flags, const std::string& out) {
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);
     Provenance provenance;
@@ -171,7 +157,6 @@ int compare(const CompareFlags& flags) {
     if (flags.schema)
         return print(flags.schema_as_json ? compare_schema_json() : compare_schema_text() + "\n" + suite_schema_text()),
                passed;
-    if (flags.error_rates) return error_rates(flags);
     const bool folders = !flags.baseline.empty() || !flags.candidate.empty();
     if (folders || (!flags.file.empty() && is_suite(flags.file))) return compare_suite(flags);
     forbid_suite_flags(flags);

@@ -95,9 +95,6 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(not_empty);
     add_suite_flags(*c, f);
     c->add_flag("--schema", f->schema, "every key of FILE");
-    auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on this many synthetic calls");
-    rates->type_name("CALLS")->check(whole_number(1, 100000));
-    c->add_option("--seed", f->seed, "of their noise; default 1")->type_name("SEED")->needs(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 

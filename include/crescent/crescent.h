@@ -38,7 +38,6 @@
 #include "compare/compare.h"
 #include "compare/renders.h"
 #include "compare/suite/suite.h"
-#include "compare/synthetic.h"
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
 #include "experiment/input_files.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compare/compare.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace crescent::inline comparison {
 namespace noise_test {

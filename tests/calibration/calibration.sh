@@ -2,8 +2,8 @@
 # A sample of 60 checks: right samplers are not reported wrong, large faults are found, an interrupted run continues,
 # and samplers work behind pipes. Error rates are measured separately and are in docs/error-rates.md.
 set -u
-calibration=$1
-[ -x "$calibration" ] || { echo "crescent_calibration is not built"; exit 77; }
+calibration=$1 compare_rates=$2
+[ -x "$calibration" ] && [ -x "$compare_rates" ] || { echo "the programs are not built"; exit 77; }
 command -v python3 >/dev/null || { echo "no python3 here"; exit 77; }
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -50,3 +50,6 @@ grep -q '| right | ' "$work/table.md" || die "the table has no right samplers"
 "$calibration" powr --cases 0:1 >"$work/printed" 2>&1
 [ $? -eq 2 ] && grep -q "power" "$work/printed" ||
     die "an unknown set is rejected without a suggestion: $(cat "$work/printed")"
+
+"$compare_rates" --calls 3 >"$work/rates.md" 2>&1 && grep -q "^### Power" "$work/rates.md" ||
+    die "no rates of compare: $(cat "$work/rates.md")"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "compare/plan.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace crescent::inline comparison {
 namespace bias_and_noise_test {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compare/compare.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace crescent::inline comparison {
 

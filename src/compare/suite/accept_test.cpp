@@ -15,7 +15,7 @@
 
 #include "base/files.h"
 #include "compare/suite/suite.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 #include "tests/support/scratch_folder.h"
 
 namespace crescent::inline comparison {

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "compare/suite/suite.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 #include "math/statistics.h"
 #include "tests/support/scratch_folder.h"
 

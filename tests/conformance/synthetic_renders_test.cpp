@@ -1,5 +1,5 @@
 // Moments of synthetic noise against their closed forms.
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "base/progress.h"
 #include "compare/compare.h"
 
 namespace crescent::inline comparison {
@@ -49,11 +48,5 @@ double event_size(const SyntheticNoise& noise);
 /// defaults.
 CompareResult compare_synthetic(
     const SyntheticScene& scene, std::uint32_t seed, const std::vector<CompareFlag>& more = {});
-
-// ---- The error rates of compare on renders with known true values: false alarms, power, and coverage of its
-// intervals; a section of docs/error-rates.md.
-
-/// Returns Markdown. `repeats`: calls for each kind of noise; equal arguments give equal text.
-std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline comparison

@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "compare/suite/suite.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
 
