@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -119,6 +120,15 @@ std::string rho_d_of(const Json& description, const std::string& material) {
     return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", rho[0], rho[1], rho[2]);
 }
 
+/// Comment lines, one for each entry, with the number of those beyond the hundredth.
+std::string list_of(const Json& entries, const std::function<std::string(const Json&)>& line) {
+    constexpr std::size_t most = 100;
+    std::string out;
+    for (std::size_t k = 0; k < std::min(entries.size(), most); ++k) out += "# " + line(entries[k]) + "\n";
+    if (entries.size() > most) out += fmt::format("# and {} more\n", entries.size() - most);
+    return out;
+}
+
 /// Packs an OpenEXR image, for a sky or a texture.
 int import_image(const ImportFlags& flags) {
     if (!flags.out.ends_with(".image")) refuse(flags.out, "expected a name that ends with .image (--out)");
@@ -161,14 +171,15 @@ int import(const ImportFlags& flags) {
     }
     if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);
     if (pack->duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", pack->duplicate);
-    for (const Json& what : imported.description.value("left_out", Json::array()))
-        out += fmt::format("# left out: {}\n", printable(what.get<std::string>(), longest_name));
+    out += list_of(imported.description.value("left_out", Json::array()),
+        [](const Json& what) { return "left out: " + printable(what.get<std::string>(), longest_name); });
     const Json materials = imported.description.value("materials", Json::array());
-    for (const Json& material : materials)
-        out += fmt::format("# material '{}': {} triangles{}{}\n", printable(material.value("name", ""), longest_name),
+    out += list_of(materials, [&](const Json& material) {
+        return fmt::format("material '{}': {} triangles{}{}", printable(material.value("name", ""), longest_name),
             material.value("triangles", 0),
             material.contains("texture") ? ", texture " + printable(material.value("texture", ""), longest_name) : "",
             materials.size() > 1 && flags.material.empty() ? " (alone: --material NAME)" : "");
+    });
     out += "\n" + camera_table(box);
     out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name_of(flags.out),
         std::filesystem::path(flags.out).filename().string(), rho_d_of(imported.description, flags.material));

@@ -5,6 +5,7 @@
 //   crescent-import FILE MEMORY_MIB SECONDS [MATERIAL]
 //
 // The mesh goes to descriptor 3, a description in JSON to standard output. Exit code 2: {"error": "..."}.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -44,7 +45,7 @@ float length_of(Vec3f v) { return std::sqrt(dot(v, v)); }
 /// Gathers the triangles of one material, or of all, with common vertices.
 class Gatherer {
 public:
-    Gatherer(const Model& model, const Placement& placement, const std::string& material)
+    Gatherer(const Model& model, const ModelPlacement& placement, const std::string& material)
         : model_(model), placement_(placement), wanted_(material) {
         for (const Part& part : model.parts) {
             if (!is_wanted(part)) continue;
@@ -103,16 +104,16 @@ private:
     }
 
     const Model& model_;
-    Placement placement_;
+    ModelPlacement placement_;
     std::string wanted_;
     bool has_normals_ = false, has_uv_ = false;
     std::unordered_map<Corner, std::uint32_t, CornerHash> known_;
 };
 
-/// JSON has no numbers that are not finite: 0 in their place.
+/// JSON has no numbers that are not finite: from 0 to 1e6, and 0 for NaN.
 Json numbers_of(Vec3f v) {
     Json out = Json::array();
-    for (const float x : {v.x, v.y, v.z}) out.push_back(std::isfinite(x) ? x : 0);
+    for (const float x : {v.x, v.y, v.z}) out.push_back(x > 0 ? std::min(x, 1e6f) : 0);
     return out;
 }
 
@@ -149,7 +150,7 @@ Model read_model(const std::filesystem::path& file) {
 
 Json import(const std::string& file, const std::string& material) {
     const Model model = read_model(file);
-    const Placement placement = placement_of(model);
+    const ModelPlacement placement = placement_of(model);
     const Gatherer gathered(model, placement, material);
     Json out = {{"materials", materials_of(model)}, {"left_out", model.left_out}};
     if (gathered.result.triangles.empty())

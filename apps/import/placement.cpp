@@ -6,7 +6,7 @@
 
 namespace crescent::importer {
 
-Placement placement_of(const Model& model) {
+ModelPlacement placement_of(const Model& model) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
     for (const Part& part : model.parts)

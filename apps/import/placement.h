@@ -6,7 +6,7 @@
 namespace crescent::importer {
 
 /// x' = by (x - from).
-struct Placement {
+struct ModelPlacement {
     Vec3d from{};
     double by = 1;
 
@@ -17,6 +17,6 @@ struct Placement {
 /// Moves a model to the origin, and scales it by a power of two to a size of 1 to 2, if an experiment could not place
 /// it as it is: its coordinates are above 1e5, its size is below 1e-3, or its coordinates are above 1e4 times its size.
 /// The same for every material of a model, so that its parts fit.
-Placement placement_of(const Model& model);
+ModelPlacement placement_of(const Model& model);
 
 }  // namespace crescent::importer

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "compare/renders.h"
-#include "compare/synthetic.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace crescent::inline comparison {
 namespace outliers_test {

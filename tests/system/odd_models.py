@@ -98,7 +98,22 @@ for form in ("ascii", "binary_little_endian", "binary_big_endian"):
 concave = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (2, 1, 0), (0, 4, 0)]
 ply("concave.ply", "ascii", ["vertex", "face"], [point, face], {"vertex": concave, "face": [[(0, 1, 2, 3, 4)]]})
 reads("concave.ply", 3)
+# A square with a square hole, joined by a bridge: the hole stays open.
+keyhole = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (1, 1, 0), (1, 3, 0), (3, 3, 0), (3, 1, 0)]
+ply("keyhole.ply", "ascii", ["vertex", "face"], [point, face], {"vertex": keyhole, "face": [[(0, 1, 2, 3, 0, 4, 5, 6, 7, 4)]]})
+reads("keyhole.ply", 8)
+data = pathlib.Path("x.mesh").read_bytes()
+spots = [struct.unpack_from("<3f", data, 40 + 12 * k) for k in range(8)]
+area = 0
+for k in range(8):
+    (ax, ay, _), (bx, by, _), (cx, cy, _) = (spots[i] for i in struct.unpack_from("<3I", data, 40 + 12 * 8 + 12 * k))
+    area += ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
+assert area == 12, f"keyhole.ply: the area {area}, expected 12"
 text = pathlib.Path("strip.ply").read_bytes()
+pathlib.Path("more.ply").write_bytes(text + b"1 2 3")
+reads("more.ply", 4, words=("bytes after the last element",))
+pathlib.Path("twice.ply").write_bytes(text.replace(b"element tristrips", b"element vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement tristrips"))
+refuses("twice.ply", "second")
 pathlib.Path("cut.ply").write_bytes(text[:-5])
 refuses("cut.ply", "tristrips")
 for old, new, words in ((b"vertex 6", b"vertex 600000000000", "vertex"), (b"int int", b"float int", "line 9"), (b"format", b"frmat", "line 2"), (b"property float z\n", b"", "x, y and z")):
@@ -118,12 +133,21 @@ for name, text in {"bom": "\ufeff" + cube, "cr": cube.replace("\n", "\r"), "crlf
     pathlib.Path(f"{name}.obj").write_bytes(text.encode())
     reads(f"{name}.obj", 12, (0, 0, 0), (1, 1, 1))
 for name, text, words in (("beyond", cube + "f 1 2 9\n", "line 21"), ("above", "f -1 -2 -3\n" + cube, "line 1"), ("zero", cube + "f 0 1 2\n", "line 21"),
+                          ("few", cube.replace("v 0 0 1\n", "v 0 9\n"), "line 2"),
                           ("polygon", "".join(f"v {k} {k * k % 7} 0\n" for k in range(wheel)) + "f " + " ".join(map(str, range(1, wheel + 1))) + "\n", f"line {wheel + 1}")):
     pathlib.Path(f"{name}.obj").write_text(text)
     refuses(f"{name}.obj", words)
 for size in (1e-30, 1e-12, 1e-4, 1e7, 1e30):
     pathlib.Path("sized.obj").write_text("".join(f"v {size * x} {size * y} {size * z}\n" for x, y, z in corners) + cube[len(vertices):])
     reads("sized.obj", 12, words=() if 1e-3 <= size <= 1e5 else ("moved by",))
+for name, text in {"indented": cube.replace("f ", "  f "), "path": "# C:\\models\\\n" + cube, "remark": cube.replace("\n", " # 4\n")}.items():
+    pathlib.Path(f"{name}.obj").write_text(text)
+    reads(f"{name}.obj", 12, (0, 0, 0), (1, 1, 1))
+pathlib.Path("nowhere.obj").write_text("mtllib nowhere.mtl\n" + cube + "l 1 2\n")
+reads("nowhere.obj", 12, words=("left out: the materials of 'nowhere.mtl'", "left out: 1 points and lines"))
+pathlib.Path("infinite.mtl").write_text("newmtl a\nKd nan 1e39 0\n")
+pathlib.Path("infinite.obj").write_text("mtllib infinite.mtl\nusemtl a\n" + cube)
+reads("infinite.obj", 12)
 os.mkfifo("pipe.obj")
 refuses("pipe.obj")
 os.mkfifo("pipe.mtl")
@@ -199,6 +223,12 @@ reads("quantised.gltf", 12, (0, 0, 0), (8000 / 32767,) * 3)
 far = struct.pack("<24f", *(3.8e6 + x for p in corners for x in p))
 gltf("earth.gltf", positions=far)
 reads("earth.gltf", 12, words=("moved by",))
+# A tenth of a metre, as doubles of the node place it, four million metres away.
+gltf("fine.gltf", put(["nodes", 0], {"mesh": 0, "translation": [3.8e6, 0, 0], "scale": [0.1] * 3}))
+reads("fine.gltf", 12, (-0.05,) * 3, (0.05,) * 3, words=("moved by",))
+colour = {"baseColorFactor": [1e300, 0, 0, 1]}
+gltf("material.gltf", lambda root: (root.update(materials=[{"name": "a\n[sky]", "pbrMetallicRoughness": colour}]), root["meshes"][0]["primitives"][0].update(material=0)))
+reads("material.gltf", 12, words=("material 'a\\x0a[sky]'",))
 gltf("lit.gltf", put(["extensionsUsed"], ["KHR_lights_punctual"]))
 reads("lit.gltf", 12, words=("left out: the extension KHR_lights_punctual",))
 
@@ -211,6 +241,7 @@ gltf("sparse.gltf", sparse)
 reads("sparse.gltf", 12, (0, 0, 0), (1, 1, 1))
 
 for name, change, words in (
+    ("names", put(["extensionsRequired"], "ACME_magic"), ("extensionsRequired",)),
     ("unknown", put(["extensionsRequired"], ["ACME_magic"]), ("ACME_magic",)),
     ("draco", put(["extensionsRequired"], ["KHR_draco_mesh_compression"]), ("KHR_draco_mesh_compression",)),
     ("meshopt", put(["extensionsRequired"], ["EXT_meshopt_compression"]), ("EXT_meshopt_compression",)),
