@@ -61,7 +61,7 @@ std::string text(const Json& of, const char* key) {
     return found != of.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-/// The characters that %XX stand for (RFC 3986).
+/// Replaces %XX by the character with this code (RFC 3986).
 std::string percent_decoded(std::string_view uri) {
     const auto digit = [](char c) {
         return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1;

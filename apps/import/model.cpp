@@ -1,3 +1,4 @@
+// Files of a model and of what it names: regular ones, in its folder.
 #include "model.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The box is that of the triangles, in double precision: vertices without a triangle do not count.
 #include "placement.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Ears are tested in the plane along the longest axis of the area vector, so that nothing is divided.
 #include "polygon.h"
 
 #include <cmath>

@@ -71,7 +71,7 @@ process.stdin.setEncoding("utf8").on("data", (text) => {
 `;
 }
 
-/** The code as comments, for who writes it anew. */
+/** The code as comments, for who writes it in another language. */
 const commented = (code: string, mark: string): string => code.trimEnd().split("\n").map((line) => `${mark} ${line}`.trimEnd()).join("\n");
 
 const cpp = (code: string): string => `// sampler.h: the frame of a sampler, to be filled in. Check it by crescent/gtest.h or crescent/check.h:

@@ -1,6 +1,7 @@
 // crescent_compare_rates [--calls 100] [--seed S]: false alarms, power, and coverage of the intervals of `crescent
-// compare --arm`. Prints a section of docs/error-rates.md. Each kind of noise is compared `--calls` times, each call with
-// its own seed; the true value of a metric is its mean over all calls of the kind. Rates have exact binomial intervals.
+// compare --arm`. Prints a section of docs/error-rates.md. Each kind of noise is compared `--calls` times, each call
+// with its own seed; the true value of a metric is its mean over all calls of the kind. Rates have exact binomial
+// intervals.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -333,9 +334,8 @@ int main(int argc, char** argv) {
     app.add_option("--calls", calls, "of each kind of noise")->capture_default_str();
     app.add_option("--seed", seed, "of their noise")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    Progress progress(Progress::fitting());
-    const std::string text = error_rates(calls, seed, progress);
-    progress.clear();
+    ProgressMonitor monitor;
+    const std::string text = error_rates(calls, seed, monitor);
     fmt::print(
         "\n## Error rates of compare\n\nTo reproduce:\n\n"
         "```sh\nninja -C build crescent_compare_rates && build/tests/calibration/crescent_compare_rates --calls {} "

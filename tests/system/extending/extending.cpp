@@ -26,7 +26,7 @@ using namespace crescent;
 
 namespace {
 
-/// A glossy ball over a floor under a lamp, with the arm `it` and these tables.
+/// A glossy ball over a floor under a disk light, with the arm `it` and these tables.
 Experiment scene_with(const std::string& tables, const std::vector<std::string>& settings) {
     static const std::string lamp =
         "[disks.lamp]\ncenter = [-1.5, 2.5, 1]\nnormal = [0, -1, 0]\nradius = 0.8\nradiance = [4, 4, 4]\n"
