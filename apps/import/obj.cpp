@@ -1,4 +1,4 @@
-// Lines are read as assimp reads them: what it would skip or misread without a word is mended or refused here.
+// Lines are read as assimp reads them: what it would skip or misread without a word is corrected or refused here.
 #include "obj.h"
 
 #include <algorithm>

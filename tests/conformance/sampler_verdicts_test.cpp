@@ -64,7 +64,7 @@ TEST(Programs, TooSlowOnesAreInconclusive) {
     PipeLimits limits;
     limits.total_seconds = 0.5;
     const std::string slow =
-        "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
+        "read hello; echo hello 2 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
     const CheckResult j = check_quickly(make_user_cases(start_pipe(slow, limits), false));
     EXPECT_EQ(j.state, State::inconclusive);
     EXPECT_EQ(j.left_out.size(), 8u);
