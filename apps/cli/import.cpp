@@ -122,10 +122,10 @@ std::string rho_d_of(const Json& description, const std::string& material) {
 
 /// Comment lines, one for each entry, with the number of those beyond the hundredth.
 std::string list_of(const Json& entries, const std::function<std::string(const Json&)>& line) {
-    constexpr std::size_t most = 100;
+    constexpr std::size_t most_lines = 100;
     std::string out;
-    for (std::size_t k = 0; k < std::min(entries.size(), most); ++k) out += "# " + line(entries[k]) + "\n";
-    if (entries.size() > most) out += fmt::format("# and {} more\n", entries.size() - most);
+    for (std::size_t k = 0; k < std::min(entries.size(), most_lines); ++k) out += "# " + line(entries[k]) + "\n";
+    if (entries.size() > most_lines) out += fmt::format("# and {} more\n", entries.size() - most_lines);
     return out;
 }
 
@@ -163,10 +163,10 @@ int import(const ImportFlags& flags) {
     out += fmt::format("# normals: {}; texture coordinates: {}\n", mesh.normals.empty() ? "of the triangles" : "smooth",
         mesh.uv.empty() ? "none" : "one set");
     if (imported.description.contains("moved")) {
-        const Json& by = imported.description["moved"];
+        const Json& moved = imported.description["moved"];
         const double scaled = imported.description["scaled"].get<double>();
         out += fmt::format("# moved by [{:.9g}, {:.9g}, {:.9g}]{}: an experiment holds sizes of 1e-3 to 1e5 m\n",
-            by[0].get<double>(), by[1].get<double>(), by[2].get<double>(),
+            moved[0].get<double>(), moved[1].get<double>(), moved[2].get<double>(),
             scaled == 1 ? "" : fmt::format(", then scaled by {:.9g}", scaled));
     }
     if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);

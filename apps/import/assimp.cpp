@@ -1,5 +1,4 @@
 // OBJ and STL by assimp. The files that a model names are opened in its folder and below it only.
-#include <cctype>
 #include <cstring>
 
 #include <assimp/DefaultIOSystem.h>
@@ -23,9 +22,7 @@ class ModelFiles : public Assimp::DefaultIOSystem {
 public:
     explicit ModelFiles(std::filesystem::path model)
         : model_(std::move(model)), folder_(std::filesystem::absolute(model_).parent_path()), text_(bytes_of(model_)) {
-        std::string extension = model_.extension().string();
-        for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        if (extension != ".obj") return;
+        if (lower_extension(model_) != ".obj") return;
         ObjText checked = checked_obj(text_);
         text_ = std::move(checked.text);
         left_out = std::move(checked.left_out);

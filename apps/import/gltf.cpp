@@ -21,10 +21,10 @@ namespace {
 using Json = nlohmann::json;
 
 /// A place in the file: "meshes[0].primitives[1]".
-std::string in(const std::string& place, std::string_view key) {
+std::string member_place(const std::string& place, std::string_view key) {
     return place.empty() ? std::string(key) : fmt::format("{}.{}", place, key);
 }
-std::string at(std::string_view list, std::size_t index) { return fmt::format("{}[{}]", list, index); }
+std::string element_place(std::string_view list, std::size_t index) { return fmt::format("{}[{}]", list, index); }
 
 [[noreturn]] void fail(const std::string& place, const std::string& message) {
     throw ModelError(fmt::format("{}: {}", place, message));
@@ -33,7 +33,7 @@ std::string at(std::string_view list, std::size_t index) { return fmt::format("{
 std::optional<std::size_t> whole(const Json& of, const char* key, const std::string& place) {
     const auto found = of.find(key);
     if (found == of.end()) return std::nullopt;
-    if (!found->is_number_unsigned()) fail(in(place, key), "expected a whole number");
+    if (!found->is_number_unsigned()) fail(member_place(place, key), "expected a whole number");
     return found->get<std::size_t>();
 }
 
@@ -48,9 +48,9 @@ std::optional<std::array<double, n>> numbers(const Json& of, const char* key, co
     const auto found = of.find(key);
     if (found == of.end()) return std::nullopt;
     std::array<double, n> out{};
-    if (!found->is_array() || found->size() != n) fail(in(place, key), fmt::format("expected {} numbers", n));
+    if (!found->is_array() || found->size() != n) fail(member_place(place, key), fmt::format("expected {} numbers", n));
     for (std::size_t k = 0; k < n; ++k) {
-        if (!(*found)[k].is_number()) fail(in(place, key), fmt::format("expected {} numbers", n));
+        if (!(*found)[k].is_number()) fail(member_place(place, key), fmt::format("expected {} numbers", n));
         out[k] = (*found)[k].template get<double>();
     }
     return out;
@@ -94,10 +94,10 @@ std::optional<std::string> base64_decoded(std::string_view text) {
     return out;
 }
 
-std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+std::uint32_t number_at(std::string_view bytes, std::size_t begin) {
     std::uint32_t out = 0;
     for (std::size_t k = 0; k < 4; ++k)
-        out |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << (8 * k);
+        out |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[begin + k])) << (8 * k);
     return out;
 }
 
@@ -219,7 +219,7 @@ private:
         if (index >= size_of(list))
             fail(from, fmt::format("expected an index below {}, the number of {}, not {}", size_of(list), list, index));
         const Json& out = root_[list][index];
-        if (!out.is_object()) fail(at(list, index), "expected an object");
+        if (!out.is_object()) fail(element_place(list, index), "expected an object");
         return out;
     }
 
@@ -252,27 +252,28 @@ private:
     }
 
     void add_material(std::size_t index) {
-        const std::string place = at("materials", index);
+        const std::string place = element_place("materials", index);
         const Json& from = element("materials", index, place);
         Material to{text(from, "name")};
         if (const auto emission = numbers<3>(from, "emissiveFactor", place))
             to.emission = narrow({(*emission)[0], (*emission)[1], (*emission)[2]});
         to.rho_d = {1, 1, 1};
         if (const auto found = from.find("pbrMetallicRoughness"); found != from.end() && found->is_object()) {
-            const std::string inner = in(place, "pbrMetallicRoughness");
+            const std::string inner = member_place(place, "pbrMetallicRoughness");
             if (const auto colour = numbers<4>(*found, "baseColorFactor", inner))
                 to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
             if (found->contains("baseColorTexture") && (*found)["baseColorTexture"].is_object())
-                to.texture = texture((*found)["baseColorTexture"], in(inner, "baseColorTexture"));
+                to.texture = texture((*found)["baseColorTexture"], member_place(inner, "baseColorTexture"));
         }
         model.materials.push_back(std::move(to));
     }
     std::string texture(const Json& from, const std::string& place) const {
         const std::size_t index = needed(from, "index", place);
-        const Json& texture = element("textures", index, in(place, "index"));
-        const std::optional<std::size_t> source = whole(texture, "source", at("textures", index));
+        const Json& texture = element("textures", index, member_place(place, "index"));
+        const std::optional<std::size_t> source = whole(texture, "source", element_place("textures", index));
         if (!source) return "";
-        const std::string uri = text(element("images", *source, in(at("textures", index), "source")), "uri");
+        const std::string uri =
+            text(element("images", *source, member_place(element_place("textures", index), "source")), "uri");
         return uri.empty() || uri.starts_with("data:") ? "within the model" : percent_decoded(uri);
     }
 
@@ -280,7 +281,7 @@ private:
 
     std::string_view buffer(std::size_t index, const std::string& from) {
         const Json& one = element("buffers", index, from);
-        const std::string place = at("buffers", index);
+        const std::string place = element_place("buffers", index);
         const std::size_t size = needed(one, "byteLength", place);
         const auto [known, is_new] = buffers_.try_emplace(index);
         if (is_new) known->second = bytes_of_buffer(one, index, place);
@@ -297,21 +298,22 @@ private:
         if (uri.starts_with("data:")) {
             const std::size_t comma = uri.find(";base64,");
             auto out = comma == uri.npos ? std::nullopt : base64_decoded(std::string_view(uri).substr(comma + 8));
-            if (!out) fail(in(place, "uri"), "expected base64");
+            if (!out) fail(member_place(place, "uri"), "expected base64");
             return std::move(*out);
         }
         const std::filesystem::path path = folder_ / percent_decoded(uri);
-        if (!is_inside(folder_, path)) fail(in(place, "uri"), "expected a file in the folder of the model or below it");
+        if (!is_inside(folder_, path))
+            fail(member_place(place, "uri"), "expected a file in the folder of the model or below it");
         try {
             return bytes_of(path);
-        } catch (const ModelError& error) { fail(in(place, "uri"), error.what()); }
+        } catch (const ModelError& error) { fail(member_place(place, "uri"), error.what()); }
     }
 
     /// The bytes of a view from an offset on, and its stride: 0 for none.
     std::pair<std::string_view, std::size_t> view(std::size_t index, std::size_t offset, const std::string& from) {
         const Json& one = element("bufferViews", index, from);
-        const std::string place = at("bufferViews", index);
-        const std::string_view bytes = buffer(needed(one, "buffer", place), in(place, "buffer"));
+        const std::string place = element_place("bufferViews", index);
+        const std::string_view bytes = buffer(needed(one, "buffer", place), member_place(place, "buffer"));
         const std::size_t begin = whole(one, "byteOffset", place).value_or(0), size = needed(one, "byteLength", place);
         if (begin > bytes.size() || size > bytes.size() - begin)
             fail(place, fmt::format("{} bytes from {} on are beyond the {} of its buffer", size, begin, bytes.size()));
@@ -322,18 +324,19 @@ private:
     Array array(std::size_t index, const std::string& from, std::string_view expected) {
         const Json& one = element("accessors", index, from);
         Array out;
-        out.place = at("accessors", index);
+        out.place = element_place("accessors", index);
         out.type = needed(one, "componentType", out.place);
         const std::size_t size = bytes_of_type(out.type, out.place);
         if (text(one, "type") != expected)
-            fail(in(out.place, "type"), fmt::format("expected {} for {}, not '{}'", expected, from, text(one, "type")));
+            fail(member_place(out.place, "type"),
+                fmt::format("expected {} for {}, not '{}'", expected, from, text(one, "type")));
         out.components = expected == "VEC3" ? 3 : expected == "VEC2" ? 2 : 1;
         out.count = needed(one, "count", out.place);
         out.normalized = one.value("normalized", Json(false)) == Json(true);
         out.stride = out.components * size;
         if (const auto place = whole(one, "bufferView", out.place)) {
             const auto [bytes, stride] =
-                view(*place, whole(one, "byteOffset", out.place).value_or(0), in(out.place, "bufferView"));
+                view(*place, whole(one, "byteOffset", out.place).value_or(0), member_place(out.place, "bufferView"));
             if (stride > 0) out.stride = stride;
             out.bytes = bytes;
             need_bytes(out.place, bytes.size(), out.count, out.stride, out.components * size);
@@ -351,8 +354,8 @@ private:
 
     /// All numbers of an array, row by row.
     std::vector<double> values_of(const Array& from) {
-        constexpr std::size_t most = std::size_t{1} << 31;
-        if (from.count > most) fail(from.place, "expected at most 2^31 elements");
+        constexpr std::size_t most_elements = std::size_t{1} << 31;
+        if (from.count > most_elements) fail(from.place, "expected at most 2^31 elements");
         std::vector<double> out(from.count * from.components);
         const std::size_t size = bytes_of_type(from.type, from.place);
         if (!from.bytes.empty())
@@ -363,27 +366,27 @@ private:
         return out;
     }
     void add_sparse(const Array& from, std::vector<double>& to) {
-        const std::string place = in(from.place, "sparse");
+        const std::string place = member_place(from.place, "sparse");
         const Json& sparse = *from.sparse;
         if (!sparse.is_object() || !sparse.contains("indices") || !sparse.contains("values") ||
             !sparse["indices"].is_object() || !sparse["values"].is_object())
             fail(place, "expected 'count', 'indices' and 'values'");
         const std::size_t count = needed(sparse, "count", place);
         const auto part = [&](const char* key, std::size_t bytes) {
-            const std::string inner = in(place, key);
+            const std::string inner = member_place(place, key);
             const std::string_view out = view(
                 needed(sparse[key], "bufferView", inner), whole(sparse[key], "byteOffset", inner).value_or(0), inner)
                                              .first;
             need_bytes(inner, out.size(), count, bytes, bytes);
             return out;
         };
-        const std::size_t type = needed(sparse["indices"], "componentType", in(place, "indices"));
+        const std::size_t type = needed(sparse["indices"], "componentType", member_place(place, "indices"));
         const std::size_t index_size = bytes_of_type(type, place), size = bytes_of_type(from.type, place);
         const std::string_view indices = part("indices", index_size), values = part("values", from.components * size);
         for (std::size_t k = 0; k < count; ++k) {
             const double row = value_at(indices.data() + k * index_size, type, false);
             if (!(row >= 0 && row < static_cast<double>(from.count)))
-                fail(in(place, "indices"), fmt::format("{} is beyond the {} elements", row, from.count));
+                fail(member_place(place, "indices"), fmt::format("{} is beyond the {} elements", row, from.count));
             for (std::size_t c = 0; c < from.components; ++c)
                 to[static_cast<std::size_t>(row) * from.components + c] =
                     value_at(values.data() + (k * from.components + c) * size, from.type, from.normalized);
@@ -413,7 +416,7 @@ private:
     std::vector<std::size_t> children(const Json& of, const char* key, const std::string& place) const {
         std::vector<std::size_t> out;
         if (!of.contains(key)) return out;
-        const std::string list = in(place, key);
+        const std::string list = member_place(place, key);
         if (!of[key].is_array()) fail(list, "expected an array");
         for (const Json& one : of[key]) {
             if (!one.is_number_unsigned()) fail(list, "expected whole numbers");
@@ -431,13 +434,14 @@ private:
         std::vector<Open> open;
         if (size_of("scenes") > 0) {
             const std::size_t index = whole(root_, "scene", "").value_or(0);
-            const std::string place = at("scenes", index);
+            const std::string place = element_place("scenes", index);
             for (const std::size_t node : children(element("scenes", index, "scene"), "nodes", place))
-                open.push_back({node, {}, in(place, "nodes")});
+                open.push_back({node, {}, member_place(place, "nodes")});
         } else {
             std::vector<bool> has_parent(size_of("nodes"));
             for (std::size_t k = 0; k < has_parent.size(); ++k)
-                for (const std::size_t child : children(element("nodes", k, "nodes"), "children", at("nodes", k)))
+                for (const std::size_t child :
+                    children(element("nodes", k, "nodes"), "children", element_place("nodes", k)))
                     if (child < has_parent.size()) has_parent[child] = true;
             for (std::size_t k = 0; k < has_parent.size(); ++k)
                 if (!has_parent[k]) open.push_back({k, {}, "nodes"});
@@ -448,23 +452,23 @@ private:
             const Open next = std::move(open.back());
             open.pop_back();
             const Json& node = element("nodes", next.node, next.from);
-            const std::string place = at("nodes", next.node);
+            const std::string place = element_place("nodes", next.node);
             if (visited[next.node]) fail(next.from, fmt::format("the node {} is placed twice", next.node));
             visited[next.node] = true;
             const Transform transform = next.parent.then(transform_of(node, place));
-            if (const auto mesh = whole(node, "mesh", place)) add_mesh(*mesh, transform, in(place, "mesh"));
+            if (const auto mesh = whole(node, "mesh", place)) add_mesh(*mesh, transform, member_place(place, "mesh"));
             std::vector<std::size_t> inner = children(node, "children", place);
             std::ranges::reverse(inner);
-            for (const std::size_t child : inner) open.push_back({child, transform, in(place, "children")});
+            for (const std::size_t child : inner) open.push_back({child, transform, member_place(place, "children")});
         }
     }
 
     void add_mesh(std::size_t index, const Transform& transform, const std::string& from) {
         const Json& mesh = element("meshes", index, from);
-        const std::string place = at("meshes", index);
+        const std::string place = element_place("meshes", index);
         if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) fail(place, "expected 'primitives'");
         for (std::size_t k = 0; k < mesh["primitives"].size(); ++k)
-            add_primitive(mesh["primitives"][k], transform, at(in(place, "primitives"), k));
+            add_primitive(mesh["primitives"][k], transform, element_place(member_place(place, "primitives"), k));
     }
 
     void add_primitive(const Json& from, const Transform& transform, const std::string& place) {
@@ -472,7 +476,7 @@ private:
         if (!from.is_object() || !from.contains("attributes") || !from["attributes"].is_object())
             fail(place, "expected 'attributes'");
         const std::size_t mode = whole(from, "mode", place).value_or(list);
-        if (mode > fan) fail(in(place, "mode"), fmt::format("expected a number from 0 to 6, not {}", mode));
+        if (mode > fan) fail(member_place(place, "mode"), fmt::format("expected a number from 0 to 6, not {}", mode));
         const Json& attributes = from["attributes"];
         if (mode < list || !attributes.contains("POSITION")) {
             ++points_and_lines_;
@@ -483,7 +487,7 @@ private:
             if (name != "POSITION" && name != "NORMAL" && name != "TEXCOORD_0") attributes_.insert(name);
         Part part;
         part.material = material(from, place);
-        const std::size_t count = add_vertices(attributes, transform, in(place, "attributes"), part);
+        const std::size_t count = add_vertices(attributes, transform, member_place(place, "attributes"), part);
         const std::vector<std::uint32_t> corners = corners_of(from, place, count);
         if (mode == list && corners.size() % 3 != 0)
             fail(place, fmt::format("expected three indices for each triangle, found {}", corners.size()));
@@ -500,7 +504,7 @@ private:
 
     std::size_t material(const Json& primitive, const std::string& place) {
         const std::optional<std::size_t> index = whole(primitive, "material", place);
-        if (index) return (void)element("materials", *index, in(place, "material")), *index;
+        if (index) return (void)element("materials", *index, member_place(place, "material")), *index;
         if (model.materials.size() == size_of("materials")) model.materials.push_back({});
         return size_of("materials");
     }
@@ -510,9 +514,9 @@ private:
         const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
             const std::optional<std::size_t> index = whole(attributes, name, place);
             if (!index) return std::nullopt;
-            const Array array = this->array(*index, in(place, name), type);
+            const Array array = this->array(*index, member_place(place, name), type);
             if (!to.positions.empty() && array.count != to.positions.size())
-                fail(in(place, name),
+                fail(member_place(place, name),
                     fmt::format("expected {} elements, as POSITION has, not {}", to.positions.size(), array.count));
             return values_of(array);
         };
@@ -546,11 +550,11 @@ private:
             for (std::size_t k = 0; k < vertices; ++k) out.push_back(static_cast<std::uint32_t>(k));
             return out;
         }
-        const Array array = this->array(*index, in(place, "indices"), "SCALAR");
+        const Array array = this->array(*index, member_place(place, "indices"), "SCALAR");
         const std::vector<double> values = values_of(array);
         for (std::size_t k = 0; k < values.size(); ++k) {
             if (!(values[k] >= 0 && values[k] < static_cast<double>(vertices)) || values[k] != std::floor(values[k]))
-                fail(in(place, "indices"),
+                fail(member_place(place, "indices"),
                     fmt::format("number {} of {} is {}, beyond the {} vertices", k, array.place, values[k], vertices));
             out.push_back(static_cast<std::uint32_t>(values[k]));
         }

@@ -142,8 +142,7 @@ void write_all(int to, std::string_view bytes) {
 }
 
 Model read_model(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower_extension(file);
     if (extension == ".ply") return read_ply(file);
     return extension == ".gltf" || extension == ".glb" ? read_gltf(file) : read_by_assimp(file);
 }

@@ -2,6 +2,7 @@
 #include "model.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 
 namespace crescent::importer {
@@ -15,6 +16,12 @@ std::string bytes_of(const fs::path& file) {
     std::string out(fs::file_size(file), '\0');
     in.read(out.data(), static_cast<std::streamsize>(out.size()));
     if (!in) throw ModelError(file.string() + ": cannot be read");
+    return out;
+}
+
+std::string lower_extension(const fs::path& file) {
+    std::string out = file.extension().string();
+    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return out;
 }
 

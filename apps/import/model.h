@@ -45,6 +45,9 @@ inline Vec3f narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<floa
 /// Returns the bytes of a regular file. Throws ModelError.
 std::string bytes_of(const std::filesystem::path& file);
 
+/// Returns the extension of a name in lower case, ".obj".
+std::string lower_extension(const std::filesystem::path& file);
+
 /// Whether the file is in this folder or below it, links resolved.
 bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file);
 

@@ -49,10 +49,10 @@ struct Header {
 
 std::vector<std::string_view> words_of(std::string_view line) {
     std::vector<std::string_view> out;
-    for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != line.npos;) {
-        const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-        out.push_back(line.substr(at, end - at));
-        at = end;
+    for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t", begin)) != line.npos;) {
+        const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
+        out.push_back(line.substr(begin, end - begin));
+        begin = end;
     }
     return out;
 }
@@ -221,8 +221,8 @@ private:
         };
         if (!property.count_type) return {number(*property.type)};
         const double count = number(*property.count_type);
-        constexpr double most = 4294967296;
-        if (!(count >= 0 && count < most) || count != std::floor(count) ||
+        constexpr double most_values = 4294967296;
+        if (!(count >= 0 && count < most_values) || count != std::floor(count) ||
             !in_.has(static_cast<std::size_t>(count), *property.type))
             throw ModelError(fmt::format("{} {}: a list '{}' of {} numbers, expected a whole number that the file has",
                 element.name, row, property.name, count));
