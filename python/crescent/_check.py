@@ -15,6 +15,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._context import on_one_surface
+from ._domains import charted
 from ._files import names_a_file, sampler_at
 from ._result import CheckResult
 from ._libraries import library_named, library_wanted
@@ -118,6 +119,9 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     grid = _grid(wo_deg, s.wo)
     try:
         s = _of_library(s)
+        chart = None
+        if not s.of_directions():
+            s, chart = charted(s)
         channels, weighs, delta = _look(s)
     except IndexError as e:
         e.add_note(f"{s.title()} was given {s.u} random numbers a sample: u=K says that it takes K of them")
@@ -144,6 +148,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         importance=s.importance,
         full=full,
         grid=grid,
+        domain=chart,
     )
 
 

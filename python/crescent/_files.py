@@ -17,6 +17,10 @@ from . import _crescent
 from ._sampler import Sampler
 
 
+#: Names in a file or class that state what its sampler is, as the fields of a Sampler do.
+_STATED = ("domain", "numbers", "own_random")
+
+
 def names_a_file(text: str) -> bool:
     """Returns whether it is "FILE.py", "FILE.py:NAME" or "module:NAME"."""
     return ":" in text or text.endswith(".py")
@@ -61,6 +65,7 @@ def sampler_at(where: str, root: Path | None = None) -> Sampler:
     found = found() if isinstance(found, type) else found
     if not hasattr(found, "sample"):
         raise ValueError(f"{where} has no sample(wo, u)")
+    known = {key: getattr(found, key) for key in _STATED if hasattr(found, key)}
     return Sampler(
-        found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=inside or Path(name).stem
+        found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=inside or Path(name).stem, **known
     )

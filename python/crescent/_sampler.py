@@ -10,14 +10,15 @@ from typing import Any, Literal, TypedDict
 
 import numpy as np
 
+from . import _crescent
 from ._arrays import Array
 
-Domain = Literal["sphere", "hemisphere"]
 Asked = Literal["upper", "both", "none"]
 Use = Literal["s", "alpha", "rho_d", "rho_s", "side", "eta", "lights"]
 
 
-_DOMAINS = ("sphere", "hemisphere")
+#: Domains of directions; docs/domains.md has the others.
+DIRECTIONS = ("sphere", "hemisphere")
 _SIDES = ("upper", "both", "none")
 _USES = ("s", "alpha", "rho_d", "rho_s", "side", "eta", "lights")
 
@@ -68,9 +69,15 @@ class Sampler:
     f: Callable[..., Any] | None = None  #: f(wo[n,3], wi[n,3]) -> [n] or [n,3]
     name: str = ""
     u: int = 2  #: random numbers per sample, 1 to 8
+    numbers: int | None = None  #: another name of u
     u_bits: int = 24  #: their resolution in a check: 24 bits, as in a run, or 53
-    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 below the surface, for any result of the callables there
-    wo: Asked = "upper"  #: the w_o that it supports; "none": sample(u) and pdf(wi), as for an environment light
+    #: what it draws: directions of the "sphere" or "hemisphere", where pdf and f are 0 below the surface for any result
+    #: of the callables there; or points, "disk", "square", "cube", "triangle", "line:A,B", "set:N" or a product such as
+    #: "sphere x line:0,inf": sample(u) -> (x, pdf[, weight]), pdf(x), f(x)
+    domain: str = "sphere"
+    #: the w_o that it supports; "none": sample(u) and pdf(wi), as for an environment light. None: "upper", and "none" for
+    #: points
+    wo: Asked | None = None
     channels: int | None = None  #: 1 or 3; None: the number of f and the weights
     delta: bool | None = None  #: some draws are delta parts; None: if sample returns four parts
     eta: float | Sequence[float] | None = None  #: index of refraction below over above
@@ -101,8 +108,12 @@ class Sampler:
                 raise TypeError(f"{what} is {type(call).__name__}: expected a callable {what}({taken})")
         if not isinstance(self.name, str):
             raise TypeError(f"name is {type(self.name).__name__}: expected a text")
+        if self.numbers is not None:
+            object.__setattr__(self, "u", self.numbers)
         object.__setattr__(self, "u", whole("u", self.u, 1, 8, "a sample takes 1 to 8 random numbers"))
-        for what, words in (("channels", (None, 1, 3)), ("domain", _DOMAINS), ("wo", _SIDES), ("u_bits", (24, 53))):
+        if self.wo is None:
+            object.__setattr__(self, "wo", "upper" if self.of_directions() else "none")
+        for what, words in (("channels", (None, 1, 3)), ("wo", _SIDES), ("u_bits", (24, 53))):
             if getattr(self, what) not in words:
                 expected = " or ".join(repr(w) for w in words if w is not None)
                 raise ValueError(f"{what} is {getattr(self, what)!r}: expected {expected}")
@@ -111,6 +122,24 @@ class Sampler:
             eta = np.atleast_1d(np.asarray(self.eta, np.float64))
             if eta.shape not in ((1,), (3,)) or not (np.isfinite(eta) & (eta > 0)).all():
                 raise ValueError(f"eta is {self.eta!r}: expected a number above 0, or three of them")
+
+        if not isinstance(self.domain, str):
+            raise TypeError(f"domain is {self.domain!r}: expected a text")
+        if not self.of_directions():
+            self._check_points()
+
+    def of_directions(self) -> bool:
+        """Whether it draws directions, and not points of another domain."""
+        return self.domain in DIRECTIONS
+
+    def _check_points(self) -> None:
+        chart = _crescent.domain_chart(self.domain)
+        most = 8 - chart.spreads
+        if self.u > most:
+            raise ValueError(f"u is {self.u}: over the domain {self.domain!r} a sample takes at most {most}")
+        for what in ("delta", "eta", "uses", "radiance"):
+            if getattr(self, what):
+                raise ValueError(f"{what} is given: it is for samplers of directions, and the domain is {self.domain!r}")
 
     def title(self) -> str:
         """Its name, or that of the function that draws."""
@@ -122,9 +151,10 @@ class Known(TypedDict, total=False):
 
     name: str
     u: int
+    numbers: int | None
     u_bits: int
-    domain: Domain
-    wo: Asked
+    domain: str
+    wo: Asked | None
     channels: int | None
     delta: bool | None
     eta: float | Sequence[float] | None

@@ -16,14 +16,67 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from . import _arrays
+from . import _arrays, _crescent
 from ._arrays import Array
 from ._check import _look, _of_library
 from ._context import ContextCalls, columns_of, decoded, on_one_surface
+from ._domains import as_given, points
 from ._files import sampler_at
-from ._sampler import Sampler
+from ._sampler import Sampler, rows_to_look_with
 
 Answer = Callable[[Array], Array]
+
+
+class _Points:
+    """The callables of a sampler of points of a domain on rows of w_o, if it takes one, and u or a point."""
+
+    def __init__(self, s: Sampler) -> None:
+        self.chart = _crescent.domain_chart(s.domain)
+        self._sampler, self._name = _of_library(s), s.title()
+        self.wo = 0 if s.wo == "none" else 3
+
+    def sample(self, rows: Array) -> Array:
+        """Rows of a point, its pdf and its weights."""
+        given = (rows[:, : self.wo], rows[:, self.wo :]) if self.wo else (rows,)
+        x, pdf, weight = points(self._sampler.sample(*given), len(rows), self._name, self.chart.coordinates)
+        if self._sampler.pdf is None:
+            pdf = (pdf > 0).astype(np.float64)
+        return np.column_stack([x, pdf] if weight is None else [x, pdf, weight])
+
+    def value(self, call: Callable[..., Any], what: str, rows: Array) -> Array:
+        """Rows of pdf, or of f."""
+        x = as_given(rows[:, self.wo :], self.chart)
+        answer = call(rows[:, : self.wo], x) if self.wo else call(x)
+        return _arrays.channels(answer, len(rows), f"{self._name}: {what}")
+
+    def pdf(self, rows: Array) -> Array:
+        """`pdf`, or 1 where the sampler has none."""
+        return np.ones(len(rows)) if self._sampler.pdf is None else self.value(self._sampler.pdf, "pdf", rows)[:, 0]
+
+    def f(self, rows: Array, count: int) -> Array:
+        """f by channel, NaN where the sampler has none."""
+        if self._sampler.f is None:
+            return np.full((len(rows), count), np.nan)
+        return np.broadcast_to(self.value(self._sampler.f, "f", rows), (len(rows), count))
+
+
+def _started_points(s: Sampler) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]:
+    """As `_started`, for a sampler of points of a domain."""
+    calls = _Points(s)
+    wo, u = rows_to_look_with(8, s.u)
+    drawn = calls.sample(np.column_stack([wo, u]) if calls.wo else u)
+    coordinates = calls.chart.coordinates
+    weights = drawn.shape[1] - coordinates - 1
+    counts = [weights] if weights else []
+    if s.f is not None:
+        counts.append(calls.value(s.f, "f", np.column_stack([wo[:, : calls.wo], drawn[:, :coordinates]])).shape[1])
+    count = s.channels or max(counts, default=1)
+    operations: dict[bytes, tuple[int, Answer]] = {
+        b"smpl": (calls.wo + s.u, calls.sample),
+        b"pdf_": (calls.wo + coordinates, calls.pdf),
+        b"f___": (calls.wo + coordinates, lambda rows: calls.f(rows, count)),
+    }
+    return _handshake(s, count, weights > 0, False), s, operations
 
 
 class _Calls:
@@ -112,6 +165,8 @@ def _started(where: str) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]
     """The handshake of the sampler there, the sampler, and for each operation the columns before those of the context,
     and its answer."""
     s = sampler_at(where)
+    if not s.of_directions():
+        return _started_points(s)
     channels, weighs, delta = _look(on_one_surface(s, {}) if s.uses else _of_library(s))
     count = s.channels or channels
     delta = delta if s.delta is None else s.delta

@@ -24,6 +24,7 @@ NB_MODULE(_crescent, m) {
     m.attr("version") = crescent::version();
     m.attr("commit") = crescent::commit();
     crescent::python::prepare_exit(m);
+    crescent::python::add_domains(m);
     crescent::python::add_checking(m);
     crescent::python::add_experiments(m);
     crescent::python::add_arms(m);

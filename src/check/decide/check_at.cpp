@@ -76,7 +76,7 @@ public:
         : source_(adapter, technique, wo, data.light), budget_(budget), levels_(data.levels), reserved_(data.reserved) {
         key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
         out_.wo = wo, out_.technique = technique;
-        out_.numbers = source_.numbers(), out_.channels = source_.channels();
+        out_.traits = source_.traits;
     }
 
     CheckAt run() {

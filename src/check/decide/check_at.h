@@ -63,7 +63,8 @@ struct Finding {
 /// The result at one w_o. Evidence is kept for the explanation.
 struct CheckAt {
     Vec3d wo{};
-    int technique = 0, numbers = 2, channels = 1;  // from the traits
+    int technique = 0;
+    Traits traits{};
     std::vector<Finding> findings;
     std::vector<SmallFault> small;
     std::vector<Answer> suspected;  // failed at stage 1 and passed at stage 2

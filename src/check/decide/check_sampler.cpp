@@ -100,13 +100,14 @@ template <class Work> std::optional<Cut> cut_of(const Work& work) {
 std::optional<SmallFault> fault_of_first_draws(const CheckCase& check_case, const StreamKey& key) {
     constexpr std::uint32_t few = 256;  // a program with 10 answers per second needs less than five minutes for 12 w_o
     SmallFault out{Family::values};
-    const std::vector<PrimarySample> u = first_numbers(key, few, check_case.adapter->traits());
+    const Traits traits = check_case.adapter->traits();
+    const std::vector<PrimarySample> u = first_numbers(key, few, traits);
     std::vector<Draw> draws(u.size());
     for (int t = 0; t < check_case.adapter->techniques(); ++t) {
         check_case.adapter->sample(t, check_case.wo, u, draws);
         out.of += few;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (const auto fault = fault_of(draws[i]); fault && out.times++ == 0)
+            if (const auto fault = fault_of(draws[i], traits); fault && out.times++ == 0)
                 out.first = {u[i], draws[i], draws[i].pdf, 0}, out.what = *fault;
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;

@@ -138,7 +138,7 @@ std::optional<SmallFault> reverse_power_fault(
 std::optional<SmallFault> reverse_path(
     const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
     const Traits& traits = source.traits;
-    if (!traits.reciprocal || traits.wo == Traits::WoDomain::none || !source.adapter.can_draw()) return {};
+    if (!traits.reciprocal || !traits.has_surface() || !source.adapter.can_draw()) return {};
     for (const DeltaPart& p : parts) {
         if (p.wi.z < grazing_cosine && (traits.wo != Traits::WoDomain::both || p.wi.z > -grazing_cosine)) continue;
         // Of the same kind: reflected if w_i is a reflection of w_o, else transmitted.

@@ -341,19 +341,22 @@ struct Estimated {
     double mean = 0, variance = 0;  // variance of the mean
 };
 
-/// The change of each test by a rotation of the draws by `angle` about one axis. It is computed twice: from the moved
-/// draws, and from the ratio of p at the moved and the original directions, which gives the same except for the sign.
-/// The first is exact at edges of p, the second has less noise where p is smooth. Each effect is the larger of the
-/// lower bounds of both.
+/// The change of each test by a rotation of the draws by `angle` about one axis; in another domain, by a shift. It is
+/// computed twice: from the moved draws, and from the ratio of p at the moved and the original directions, which gives
+/// the same except for the sign. The first is exact at edges of p, the second has less noise where p is smooth. Each
+/// effect is the larger of the lower bounds of both.
 class Turned {
 public:
-    Turned(Source& source, const Evidence& e, const Sample& sample, const std::vector<Place>& places, Vec3d axis,
-        double angle)
+    /// `axis` is one of two; `about`: it, for directions.
+    Turned(Source& source, const Evidence& e, const Sample& sample, const std::vector<Place>& places, std::size_t axis,
+        Vec3d about, double angle)
         : e_(e), of_(sample.of), moved_(e.plan.tree.nodes().size()), weighted_(moved_) {
         std::vector<Vec3d> turned;
         const double c = math::cos(angle), s = math::sin(angle);
         for (Vec3d w : sample.w)
-            turned.push_back(normalize(w * c + cross(axis, w) * s + axis * (dot(axis, w) * (1 - c))));
+            turned.push_back(source.traits.domain
+                    ? source.traits.domain->shifted(w, axis, angle)
+                    : normalize(w * c + cross(about, w) * s + about * (dot(about, w) * (1 - c))));
         std::vector<double> p(turned.size());
         source.density(turned, p);
         const double n = static_cast<double>(sample.w.size());
@@ -482,7 +485,8 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
 /// are used.
 void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& whole,
     const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
-    if (sample.w.size() < 64) return;
+    const DomainChart* domain = source.traits.domain.get();
+    if (sample.w.size() < 64 || (domain && domain->is_discrete())) return;
     constexpr int axes = 8;
     const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
     const Frame<double> frame = frame_about(axis_of_lobe);
@@ -493,14 +497,15 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     std::array<double, axes> changed{};
     for (double by : {1.0, growth, growth * growth, growth * growth * growth}) {
         const auto shown = [](const std::vector<std::vector<double>>& of_axis) {
-            return std::ranges::any_of(of_axis,
-                [](const std::vector<double>& r) { return std::ranges::any_of(r, [](double x) { return x >= 1; }); });
+            return of_axis.empty() || std::ranges::any_of(of_axis, [](const std::vector<double>& r) {
+                return std::ranges::any_of(r, [](double x) { return x >= 1; });
+            });
         };
         if (by > growth && std::ranges::all_of(ratios, shown)) break;
-        const Turned one(source, e, sample, places, frame.t, by * target_rotation),
-            other(source, e, sample, places, frame.b, by * target_rotation);
+        const Turned one(source, e, sample, places, 0, frame.t, by * target_rotation),
+            other(source, e, sample, places, 1, frame.b, by * target_rotation);
         const auto of_one = one.effects(whole, nodes), of_other = other.effects(whole, nodes);
-        for (int k = 0; k < axes; ++k) {
+        for (int k = 0; k < (domain && domain->is_line() ? 1 : axes); ++k) {
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
             const auto at = static_cast<std::size_t>(k);
             ratios[at].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));
@@ -514,7 +519,8 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     };
     std::vector<Size> sizes;
     for (std::size_t k = 0; k < axes; ++k)
-        if (changed[k] >= least_change) sizes.push_back({least_angle(target_rotation, ratios[k]), changed[k]});
+        if (!ratios[k].empty() && changed[k] >= least_change)
+            sizes.push_back({least_angle(target_rotation, ratios[k]), changed[k]});
     if (sizes.empty()) return;
     // The effect of a rotation on a single test vanishes about some axis, so the stated size covers about seven of
     // eight axes.

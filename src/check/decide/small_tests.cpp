@@ -11,11 +11,12 @@
 
 namespace crescent::check {
 
-std::optional<const char*> fault_of(const Draw& d) {
+std::optional<const char*> fault_of(const Draw& d, const Traits& traits) {
     if (std::isnan(d.pdf)) return "pdf is NaN";
     if (d.pdf < 0) return "pdf is negative";
     if (std::isinf(d.pdf)) return "pdf is infinite";
-    if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
+    if (std::isnan(d.wi.x + d.wi.y + d.wi.z))
+        return traits.domain ? "a point is outside the domain" : "the direction is NaN";
     const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
     if (d.pdf == 0 && d.delta == 0) {
         if (!finite_weight) return "pdf is 0 and the weight is not finite";
@@ -95,7 +96,7 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
     SmallFault out{Family::values, 0, static_cast<double>(file->rows())};
     for (std::size_t i = 0; i < file->rows(); ++i) {
         const Draw& d = file->row(i);
-        std::optional<const char*> fault = fault_of(d);
+        std::optional<const char*> fault = fault_of(d, source.traits);
         if (!fault && d.f && !(std::isfinite(*d.f) && *d.f >= 0)) fault = "f is not a number >= 0";
         if (fault && out.times++ == 0)
             out.first = {file->row_numbers(i), d, 0, 0}, out.what = *fault, out.place = file->place(i);
@@ -110,7 +111,7 @@ std::optional<SmallFault> corners_of_u(Source& source) {
     source.draw(u, draws);
     SmallFault out{Family::corners, 0, static_cast<double>(u.size())};
     for (std::size_t i = 0; i < u.size(); ++i) {
-        std::optional<const char*> fault = fault_of(draws[i]);
+        std::optional<const char*> fault = fault_of(draws[i], source.traits);
         double p = 0;
         if (!fault && draws[i].pdf > 0) {
             source.stated_pdf({&draws[i].wi, 1}, {&p, 1});

@@ -12,7 +12,7 @@
 namespace crescent::check {
 
 /// A description of the fault of a draw; none if it is usable.
-std::optional<const char*> fault_of(const Draw& d);
+std::optional<const char*> fault_of(const Draw& d, const Traits& traits);
 
 /// A small test that failed.
 struct SmallFault {

@@ -31,7 +31,7 @@ TEST(UsableDraws, HaveNumbersThatMeanSomething) {
     const auto is_usable = [](double pdf, Vec3d wi, double delta = 0, std::optional<double> weight = {}) {
         Draw d{wi, pdf};
         d.delta = delta, d.weight = weight;
-        return !fault_of(d);
+        return !fault_of(d, {});
     };
     constexpr Vec3d n{0, 0, 1};
     EXPECT_TRUE(is_usable(1, n));

@@ -90,13 +90,13 @@ std::optional<SmallFault> special_places(
         adapter.sample(technique, wo, u, draws);
         out.of += static_cast<double>(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
-            if (const auto fault = fault_of(draws[i])) note(out, u[i], draws[i], 0, *fault, wo);
+            if (const auto fault = fault_of(draws[i], traits)) note(out, u[i], draws[i], 0, *fault, wo);
             else if (draws[i].pdf > 0) pairs.push_back({wo, draws[i].wi});
         }
     }
     for (std::size_t i = 0; i < std::min(most_ordinary, ordinary.size()); ++i)
         for (Vec3d wi : special) pairs.push_back({ordinary[i], wi});
-    if (traits.wo != Traits::WoDomain::none) {
+    if (traits.has_surface()) {
         for (Vec3d wo : special)
             if (answers_for(traits, wo)) pairs.push_back({wo, {-wo.x, -wo.y, wo.z}});
         for (Vec3d wo : ordinary)
@@ -146,7 +146,7 @@ bool differ(double a, double b, double tolerance) { return std::fabs(a - b) > to
 
 std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key) {
     const Traits traits = adapter.traits();
-    if (!adapter.has_f() || !traits.reciprocal || traits.wo == Traits::WoDomain::none) return {};
+    if (!adapter.has_f() || !traits.reciprocal || !traits.has_surface()) return {};
     const bool both = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
     const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };

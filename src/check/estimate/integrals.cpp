@@ -228,7 +228,7 @@ private:
                 if (k * p > heavy_point) out_.heavy.push_back({chart_[at + a], p});
                 second[a] = k * h[a][bridge] * h[a][bridge] * p;
                 to.second += second[a];
-                if (w_[at + a].z > 0 || p > 0) out_.domain += k;
+                if (source_.may_draw(w_[at + a], p)) out_.domain += k;
                 if (p > 0) {
                     to.solid_angle += k * h[a][bridge];
                     for (std::size_t q = 0; q < integrands; ++q)

@@ -30,7 +30,7 @@ namespace {
 double own_weight(const Source& source, const Draw& d, const Vec3d* f_cos) {
     if (d.weight) return *d.weight;
     if (!source.has_density()) return 0;  // the pdf of a draw is then 1 or 0
-    if (!f_cos) return d.f.value_or(0) * std::fabs(d.wi.z) / d.pdf;
+    if (!f_cos) return d.f.value_or(0) * source.traits.cosine(d.wi) / d.pdf;
     return (source.channels() == 3 ? luminance(*f_cos) : f_cos->x) / d.pdf;
 }
 
@@ -134,7 +134,7 @@ private:
         for (std::size_t k = 0; k < w_.size(); ++k) {
             fetch_leaf(k + fetched_before, set);
             if (is_direction(source_.traits, draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
-            else if (set < 0) ++to_.checks.nothing, to_.checks.outside += source_.traits.wo != Traits::WoDomain::none;
+            else if (set < 0) ++to_.checks.nothing, to_.checks.outside += source_.traits.has_surface();
         }
     }
 
@@ -222,7 +222,7 @@ private:
             const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
             const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
             const double high = std::max({*std::max_element(first, last), p_[k], stated[j]});
-            const bool no_surface = source_.traits.wo == Traits::WoDomain::none;
+            const bool no_surface = !source_.traits.has_surface();
             const bool null_below = d.wi.z <= 0 && high == 0 && !no_surface;  // no density there
             to_.checks.null_below += null_below;
             if (null_below) continue;
@@ -249,7 +249,7 @@ private:
         for (std::size_t k = 0; k < w_.size(); ++k) {
             const Draw& d = draws_[at_[k]];
             if (!is_direction(source_.traits, d, p_[k])) continue;
-            if (!evaluated && d.f) f_[k] = Vec3d{1, 1, 1} * (*d.f * std::fabs(d.wi.z));
+            if (!evaluated && d.f) f_[k] = Vec3d{1, 1, 1} * (*d.f * source_.traits.cosine(d.wi));
             if (!d.weight && (!source_.has_density() || !(evaluated || d.f))) {
                 ++to_.weightless;
                 continue;

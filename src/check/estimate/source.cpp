@@ -118,7 +118,7 @@ void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) 
     const auto usable = [](double v) { return std::isfinite(v) && v >= 0; };
     for (std::size_t i = 0; i < wi.size(); ++i) {
         const Vec3d v = out[i];
-        const double c = std::fabs(wi[i].z);
+        const double c = traits.cosine(wi[i]);
         if (!usable(v.x) || !usable(v.y) || !usable(v.z))
             note_invalid(InvalidAnswers::Function::f, wi[i], !usable(v.x) ? v.x : !usable(v.y) ? v.y : v.z);
         const auto by_channel = [&](double x) { return usable(x) ? x * c : 0; };
@@ -139,7 +139,7 @@ bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_t
 
 BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
     const Traits traits = adapter.traits();
-    if (!adapter.has_f() || traits.eta || traits.wo == Traits::WoDomain::none) return BothWays::not_known;
+    if (!adapter.has_f() || traits.eta || !traits.has_surface()) return BothWays::not_known;
     const bool both = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
     const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };

@@ -69,6 +69,8 @@ public:
 
     /// MIS weights of directions drawn by this technique.
     void mis_weights(std::span<const Vec3d> wi, std::span<double> out);
+    /// Whether a draw there is possible for a sampler of this kind; p: the density there.
+    bool may_draw(Vec3d w, double p) const { return p > 0 || (traits.domain ? traits.domain->has_point(w) : w.z > 0); }
     /// Radiance of the light from w; below the surface that of its uniform part.
     double radiance(Vec3d w) const { return light.even() || w.z <= 0 ? light.fill : light(w); }
 
@@ -92,7 +94,7 @@ private:
 /// there. Below the surface a draw counts only if p is positive; otherwise the estimator ignores it. A sampler that
 /// does not depend on w_o, such as that of a light, has no surface.
 inline bool is_direction(const Traits& traits, const Draw& d, double p) {
-    const bool no_surface = traits.wo == Traits::WoDomain::none;
+    const bool no_surface = !traits.has_surface();
     return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && (d.wi.z > 0 || p > 0 || no_surface);
 }
 

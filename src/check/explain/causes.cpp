@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t most_places = 2, most_checks = 4;
 constexpr double least_lead = 8;  // lead in nats over all draws at which a cause is preferred: e^-8
 constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
+constexpr std::uint32_t draws_of_points = 16384;  // few hypotheses are tried over other domains than directions
 /// Shares of the divergence that are sufficient if no cause explains all of it: for a frame, because a table that is
 /// read in another order may not be known exactly; for a fitted number, because replicates are more precise than the
 /// fit.
@@ -125,9 +126,11 @@ Candidate candidate_of_power(FactorHypothesis f) {
     return out;
 }
 
-Candidate candidate_of(const Leak& leak) {
+Candidate candidate_of(const Leak& leak, std::span<const Place> places) {
     Candidate out{leak.hypothesis, {}, enough_for_fit, -1, leak.is_clear()};
-    out.make_cause = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
+    out.make_cause = [leak, traits = places[0].traits](const Hypothesis&) {
+        return Cause{"leak", leak.share, leak.error, leak_sentence(leak, traits)};
+    };
     return out;
 }
 
@@ -173,6 +176,18 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
     return out;
 }
 
+/// A number with which p has the coordinate of a line, and sample another one.
+Candidate candidate_of(const FittedMove& move) {
+    Candidate out{move.hypothesis, {}, enough_for_fit, 1};
+    out.make_cause = [move](const Hypothesis& h) {
+        return Cause{move.factor, move.value, move.error,
+            fmt::format("Draws are those of p with {} multiplied by {}{}: a rate, a mean free path or another scale "
+                        "differs between sample and pdf.",
+                move.of, with_error(move.value, 1.96 * move.error), h.same)};
+    };
+    return out;
+}
+
 /// The frame of the surface is turned about n in sample and not in pdf, or by another angle.
 Candidate candidate_of_frame(const FoundTurn& turn) {
     Candidate out{turn.hypothesis, {}, enough_for_frame};
@@ -206,7 +221,7 @@ Candidates plain_candidates(std::span<const Place> places, std::span<const Leak>
         if (std::fabs(f.fitted) > clear_errors * f.error) out.push_back(candidate_of(std::move(f), places));
     for (const Hypothesis& h : frame_hypotheses(places)) out.push_back(candidate_of(h));
     for (const Leak& leak : leaks)
-        if (leak.is_clear()) out.push_back(candidate_of(leak));
+        if (leak.is_clear()) out.push_back(candidate_of(leak, places));
     sort_by_gain(out);
     return out;
 }
@@ -214,16 +229,20 @@ Candidates plain_candidates(std::span<const Place> places, std::span<const Leak>
 /// Causes with a fitted angle, exponent or share.
 Candidates fitted_candidates(std::span<const Place> places, std::span<const Leak> leaks) {
     Candidates out;
-    if (places[0].traits.wo == Traits::WoDomain::none) {
+    const bool directions = !places[0].traits.domain;
+    if (!directions) {
+        for (const FittedMove& move : domain_moves(places))
+            if (move.is_clear()) out.push_back(candidate_of(move));
+    } else if (places[0].traits.wo == Traits::WoDomain::none) {
         if (const auto turn = azimuth_hypothesis(places); turn && turn->is_clear())
             out.push_back(candidate_of(*turn, places, true));
     } else if (const auto turn = frame_turn_hypothesis(places); turn && turn->is_clear())
         out.push_back(candidate_of_frame(*turn));
-    if (const auto turn = turn_hypothesis(places); turn && turn->is_clear())
+    if (const auto turn = directions ? turn_hypothesis(places) : std::nullopt; turn && turn->is_clear())
         out.push_back(candidate_of(*turn, places, false));
     if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_errors * power->error)
         out.push_back(candidate_of_power(std::move(*power)));
-    for (const Leak& leak : leaks) out.push_back(candidate_of(leak));
+    for (const Leak& leak : leaks) out.push_back(candidate_of(leak, places));
     sort_by_gain(out);
     return out;
 }
@@ -315,7 +334,7 @@ std::optional<Cause> explained_by(std::span<const Place> places) {
     const bool is_leak = found && found->factor == "leak";
     if ((found && !is_leak) || several) return found;
     // A fitted parameter explains more than a factor without one, which is therefore tried first.
-    if (std::optional<Cause> c = cause_of_known_form(ratios, places)) return c;
+    if (std::optional<Cause> c = places[0].traits.domain ? std::nullopt : cause_of_known_form(ratios, places)) return c;
     if (std::optional<Cause> c = lobe_cause(places)) return c;
     if (found) return found;
     Candidates fitted = fitted_candidates(places, leaks);
@@ -349,7 +368,12 @@ bool unusable_draws_explain(std::span<const Place> places) {
 std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
     const bool few =
         std::ranges::any_of(outcome.check_cases, [&](std::size_t i) { return check_cases[i].adapter->serial(); });
-    const std::vector<Place> places = places_of(check_cases, outcome, most_places, few ? draws_of_few : draws_of_many);
+    const bool of_points = std::ranges::any_of(
+        outcome.check_cases, [&](std::size_t i) { return check_cases[i].adapter->traits().domain != nullptr; });
+    const std::vector<Place> places = places_of(check_cases, outcome, most_places,
+        of_points ? draws_of_points
+            : few ? draws_of_few
+                  : draws_of_many);
     if (places.empty()) return weight_cause(check_cases, outcome);
     if (unusable_draws_explain(places)) return {};
     if (std::optional<Cause> c = delta_cause(places)) return c;

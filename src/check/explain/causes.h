@@ -111,6 +111,24 @@ std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places);
 /// A rotation of the frame of the surface about n, which rotates w_o and w_i, by the same angle at all places.
 std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places);
 
+// ---- Candidates over domains other than directions (explain/domain_causes.cpp).
+
+/// Functions of the point, such as the radius in a disk.
+std::vector<Factor> domain_factors(const std::shared_ptr<const DomainChart>& chart);
+/// Coordinates exchanged or mirrored, entries off by one.
+std::vector<Hypothesis> domain_frames(std::span<const Place> places);
+/// Draws are those of p with the coordinate of an infinite line multiplied by a number.
+struct FittedMove {
+    Hypothesis hypothesis;
+    std::string factor, of;
+    double value = 0, error = 0, neutral = 0;
+    bool is_clear() const {
+        constexpr double errors = 5;
+        return std::fabs(value - neutral) > errors * error;
+    }
+};
+std::vector<FittedMove> domain_moves(std::span<const Place> places);
+
 // ---- Causes that the derivatives of sample(u) show without noise.
 
 /// A power of a random number is missing or once too often in sample: a root (explain/warps.cpp).
@@ -146,7 +164,7 @@ struct Leak {
     bool is_clear() const;
 };
 std::vector<Leak> leak_hypotheses(std::span<const Place> places);
-std::string leak_sentence(const Leak& leak);
+std::string leak_sentence(const Leak& leak, const Traits& traits);
 
 /// A part of the draws has one direction: a delta part that is not declared.
 std::optional<Cause> delta_cause(std::span<const Place> places);

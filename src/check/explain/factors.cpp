@@ -91,6 +91,7 @@ Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta) {
 }
 
 std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light) {
+    if (traits.domain) return domain_factors(traits.domain);
     const bool one_index = traits.eta && traits.eta->x == traits.eta->z;
     const double eta = one_index ? traits.eta->x : 1;
     const auto half = [eta](Vec3d o, Vec3d i) { return half_vector_of(o, i, o.z > 0 ? eta : 1 / eta); };

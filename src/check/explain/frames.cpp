@@ -219,6 +219,7 @@ Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& tur
 }  // namespace
 
 std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places) {
+    if (places[0].traits.domain) return domain_frames(places);
     std::vector<Hypothesis> out;
     for (const NamedFrame& frame : named_frames)
         for (int which : {of_wi, of_wo, of_both}) {

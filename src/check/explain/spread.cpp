@@ -140,7 +140,10 @@ bool Leak::is_clear() const { return share > least_errors * error; }
 
 std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     std::vector<Leak> out;
+    const DomainChart* domain = places[0].traits.domain.get();
+    if (domain && std::ranges::any_of(domain->domain().parts(), &DomainPart::is_infinite)) return out;
     for (bool whole : {true, false}) {
+        if (!whole && domain) continue;
         Leak leak = fitted_leak(places, whole);
         if (leak.share < least_share || leak.share > 0.9) continue;
         bool mass_agrees = true;
@@ -159,15 +162,22 @@ std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     return out;
 }
 
-std::string leak_sentence(const Leak& leak) {
+std::string leak_sentence(const Leak& leak, const Traits& traits) {
     return fmt::format("{:.3g} % +- {:.2g} % of the draws are spread evenly over the {}, which p does not have.",
-        100 * leak.share, 196 * leak.error, leak.whole ? "sphere" : "upper half");
+        100 * leak.share, 196 * leak.error,
+        traits.domain    ? "domain"
+            : leak.whole ? "sphere"
+                         : "upper half");
 }
 
 std::optional<Cause> delta_cause(std::span<const Place> places) {
     constexpr double least_part = 0.01, same = 1e-6, in_all = 0.999;
     for (const Place& place : places) {
         std::vector<Vec3d> w = place.w;
+        const DomainChart* domain = place.traits.domain.get();
+        if (domain && domain->is_discrete()) continue;
+        if (domain && domain->is_line())  // spread over the azimuth
+            for (Vec3d& v : w) v = from_chart({to_chart(v).t, 0});
         std::ranges::sort(w, {}, [](Vec3d v) { return std::tuple(v.x, v.y, v.z); });
         std::size_t most = 0, first = 0;
         for (std::size_t i = 0, end = 0; i < w.size(); i = end) {
@@ -178,10 +188,10 @@ std::optional<Cause> delta_cause(std::span<const Place> places) {
                      half = 1.96 * std::sqrt(share * (1 - share) / place.of);
         if (share < least_part) continue;
         return Cause{"delta", share, half / 1.96,
-            fmt::format(
-                "{} of the draws have one direction, w_i = {}{}, for any u. A density does not draw it: if it is a "
-                "delta part, the sampler must declare it (delta) with its probability.",
-                share > in_all ? "All" : percent_with_error(share, half), direction_text(w[first]), place.where())};
+            fmt::format("{} of the draws have one {}, {}{}, for any u. A density does not draw it{}.",
+                share > in_all ? "All" : percent_with_error(share, half), domain ? "point" : "direction",
+                place_text(place.traits, w[first]), place.where(),
+                domain ? "" : ": if it is a delta part, the sampler must declare it (delta) with its probability")};
     }
     return {};
 }

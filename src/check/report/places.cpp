@@ -108,7 +108,8 @@ std::optional<ShareDifference> largest_difference(const CheckAt& c) {
     return out;
 }
 
-std::string region_text(const ChartRect& r) {
+std::string region_text(const ChartRect& r, const Traits& traits) {
+    if (traits.domain) return traits.domain->text(r);
     if (const double width = std::max(r.theta_width(), r.phi_width()); width < small_region)
         return fmt::format("around w_i = {}, within {:.2g} rad", direction_text(from_chart(r.at(0.5, 0.5))), width / 2);
     constexpr double degrees = 360 / two_pi;
@@ -121,15 +122,18 @@ std::string region_text(const ChartRect& r) {
     return out;
 }
 
-std::string sentence_of(const ShareDifference& d) {
+std::string sentence_of(const ShareDifference& d, const Traits& traits) {
     const auto share = [](double x, double error) {
         const double half = half_width_95 * error;
         if (x - half < 0) return fmt::format("at most {:.2g} %", 100 * (x + half));
         if (x + half > 1) return fmt::format("at least {:.4g} %", 100 * (x - half));
         return percent_with_error(x, half);
     };
-    return fmt::format("Of the draws {} are {}, where p has {}.", share(d.drawn, d.drawn_error), region_text(d.rect),
-        share(d.claimed, d.claimed_error));
+    if (const auto entry = traits.domain ? traits.domain->entry(d.rect) : std::nullopt)
+        return fmt::format("Entry {} is drawn with {}, p says {}.", *entry,
+            with_error(d.drawn, half_width_95 * d.drawn_error), with_error(d.claimed, half_width_95 * d.claimed_error));
+    return fmt::format("Of the draws {} are {}, where p has {}.", share(d.drawn, d.drawn_error),
+        region_text(d.rect, traits), share(d.claimed, d.claimed_error));
 }
 
 std::optional<Concentration> concentration_of(const CheckAt& c) {
@@ -157,11 +161,15 @@ std::optional<Concentration> concentration_of(const CheckAt& c) {
     return out;
 }
 
-std::string sentence_of(const Concentration& s) {
+std::string sentence_of(const Concentration& s, const Traits& traits) {
     using Compared = Concentration::Compared;
     if (s.compared == Compared::unknown) return "";
+    if (s.compared == Compared::same && traits.domain)
+        return "Draws and p are equally concentrated, at different places.";
     if (s.compared == Compared::same)
         return fmt::format("Draws and p are equally concentrated, within {:.3g} sr, at different places.", s.drawn);
+    if (traits.domain)
+        return fmt::format("Draws are {} concentrated than p.", s.compared == Compared::more ? "more" : "less");
     return fmt::format("Draws are {} concentrated than p: over {:.3g} sr, p over {:.3g} sr.",
         s.compared == Compared::more ? "more" : "less", s.drawn, s.claimed);
 }

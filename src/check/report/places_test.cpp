@@ -26,7 +26,7 @@ TEST(DifferencesOfShares, AreThoseOfTheRegion) {
     EXPECT_TRUE(d->drawn > 0 && d->drawn < 1 && d->claimed > 0 && d->claimed < 1);
     const Vec3d w = from_chart(d->rect.at(0.5, 0.5));
     EXPECT_NEAR(d->drawn / d->claimed, w.x > 0 ? 0.8 : 1.2, 5 * d->drawn_error / d->claimed);
-    EXPECT_THAT(sentence_of(*d), HasSubstr("Of the draws"));
+    EXPECT_THAT(sentence_of(*d, {}), HasSubstr("Of the draws"));
     const Explained constant = checked(made(cosine_draw, [](Vec3d o, Vec3d v) { return 1.5 * cosine_pdf(o, v); }));
     EXPECT_FALSE(largest_difference(at(constant)));  // it changes no share
 }

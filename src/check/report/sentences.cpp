@@ -21,13 +21,13 @@ std::string u_text(const PrimarySample& u, int count) {
 }
 
 /// "first at u = (0.25, 0), w_i = (0, 0, 1)". of_draw: whether it is a draw even if all its numbers are 0.
-std::string first_at(const Example& e, int numbers, bool of_draw = false) {
+std::string first_at(const Example& e, const Traits& traits, bool of_draw = false) {
+    const int numbers = traits.own_numbers();
     bool any = of_draw;
     for (int k = 0; k < numbers; ++k) any = any || e.u[k] != 0;
     std::string out = "first at ";
     if (any) out += "u = " + u_text(e.u, numbers) + ", ";
-    const Vec3d w = e.draw.wi;
-    return out + (std::isnan(w.x + w.y + w.z) ? "w_i NaN" : "w_i = " + direction_text(w));
+    return out + place_text(traits, e.draw.wi);
 }
 
 /// Without a single draw at which p is positive.
@@ -80,41 +80,50 @@ std::string node_sentence(const CheckAt& c, int node) {
     };
     const int half = errors_at(x.child) >= errors_at(x.child + 1) ? x.child : x.child + 1;
     const auto [drawn, claimed] = sums_below(c, half);
-    const std::string where = region_text(c.plan->tree.nodes()[static_cast<std::size_t>(half)].rect);
+    const std::string where = region_text(c.plan->tree.nodes()[static_cast<std::size_t>(half)].rect, c.traits);
     if (!(claimed > 0)) return fmt::format("Draws fall where p expects none: {}.", where);
     const double error = std::sqrt(std::max(drawn, 1 / n) / n) / claimed;
     return fmt::format(
         "Draws are {} times what p expects {}.", with_error(drawn / claimed, half_width_95 * error), where);
 }
 
-std::string band_sentence(int member, const Answer& a) {
+std::string band_sentence(int member, const Answer& a, const Traits& traits) {
     const ChartRect r = rect_of_band(member);
     constexpr double degrees = 360 / two_pi;
     const bool of_phi = r.t0 == 0 && r.t1 == 2;
-    return fmt::format("{} {} draws than p expects at {} from {:.4g} to {:.4g} degrees.",
+    const std::string where = traits.domain
+        ? traits.domain->text(r)
+        : fmt::format("at {} from {:.4g} to {:.4g} degrees", of_phi ? "azimuths" : "polar angles",
+              degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
+    return fmt::format("{} {} draws than p expects {}.",
         percent_with_error(std::fabs(a.difference) / a.expected, half_width_95 * a.sd / a.expected),
-        a.difference > 0 ? "more" : "fewer", of_phi ? "azimuths" : "polar angles",
-        degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
+        a.difference > 0 ? "more" : "fewer", where);
 }
 
-std::string pair_sentence(const char* what, double share, const Example& e, int numbers, const std::string& values) {
-    return fmt::format("{} for {:.3g} % of the draws, {}{}.", what, 100 * share, first_at(e, numbers), values);
+std::string pair_sentence(
+    const char* what, double share, const Example& e, const Traits& traits, const std::string& values) {
+    return fmt::format("{} for {:.3g} % of the draws, {}{}.", what, 100 * share, first_at(e, traits), values);
 }
 
 std::string channel_of(const Answer& a, bool of_three) {
     return of_three ? fmt::format(" in channel {}", a.member + 1) : "";
 }
 
-std::string light_sentence(const Answer& a, Family family, bool of_three) {
+/// What the weights are an estimate of.
+const char* integrand(const Traits& traits) { return traits.domain ? "f" : "f L cos"; }
+
+std::string light_sentence(const Answer& a, Family family, const Traits& traits) {
     const double half = half_width_95 * a.sd;
+    const bool of_three = traits.channels == 3;
     if (family == Family::support)
-        return fmt::format("p is 0 over directions that carry {} of f L cos.",
-            percent_with_error(a.difference / a.expected, half / a.expected));
+        return fmt::format("p is 0 over {} that carry {} of {}.", traits.domain ? "points" : "directions",
+            percent_with_error(a.difference / a.expected, half / a.expected), integrand(traits));
     if (family == Family::albedo)
         return fmt::format("f returns {} times the power of a uniform light{}. Expected at most 1.",
             with_error(1 + a.difference, half), channel_of(a, of_three));
-    return fmt::format("The weighted draws give {} times the integral of f cos{}. Expected 1.",
-        with_error(1 + a.difference / a.expected, half / a.expected), channel_of(a, of_three));
+    return fmt::format("The weighted draws give {} times the integral of {}{}. Expected 1.",
+        with_error(1 + a.difference / a.expected, half / a.expected), traits.domain ? "f" : "f cos",
+        channel_of(a, of_three));
 }
 
 /// Sums of h = q / (p + q) weigh all directions; if the shares of all regions agree, the ratio is that of a constant.
@@ -126,7 +135,7 @@ std::string bridge_sentence(const Answer& a) {
 }
 
 /// The sentence of a whole sum.
-std::string sum_sentence(const Finding& f, const Answer& a) {
+std::string sum_sentence(const Finding& f, const Answer& a, const Traits& traits) {
     const double half = half_width_95 * a.sd;
     switch (f.first.family) {
         case Family::slope:
@@ -135,6 +144,7 @@ std::string sum_sentence(const Finding& f, const Answer& a) {
                 a.difference > 0 ? "larger" : "smaller", with_error(std::fabs(a.difference), half));
         case Family::centre:
         case Family::centre_sets:
+            if (traits.domain) return "The mean of the draws differs from that of p.";
             return fmt::format("The mean direction of the draws is off that of p by {} in {}.",
                 with_error(2 * a.difference, 2 * half), "xyz"[std::clamp(f.first.member, 0, 2)]);
         case Family::depth:
@@ -147,10 +157,11 @@ std::string sum_sentence(const Finding& f, const Answer& a) {
     }
 }
 
-std::string invalid_sentence(const InvalidAnswers& a) {
+std::string invalid_sentence(const InvalidAnswers& a, const Traits& traits) {
     const bool of_pdf = a.first == InvalidAnswers::Function::pdf;
-    return fmt::format("{} is not a number >= 0 at {} of {} directions, first {:g} at w_i = {}.",
-        of_pdf ? "pdf(w)" : "f(w)", of_pdf ? a.pdf : a.f, of_pdf ? a.of_pdf : a.of_f, a.value, direction_text(a.wi));
+    return fmt::format("{} is not a number >= 0 at {} of {} {}, first {:g} at {}.", of_pdf ? "pdf(w)" : "f(w)",
+        of_pdf ? a.pdf : a.f, of_pdf ? a.of_pdf : a.of_f, traits.domain ? "points" : "directions", a.value,
+        place_text(traits, a.wi));
 }
 
 }  // namespace
@@ -158,7 +169,7 @@ std::string invalid_sentence(const InvalidAnswers& a) {
 std::string sentence_of(const CheckAt& c, const Finding& f) {
     const Answer& a = f.second.sd > 0 ? f.second : f.first;
     const DrawChecks& checks = c.observations.checks;
-    const int numbers = c.numbers;
+    const Traits& traits = c.traits;
     switch (f.first.family) {
         case Family::mass:
         case Family::mass_sets: return mass_sentence(c, a);
@@ -170,24 +181,25 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
         case Family::slope_sets:
         case Family::centre:
         case Family::centre_sets:
-        case Family::depth: return sum_sentence(f, a);
-        case Family::band: return band_sentence(f.first.member, a);
+        case Family::depth: return sum_sentence(f, a, traits);
+        case Family::band: return band_sentence(f.first.member, a, traits);
         case Family::pointwise:
-            return pair_sentence("The pdf with a draw is not pdf(w)", a.difference, checks.pointwise.first, numbers,
-                fmt::format(": {:.5g} with the draw, pdf(w) {:.5g}", checks.pointwise.first.draw.pdf,
-                    checks.pointwise.first.p));
-        case Family::zero: return pair_sentence("pdf(w) is 0", a.difference, checks.zero.first, numbers, "");
+            return pair_sentence("The pdf with a draw is not pdf(w)", a.difference, checks.pointwise.first, traits,
+                fmt::format(": {:.5g} with the draw, pdf(w) {:.5g}",
+                    traits.density(checks.pointwise.first.draw.wi, checks.pointwise.first.draw.pdf),
+                    traits.density(checks.pointwise.first.draw.wi, checks.pointwise.first.p)));
+        case Family::zero: return pair_sentence("pdf(w) is 0", a.difference, checks.zero.first, traits, "");
         case Family::weight:
-            return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, numbers,
+            return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, traits,
                 fmt::format(": weight {:.5g}, f cos / pdf {:.5g}", checks.weight.first.draw.weight.value_or(0),
                     checks.weight.first.expected));
         case Family::reference_f:
-            return pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, numbers,
+            return pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, traits,
                 fmt::format(
                     ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.expected));
         case Family::repeats:
-            return fmt::format("{:g} pairs of {:g} draws have the same direction. Expected {:.2g}.", a.difference,
-                c.observations.independent, a.expected);
+            return fmt::format("{:g} pairs of {:g} draws have the same {}. Expected {:.2g}.", a.difference,
+                c.observations.independent, traits.domain ? "point" : "direction", a.expected);
         case Family::delta_share:
             return fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
                 with_error(a.expected + a.difference, half_width_95 * a.sd), a.expected);
@@ -198,17 +210,17 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
             return fmt::format("{:g} draws of a delta part have another weight than its first draw.", a.difference);
         case Family::support:
         case Family::albedo:
-        case Family::mean: return light_sentence(a, f.first.family, c.channels == 3);
+        case Family::mean: return light_sentence(a, f.first.family, traits);
         default:
             if (checks.invalid.times > 0)
                 return fmt::format("{:g} answers cannot be used: {}, {}.", a.difference,
-                    fault_of(checks.invalid.first.draw).value_or("the pdf or the weight is not a number >= 0"),
-                    first_at(checks.invalid.first, numbers));
-            return invalid_sentence(c.invalid);
+                    fault_of(checks.invalid.first.draw, traits).value_or("the pdf or the weight is not a number >= 0"),
+                    first_at(checks.invalid.first, traits));
+            return invalid_sentence(c.invalid, traits);
     }
 }
 
-std::string sentence_of(const SmallFault& f, int numbers) {
+std::string sentence_of(const SmallFault& f, const Traits& traits) {
     std::string what = f.what;
     if (!what.empty() && what[0] >= 'a' && what[0] <= 'z' && what.compare(0, 2, "p ") != 0 &&
         what.compare(0, 3, "pdf") != 0 && what.compare(0, 2, "f(") != 0)
@@ -218,7 +230,7 @@ std::string sentence_of(const SmallFault& f, int numbers) {
     else if (f.family == Family::mis)
         out += fmt::format(" draws, by up to {:.3g}{}", std::fabs(f.size),
             f.first.expected > 0 ? fmt::format(" (sampler {:g})", f.first.expected) : "");
-    const std::string where = first_at(f.first, numbers, f.family == Family::corners && !f.wo);
+    const std::string where = first_at(f.first, traits, f.family == Family::corners && !f.wo);
     if (!f.place.empty()) return fmt::format("{} rows, first at {}: {}.", out, f.place, where.substr(9));
     return out + ", " + (f.wo ? fmt::format("first at w_o = {}, {}", direction_text(*f.wo), where.substr(9)) : where) +
         ".";
@@ -253,8 +265,8 @@ std::string albedo_sentence(const CheckAt& c) {
 std::string mean_sentence(const CheckAt& c) {
     for (const Answer& a : c.answers)
         if (a.family == Family::mean && a.expected > 0)
-            return fmt::format("Weights average to {} times the integral of f L cos.",
-                with_error(1 + a.difference / a.expected, half_width_95 * a.sd / a.expected));
+            return fmt::format("Weights average to {} times the integral of {}.",
+                with_error(1 + a.difference / a.expected, half_width_95 * a.sd / a.expected), integrand(c.traits));
     return "";
 }
 
@@ -264,7 +276,7 @@ std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
     const Estimate& whole = c.integrals.sums[mass];
     if (verdict == "valid") return valid_sentence(c);
     if (verdict == "support")
-        return fmt::format("f L cos is 0 wherever p is 0, at {:.0f} points.", c.integrals.light.points);
+        return fmt::format("{} is 0 wherever p is 0, at {:.0f} points.", integrand(c.traits), c.integrals.light.points);
     if (verdict == "normalised")
         return fmt::format("p integrates to {}.", with_error(whole.value, half_interval(whole)));
     if (verdict == "physics") return albedo_sentence(c);
@@ -298,8 +310,10 @@ std::string sentence_of_open(const CheckAt& c, std::string_view verdict) {
         add("relative constant factor of p", &Sizes::constant, target_constant);
     } else {
         add("share of draws spread evenly", &Sizes::leak, target_leak);
-        add("share of p in a cap that is never drawn", &Sizes::cap, target_cap);
-        add("rotation in radians", &Sizes::rotation, target_rotation);
+        add(c.traits.domain ? "share of p in a gap that is never drawn" : "share of p in a cap that is never drawn",
+            &Sizes::cap, target_cap);
+        add(c.traits.domain ? "shift as a share of the range" : "rotation in radians", &Sizes::rotation,
+            target_rotation);
         add("relative change of an exponent", &Sizes::parameter, target_parameter);
     }
     if (open.empty()) return "";

@@ -16,7 +16,7 @@ namespace crescent::check {
 
 namespace {
 
-void add_sizes(const Sizes& s, Verdict& v) {
+void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
         constexpr double all = 0.99;  // of the draws or of p: no fault of this kind would be found
         if (!size || *size > all) return;
@@ -26,7 +26,8 @@ void add_sizes(const Sizes& s, Verdict& v) {
     };
     if (v.name == "normalised") add("constant", s.constant);
     if (v.name != "density") return;
-    add("leak", s.leak), add("cap", s.cap), add("rotation", s.rotation), add("parameter", s.parameter);
+    add("leak", s.leak), add(of_points ? "gap" : "cap", s.cap), add(of_points ? "shift" : "rotation", s.rotation),
+        add("parameter", s.parameter);
 }
 
 /// The share of the answers or tests that fail, as the size of a fault.
@@ -67,9 +68,9 @@ void describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
     double size = share_of(c, a);
     if (compares_densities(worst.first.family))
         if (const std::optional<ShareDifference> place = largest_difference(c)) {
-            sentence = sentence_of(*place), size = std::fabs(place->difference());
+            sentence = sentence_of(*place, c.traits), size = std::fabs(place->difference());
             if (const auto spread = concentration_of(c))
-                if (const std::string more = sentence_of(*spread); !more.empty()) sentence += " " + more;
+                if (const std::string more = sentence_of(*spread, c.traits); !more.empty()) sentence += " " + more;
             v.evidence["largest_difference"] = {{"drawn", place->drawn}, {"drawn_error", place->drawn_error},
                 {"p", place->claimed}, {"p_error", place->claimed_error}};
         }
@@ -89,7 +90,7 @@ void decide_at(const CheckAt& c, Verdict& v) {
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name) {
             v.state = State::wrong, v.size = std::max(v.size, share_of(f));
-            v.message += (v.message.empty() ? "" : " ") + sentence_of(f, c.numbers);
+            v.message += (v.message.empty() ? "" : " ") + sentence_of(f, c.traits);
         }
     const Finding* worst = nullptr;
     for (const Finding& f : c.findings)
@@ -103,7 +104,7 @@ void decide_at(const CheckAt& c, Verdict& v) {
         if (info(a.family).verdict == v.name && v.state != State::wrong)
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
     if (v.state == State::wrong) return;
-    add_sizes(c.sizes, v);
+    add_sizes(c.sizes, c.traits.domain != nullptr, v);
     if (v.name == "density" && c.moved_by_resolution > 0) {
         v.state = State::inconclusive;
         v.message = fmt::format(
@@ -134,12 +135,12 @@ void name_technique(const CheckCase& check_case, const CheckAt& c, std::size_t f
 }
 
 /// Faults of the sampler as a whole are reported with its first w_o, but have places of their own.
-void add_faults_of_sampler(const CheckOutcome& outcome, int numbers, Verdict& v) {
+void add_faults_of_sampler(const CheckOutcome& outcome, const Traits& traits, Verdict& v) {
     const bool here = v.state == State::wrong;
     for (const SmallFault& f : outcome.small) {
         if (info(f.family).verdict != v.name) continue;
         v.state = State::wrong, v.size = std::max(v.size, share_of(f));
-        v.message += (v.message.empty() ? "" : " ") + sentence_of(f, numbers);
+        v.message += (v.message.empty() ? "" : " ") + sentence_of(f, traits);
         if (!here) v.place = f.wo ? "w_o = " + output::direction_text(*f.wo) : "pairs of directions";
     }
 }
@@ -221,7 +222,7 @@ std::vector<Verdict> verdicts_of(
             for (const CheckAt& c : outcome.at[k]) withhold(c, v);
             if (!outcome.at[k].empty() && std::ranges::all_of(outcome.at[k], &CheckAt::nothing_drawn))
                 note_nothing_drawn(outcome.at[k][0], draws_elsewhere(outcome), check_case.adapter->has_f(), v);
-            if (k == 0) add_faults_of_sampler(outcome, check_case.adapter->traits().numbers, v);
+            if (k == 0) add_faults_of_sampler(outcome, check_case.adapter->traits(), v);
             if (v.state == State::right && v.message.empty() && !outcome.at[k].empty())
                 v.message = sentence_of_right(outcome.at[k][0], name);
             out.push_back(std::move(v));

@@ -14,7 +14,7 @@
 namespace crescent::check {
 
 std::string sentence_of(const CheckAt& at, const Finding& finding);
-std::string sentence_of(const SmallFault& fault, int numbers);
+std::string sentence_of(const SmallFault& fault, const Traits& traits);
 /// The measurement of a right verdict; "" for a verdict without one.
 std::string sentence_of_right(const CheckAt& at, std::string_view verdict);
 
@@ -34,8 +34,8 @@ struct ShareDifference {
 /// The largest difference that is clear, in the smallest node that has most of it; none if no node differs clearly.
 std::optional<ShareDifference> largest_difference(const CheckAt& at);
 /// "Of the draws 12.3 % +- 0.4 % are at polar angles 0 to 30 deg, where p has 6.1 % +- 0.1 %."
-std::string sentence_of(const ShareDifference& difference);
-std::string region_text(const ChartRect& rect);
+std::string sentence_of(const ShareDifference& difference, const Traits& traits);
+std::string region_text(const ChartRect& rect, const Traits& traits);
 
 /// The solid angles over which draws and p are spread: exp(entropy) over the same cells, sr. A uniform density has the
 /// solid angle of its support.
@@ -46,7 +46,7 @@ struct Concentration {
 };
 std::optional<Concentration> concentration_of(const CheckAt& at);
 /// "" if unknown.
-std::string sentence_of(const Concentration& concentration);
+std::string sentence_of(const Concentration& concentration, const Traits& traits);
 
 // ---- Tests that were not possible for a sampler at one w_o, and the reason: no pdf(w), no weights, answers that are
 // random estimates, a file of draws.

@@ -285,7 +285,7 @@ std::vector<CheckCase> make_user_cases(
     for (const auto& [theta, azimuth] : grid) {
         check_cases.push_back(make_user_case(adapter, theta, azimuth));
         const bool can_be_ranked =
-            adapter->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::WoDomain::none;
+            adapter->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.has_surface();
         if (!can_be_ranked) continue;  // cosine and uniform sample neither delta parts nor the other side
         const Vec3d wo = tilt(theta, azimuth);
         for (const std::shared_ptr<const SamplerAdapter>& peer :

@@ -53,8 +53,10 @@ inline constexpr const char* handshake_form = "'hello 2 NAME [KEY=VALUE]...'";
 struct Handshake {
     std::string name;
     Traits traits;
-    bool hemisphere = false;  // a draw below the horizon is no sample
-    bool f_cos = false;       // f includes |cos|
+    bool hemisphere = false;         // a draw below the horizon is no sample
+    bool states_wo = false;          // the key wo is given
+    std::optional<Domain> domain{};  // other than directions
+    bool f_cos = false;              // f includes |cos|
     bool weight = false, delta = false, blocks = false;
     std::vector<std::string> uses;  // of context_names()
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }

@@ -16,6 +16,7 @@
 
 #include "base/errors.h"
 #include "base/text.h"
+#include "check/estimate/stream.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
@@ -31,6 +32,9 @@ double for_float(double u) {
     const double nearest = below == in_steps ? below : below + (std::fmod(below, 2) == 0 ? 1 : 0);
     return std::min(nearest * 0x1p-24, 1 - 0x1p-24);
 }
+
+/// The random numbers of the draws to which the charts of infinite lines are fitted.
+constexpr check::StreamKey chart_key{.seed = 0x6c696e65, .purpose = check::Purpose::pilot};
 
 class PipeSampler : public ProgramSampler {
 public:
@@ -62,7 +66,7 @@ public:
     bool has_drawn_f() const override { return has_f_ || hello_.weight; }
     QueryUsage spending() const override { return connection_.spending(); }
 
-    int numbers() const override { return hello_.traits.numbers; }
+    int numbers() const override { return hello_.traits.own_numbers(); }
     bool uses_lights() const override { return hello_.uses_lights(); }
     bool has_density() const override { return hello_.traits.has_pdf; }
 
@@ -71,11 +75,12 @@ public:
         in.reserve(u.size() * columns_of_sample(example_lights));
         for (const PrimarySample& v : u)
             add_row(wo_to_send(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
-        query_samples(in, example_lights, out.size(), [&](std::size_t i, const Draw& d) { out[i] = d; });
+        query_samples(in, example_lights, out.size(),
+            [&](std::size_t i, std::span<const double> answer, bool delta) { out[i] = drawn(answer, delta, u[i]); });
     }
     void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
-        const std::size_t numbers = static_cast<std::size_t>(hello_.traits.numbers), lights = batch.lights.size();
+        const std::size_t numbers = own_numbers(), lights = batch.lights.size();
         std::vector<double> in, context;
         in.reserve(out.pdf.size() * columns_of_sample(lights));
         const double* u = batch.u.data();
@@ -87,8 +92,10 @@ public:
             for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
                 add_row(wo_to_send(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
         }
-        query_samples(
-            in, lights, out.pdf.size(), [&](std::size_t i, const Draw& d) { out.wi[i] = d.wi, out.pdf[i] = d.pdf; });
+        query_samples(in, lights, out.pdf.size(), [&](std::size_t i, std::span<const double> answer, bool delta) {
+            const Draw d = drawn(answer, delta, {});
+            out.wi[i] = d.wi, out.pdf[i] = d.pdf;
+        });
     }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
@@ -131,11 +138,19 @@ private:
     bool has_f_ = false;
     mutable std::mutex lock_;
 
+    std::size_t own_numbers() const { return static_cast<std::size_t>(hello_.traits.own_numbers()); }
+    const DomainChart* domain() const { return hello_.traits.domain.get(); }
+    /// Columns of w_o and of a point in a row.
+    std::size_t columns_of_wo() const { return domain() && hello_.traits.wo == Traits::WoDomain::none ? 0 : 3; }
+    std::size_t columns_of_point() const { return domain() ? domain()->domain().coordinates() : 3; }
     std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
     Vec3d wo_to_send(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
             hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
+        if (domain())
+            out = fmt::format("{} numbers '{} pdf", columns_of_point() + 1 + weights(),
+                columns_of_point() == 1 ? "x" : "the point's coordinates,");
         if (hello_.weight) out += weights() == 1 ? " weight" : " weight weight weight";
         return out + (hello_.delta ? "', or 'delta q' in place of pdf" : "'");
     }
@@ -147,23 +162,31 @@ private:
     }
     double number_for(double u) const { return hello_.traits.u_bits == 53 ? u : for_float(u); }
     std::size_t columns_of_sample(std::size_t lights) const {
-        return 3 + static_cast<std::size_t>(numbers()) + context_columns(hello_.uses, lights);
+        return columns_of_wo() + own_numbers() + context_columns(hello_.uses, lights);
     }
     /// Appends a row of a request for a sample; u(k): its random numbers.
     template <class U>
     void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
-        const auto numbers = static_cast<std::size_t>(hello_.traits.numbers);
-        const std::size_t before = in.size();
-        in.resize(before + 3 + numbers + context.size());
-        double* to = in.data() + before;
-        to[0] = wo.x, to[1] = wo.y, to[2] = wo.z;
-        for (std::size_t k = 0; k < numbers; ++k) to[3 + k] = number_for(u(k));
-        std::copy(context.begin(), context.end(), to + 3 + numbers);
+        add_wo(wo, in);
+        for (std::size_t k = 0; k < own_numbers(); ++k) in.push_back(number_for(u(k)));
+        in.insert(in.end(), context.begin(), context.end());
     }
-    /// Requests samples for rows of w_o, u and the context; calls take(i, draw) for each row in order.
+    void add_wo(Vec3d wo, std::vector<double>& in) const {
+        if (columns_of_wo() > 0) in.insert(in.end(), {wo.x, wo.y, wo.z});
+    }
+    /// Appends w_i, or the point that it is. Returns the factor of a density there, 0 if there is no point.
+    double add_point(Vec3d wi, std::vector<double>& in) const {
+        const std::size_t before = in.size();
+        in.resize(before + columns_of_point());
+        const std::span<double> to = std::span(in).subspan(before);
+        if (domain()) return domain()->point(wi, to);
+        to[0] = wi.x, to[1] = wi.y, to[2] = wi.z;
+        return 1;
+    }
+    /// Requests samples for rows of w_o, u and the context; calls take(i, answer, delta) for each row in order.
     template <class Take>
     void query_samples(const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
-        const std::size_t given = columns_of_sample(lights), got = 4 + weights();
+        const std::size_t given = columns_of_sample(lights), got = columns_of_point() + 1 + weights();
         std::vector<double> answers(count * got);
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
@@ -173,7 +196,7 @@ private:
                     return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
                 });
         for (std::size_t i = 0; i < count; ++i)
-            take(i, drawn(std::span(answers).subspan(i * got, got), !hello_.blocks && delta[i]));
+            take(i, std::span<const double>(answers).subspan(i * got, got), !hello_.blocks && delta[i]);
     }
     void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
         const std::vector<double>& in, std::span<double> out, std::size_t lights) const {
@@ -203,7 +226,8 @@ private:
         return blank(s);
     }
     /// No sample if pdf is 0, or if the draw is below the horizon of a sampler of the hemisphere.
-    Draw drawn(std::span<const double> a, bool delta) const {
+    Draw drawn(std::span<const double> a, bool delta, const PrimarySample& u) const {
+        if (domain()) return drawn_point(a, u);
         Draw d{{a[0], a[1], a[2]}, a[3]};
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
         const bool nothing = !delta && d.pdf == 0;
@@ -213,8 +237,19 @@ private:
         if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
         if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
         if (delta) d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen, d.pdf = 0;
-        if (weights() == 1) d.weight = a[4];
-        if (weights() == 3) d.weights = {a[4], a[5], a[6]}, d.weight = luminance(d.weights);
+        take_weight(weight, d);
+        return d;
+    }
+    static void take_weight(std::span<const double> weight, Draw& d) {
+        if (weight.size() == 1) d.weight = weight[0];
+        if (weight.size() == 3) d.weights = {weight[0], weight[1], weight[2]}, d.weight = luminance(d.weights);
+    }
+    /// a: the coordinates of a point of the domain, its pdf and weights.
+    Draw drawn_point(std::span<const double> a, const PrimarySample& u) const {
+        const std::size_t columns = columns_of_point();
+        Draw d = draw_of_point(*domain(), a.first(columns), a[columns], u, numbers());
+        if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
+        take_weight(a.subspan(columns + 1), d);
         return d;
     }
 
@@ -222,15 +257,21 @@ private:
     /// columns common to all rows, or those of each row.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
         std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
-        const std::size_t columns_of_context = context_columns(hello_.uses, lights), given = 6 + columns_of_context;
+        const std::size_t columns_of_context = context_columns(hello_.uses, lights),
+                          given = columns_of_wo() + columns_of_point() + columns_of_context;
         const bool each = columns_of_context > 0 && context.size() > columns_of_context;  // a context for each row
-        const auto counts = [&](const Pair& p) { return !hello_.hemisphere || p.wi.z > 0; };
-        std::vector<double> in;
+        std::vector<double> in, factor(all.size());  // factor: of an answer; 0 without a request
         for (std::size_t row = 0; row < all.size(); ++row) {
             const Pair& p = all[row];
-            if (!counts(p)) continue;
-            const Vec3d o = wo_to_send(p.wo);
-            for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
+            if (hello_.hemisphere && !(p.wi.z > 0)) continue;
+            const std::size_t before = in.size();
+            add_wo(wo_to_send(p.wo), in);
+            factor[row] = add_point(p.wi, in);
+            if (operation[0] == 'f' && hello_.f_cos && !domain()) factor[row] = p.wi.z != 0 ? 1 / std::fabs(p.wi.z) : 0;
+            if (!(factor[row] > 0)) {
+                in.resize(before);
+                continue;
+            }
             const auto own = std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
             in.insert(in.end(), own.begin(), own.end());
         }
@@ -249,12 +290,10 @@ private:
             });
         std::size_t next = 0;
         for (std::size_t i = 0; i < all.size(); ++i) {
-            const bool there = counts(all[i]);
-            const double cos = std::fabs(all[i].wi.z),
-                         by = operation[0] == 'f' && hello_.f_cos ? (cos > 0 ? 1 / cos : 0) : 1;
+            const bool requested = factor[i] > 0;
             for (std::size_t k = 0; k < columns; ++k)
-                out[i * columns + k] = there ? answers[next * columns + k] * by : 0;
-            next += there;
+                out[i * columns + k] = requested ? answers[next * columns + k] * factor[i] : 0;
+            next += requested;
         }
     }
 
@@ -271,7 +310,24 @@ private:
                 return true;
             });
         connection_.finish_handshake();
+        if (domain()) fit_domain();
         probe_f();
+    }
+    /// Fits the charts of infinite lines to draws, over all w_o that the program takes.
+    void fit_domain() {
+        if (std::ranges::none_of(domain()->domain().parts(), &DomainPart::is_infinite)) return;
+        std::vector<double> in, points;
+        for (std::uint32_t i = 0; i < draws_of_chart; ++i) {
+            const PrimarySample u = check::numbers_at(chart_key, i, numbers(), check::Resolution::standard);
+            add_row(tilt(15 + 15 * (i % 5)), [&](std::size_t k) { return u[static_cast<int>(k)]; }, example_, in);
+        }
+        query_samples(in, example_lights, draws_of_chart, [&](std::size_t, std::span<const double> a, bool) {
+            if (a[columns_of_point()] > 0)
+                points.insert(points.end(), a.begin(), a.begin() + std::ssize(a.first(columns_of_point())));
+        });
+        auto fitted = std::make_shared<DomainChart>(*domain());
+        fitted->fit(points);
+        hello_.traits.domain = std::move(fitted);
     }
     /// Determines whether there is a BRDF: none if the answer is `-` or, in blocks, NaN at all of these pairs of
     /// directions. At w_o = w_i = n alone a BRDF may fail.
@@ -288,7 +344,8 @@ private:
         const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
         std::vector<double> in;
         for (const Pair& pair : pairs) {
-            for (Vec3d v : {wo_to_send(pair.wo), pair.wi}) in.insert(in.end(), {v.x, v.y, v.z});
+            add_wo(wo_to_send(pair.wo), in);
+            add_point(pair.wi, in);
             in.insert(in.end(), example_.begin(), example_.end());
         }
         const std::size_t given = in.size() / pairs.size();
@@ -365,15 +422,18 @@ const std::array<HandshakeKey, 16>& keys() {
     static const std::array<HandshakeKey, 16> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
-        {"domain", "hemisphere or sphere",
+        {"domain", Domain::expected,
             [](S v, Handshake& g) {
+                const std::optional<Domain> domain = Domain::read(v);
                 g.hemisphere = v == "hemisphere";
-                return g.hemisphere || v == "sphere";
+                if (domain && !domain->is_direction()) g.domain = domain;
+                return domain.has_value();
             }},
         {"wo", "upper, both or none",
             [](S v, Handshake& g) {
                 int which = 0;
                 const bool known = one_of(v, {"upper", "both", "none"}, which);
+                g.states_wo = true;
                 g.traits.wo = which == 1 ? Traits::WoDomain::both
                     : which == 2         ? Traits::WoDomain::none
                                          : Traits::WoDomain::upper;
@@ -428,6 +488,32 @@ HandshakeError read_key(std::string_view word, Handshake& out) {
     return unknown(name);
 }
 
+/// The end of KEY=VALUE. The names of a product of domains may have spaces about their x.
+std::size_t end_of_word(std::string_view rest) {
+    const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+    if (!rest.starts_with("domain=")) return end;
+    std::size_t past = end;
+    for (std::string_view more = rest.substr(end); more.starts_with(" x ") && more.size() > 3; more = rest.substr(past))
+        past += 3 + std::min(more.substr(3).find_first_of(" \t"), more.size() - 3);
+    return past;
+}
+
+/// What the domain decides: without wo=, no w_o; and the numbers that spread a point.
+HandshakeError settle_domain(Handshake& out) {
+    if (!out.domain) return {};
+    const auto chart = std::make_shared<const DomainChart>(*out.domain);
+    const int most = PrimarySample::most - static_cast<int>(chart->spreads());
+    if (out.traits.numbers > most)
+        return {fmt::format("at most {} random numbers for this domain", most),
+            fmt::format("got u={}", out.traits.numbers)};
+    if (out.delta) return {"no delta=yes for a domain that is not of directions", "got delta=yes"};
+    if (!out.uses.empty()) return {"no uses= for a domain that is not of directions", "got uses="};
+    out.traits.numbers += static_cast<int>(chart->spreads());
+    out.traits.domain = chart;
+    if (!out.states_wo) out.traits.wo = Traits::WoDomain::none;
+    return {};
+}
+
 }  // namespace
 
 HandshakeError read_handshake(std::string_view answer, Handshake& out) {
@@ -450,7 +536,7 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
         std::set<std::string_view> seen;
         while (!blank(rest)) {
             rest.remove_prefix(rest.find_first_not_of(" \t"));
-            const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+            const std::size_t end = end_of_word(rest);
             if (const HandshakeError fault = read_key(rest.substr(0, end), out); fault) return fault;
             const std::string_view name_of_key = rest.substr(0, rest.find('='));
             if (!seen.insert(name_of_key).second)
@@ -464,7 +550,7 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     if (out.delta && !out.weight)
         return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
     out.traits.delta = out.delta;
-    return {};
+    return settle_domain(out);
 }
 
 // ---- Python files: crescent.serve of the Python package answers in the same protocol.

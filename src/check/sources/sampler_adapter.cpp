@@ -12,6 +12,7 @@
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "math/simd/scalar.h"
+#include "output/format.h"
 
 namespace crescent::inline sources {
 
@@ -74,6 +75,27 @@ std::string CheckCase::text() const {
     for (const std::string& part : {brdf, lighting})
         if (!part.empty()) s += ", " + part;
     return s;
+}
+
+Draw draw_of_point(
+    const DomainChart& domain, std::span<const double> point, double pdf, const PrimarySample& u, int numbers) {
+    if (pdf == 0) return {{0, 0, 1}, 0};
+    if (!domain.domain().fault(point).empty()) {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        domain.note_outside(point);
+        return {{none, none, none}, pdf};
+    }
+    std::array<double, PrimarySample::most> spread{};
+    const std::size_t count = domain.spreads();
+    for (std::size_t k = 0; k < count; ++k) spread[k] = u[numbers + static_cast<int>(k)];
+    const Vec3d w = domain.direction(point, std::span(spread).first(count));
+    std::array<double, Domain::most_coordinates> again{};
+    return {w, pdf * domain.point(w, std::span(again).first(point.size()))};
+}
+
+std::string place_text(const Traits& traits, Vec3d w) {
+    if (std::isnan(w.x + w.y + w.z)) return traits.domain ? traits.domain->first_outside() : "w_i NaN";
+    return traits.domain ? traits.domain->text(w) : "w_i = " + output::direction_text(w);
 }
 
 Vec3d tilt(double theta_deg, double azimuth_deg) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "check/domains/domain_chart.h"
 #include "math/simd/frame.h"
 #include "samplers/info.h"
 #include "scene/lights/all.h"
@@ -66,7 +68,7 @@ struct Index : std::optional<Vec3d> {
 struct Traits {
     enum class WoDomain { upper, both, none };  // the w_o that it accepts; none: it does not depend on w_o
     using Asked = WoDomain;
-    int numbers = 2;   // random numbers of a sample
+    int numbers = 2;   // random numbers of a sample, and those that spread a point of `domain`
     int channels = 1;  // of f and of the weight, 1 or 3
     WoDomain wo = WoDomain::upper;
     bool has_pdf = true;      // false: no pdf(w), and the pdf of a draw is 1 or 0
@@ -77,7 +79,20 @@ struct Traits {
     bool importance = false;  // f is scaled by eta^2 as importance is, not as radiance
     int bits = 0;             // precision of its arithmetic: 24, 53; 0: determined from the answers
     int u_bits = 24;          // of its random numbers: 24, or 53 if it asks for them
+    /// The chart through which it draws directions for points of another domain; null: it draws directions.
+    std::shared_ptr<const DomainChart> domain{};
+    /// Whether n has a meaning: draws below it are no samples, and f is multiplied by the cosine.
+    bool has_surface() const { return wo != WoDomain::none && !domain; }
+    /// |cos| of f's integrand: 1 where there is no surface at all.
+    double cosine(Vec3d wi) const { return domain ? 1 : std::fabs(wi.z); }
+    /// A density per solid angle as one over the domain.
+    double density(Vec3d w, double per_sr) const { return domain ? domain->density(w, per_sr) : per_sr; }
+    /// Random numbers that the sampler itself takes.
+    int own_numbers() const { return numbers - (domain ? static_cast<int>(domain->spreads()) : 0); }
 };
+
+/// A direction w_i, or the point of the domain, in words: "w_i = (0, 0, 1)", "entry 17".
+std::string place_text(const Traits& traits, Vec3d w);
 
 /// A direction and its density; pdf 0: no sample. weight: f cos / p if the sampler returns it.
 struct Draw {
@@ -89,6 +104,14 @@ struct Draw {
     double delta = 0;
     Vec3d weights{};  // by channel, if there are three and weight is set
 };
+
+/// The draw of a point of a domain with its density over it. u: the sampler's `numbers`, then those that spread the
+/// point. A point outside the domain has the direction NaN.
+Draw draw_of_point(
+    const DomainChart& domain, std::span<const double> point, double pdf, const PrimarySample& u, int numbers);
+
+/// Draws to which the chart of an infinite line is fitted.
+inline constexpr std::uint32_t draws_of_chart = 4096;
 
 /// Marks a delta part with selection probability 0; the verdict `valid` reports it.
 inline constexpr double delta_never_chosen = -std::numeric_limits<double>::infinity();

@@ -99,7 +99,7 @@ void test_light(const Evidence& e, const Visit& visit) {
     for (int c = 0; c < e.source.channels(); ++c) {
         if (of_mean) test_mean(e, c, visit);
         if (of_mean && !e.source.has_density()) test_mean_by_nodes(e, c, visit);
-        if (e.source.traits.wo != Traits::WoDomain::none) test_albedo(e, c, visit);
+        if (e.source.traits.has_surface()) test_albedo(e, c, visit);
     }
     if (!e.source.has_density() || e.plan.estimates) return;
     const LightIntegrals& l = e.integrals.light;

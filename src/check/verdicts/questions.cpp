@@ -61,7 +61,7 @@ bool never(const SamplerAdapter&) { return false; }
 bool with_pdf(const SamplerAdapter& s) { return s.traits().has_pdf; }
 bool with_pdf_and_f(const SamplerAdapter& s) { return s.traits().has_pdf && s.has_f(); }
 bool with_f(const SamplerAdapter& s) { return s.has_f(); }
-bool with_power(const SamplerAdapter& s) { return s.has_f() || s.traits().delta; }
+bool with_power(const SamplerAdapter& s) { return (s.has_f() || s.traits().delta) && !s.traits().domain; }
 bool with_weights(const SamplerAdapter& s) { return s.has_drawn_f(); }
 
 }  // namespace
@@ -71,7 +71,7 @@ constinit const VerdictKind support = {.applies = with_pdf_and_f, .needs = "Need
 constinit const VerdictKind normalised = {.applies = with_pdf, .needs = "Needs pdf."};
 constinit const VerdictKind density = {.applies = always};  // without a pdf: the density that the draws imply
 constinit const VerdictKind identity = {.applies = always};
-constinit const VerdictKind physics = {.applies = with_power, .needs = "Needs f."};
+constinit const VerdictKind physics = {.applies = with_power, .needs = "Needs f of a surface."};
 constinit const VerdictKind tail = {.applies = with_weights, .needs = "Needs f or weights."};
 constinit const VerdictKind mean = {.applies = with_f, .needs = "Needs f."};
 constinit const VerdictKind efficiency = {

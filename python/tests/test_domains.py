@@ -1,0 +1,129 @@
+"""Samplers of points of other domains than directions: right ones are right, faults are found with their cause."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import crescent
+import numpy as np
+import pytest
+
+
+def states(result):
+    return {v.name: v.state for v in result.verdicts}
+
+
+def disk(root):
+    def sample(u):
+        r, phi = root(u[:, 0]), 2 * np.pi * u[:, 1]
+        return np.column_stack([r * np.cos(phi), r * np.sin(phi)]), 1 / np.pi
+
+    return sample
+
+
+def uniform_in_disk(x):
+    return np.full(len(x), 1 / np.pi)
+
+
+def test_a_right_lens_is_right_and_one_without_root_is_named():
+    assert crescent.check(disk(np.sqrt), uniform_in_disk, domain="disk").state == "right"
+    wrong = crescent.check(disk(lambda u: u), uniform_in_disk, domain="disk")
+    assert wrong.state == "wrong"
+    density = next(v for v in wrong.verdicts if v.name == "density")
+    assert "square root is missing" in density.cause
+    assert "radius" in density.say
+
+
+@pytest.mark.parametrize("rate, state", [(2.0, "right"), (2.2, "wrong")])
+def test_distances_on_a_line_without_end(rate, state):
+    def sample(u):
+        x = -np.log1p(-u[:, 0]) / 2
+        return x, rate * np.exp(-rate * x)
+
+    result = crescent.check(sample, lambda x: rate * np.exp(-rate * x), domain="line:0,inf", numbers=1)
+    assert result.state == state
+    if state == "wrong":
+        assert any("x multiplied by" in v.cause for v in result.verdicts)
+
+
+def test_an_entry_of_a_set_is_named():
+    p = np.arange(1, 38) / 703
+    drawn = p.copy()
+    drawn[17] *= 0.5
+    drawn[30] += p[17] / 2
+    cdf = np.cumsum(drawn)
+
+    def sample(u):
+        i = np.minimum(np.searchsorted(cdf, u[:, 0], side="right"), 36)
+        return i, p[i]
+
+    result = crescent.check(sample, lambda i: p[i], domain="set:37", numbers=1)
+    assert states(result)["density"] == "wrong"
+    say = next(v.say for v in result.verdicts if v.name == "density")
+    assert say.startswith(("Entry 17 is drawn with", "Entry 30 is drawn with"))
+
+
+def test_a_product_and_its_integrand():
+    """A lobe and a direction of it; f has the integral 1."""
+
+    def density(x):
+        return np.where(x[:, 0] > 0, 0.7 * np.maximum(x[:, 3], 0) / np.pi, 0.3 / (2 * np.pi))
+
+    def sample(u):
+        cosine = u[:, 0] >= 0.3
+        z = np.where(cosine, np.sqrt(u[:, 1]), u[:, 1])
+        r, phi = np.sqrt(1 - z * z), 2 * np.pi * u[:, 2]
+        x = np.column_stack([cosine, r * np.cos(phi), r * np.sin(phi), z])
+        return x, density(x)
+
+    result = crescent.check(sample, density, density, domain="set:2 x hemisphere", numbers=3)
+    assert result.state == "right"
+    assert states(result)["mean"] == "right"
+    assert states(result)["physics"] == "skipped"
+
+
+@pytest.mark.parametrize(
+    "known, message",
+    [
+        ({"domain": "disc"}, "did you mean 'disk'"),
+        ({"domain": "set:0"}, "domain is 'set:0': expected"),
+        ({"domain": "line:2,1"}, "domain is 'line:2,1': expected"),
+        ({"domain": "cube x disk"}, "expected"),
+        ({"domain": "disk", "eta": 1.5}, "eta is given"),
+        ({"domain": "set:4", "numbers": 7}, "at most 6"),
+    ],
+)
+def test_what_is_refused(known, message):
+    with pytest.raises(ValueError, match=message):
+        crescent.check(disk(np.sqrt), uniform_in_disk, **known)
+
+
+def test_points_outside_are_named():
+    result = crescent.check(lambda u: (2 * u - 1, 1 / np.pi), uniform_in_disk, domain="disk")
+    valid = next(v for v in result.verdicts if v.name == "valid")
+    assert valid.state == "wrong"
+    assert "outside the unit disk" in valid.say
+
+
+FILE = """
+import numpy as np
+domain = "line:0,1"
+numbers = 1
+def sample(u):
+    x = np.sqrt(u[:, 0])
+    return x, 2 * x
+def pdf(x):
+    return 2 * x
+"""
+
+
+def test_a_file_states_its_domain(tmp_path, monkeypatch):
+    (tmp_path / "ramp.py").write_text(FILE)
+    result = crescent.check(str(tmp_path / "ramp.py"))
+    assert result.state == "right"
+    program = Path(crescent.__file__).parent / "bin" / "crescent"
+    if not program.exists():
+        pytest.skip("the command is not in this build")
+    monkeypatch.setenv("CRESCENT_PYTHON", sys.executable)
+    run = subprocess.run([program, "check", str(tmp_path / "ramp.py"), "--quiet"], capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
