@@ -233,8 +233,9 @@ FlipExposures flip_exposures(const FlipImage& reference) {
     constexpr double t = 0.85;  // of the tone map's range: its output for the largest and for the median luminance
     const double a = aces_fit.a - t * aces_fit.c, b = aces_fit.b - t * aces_fit.d, c = 0 - t * aces_fit.e;
     const double x = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
-    const double median = std::max(order_statistic(y, (y.size() - 1) / 2), 1e-7),
-                 largest = std::max(*std::max_element(y.begin(), y.end()), 1e-7);
+    const double largest = std::max(*std::max_element(y.begin(), y.end()), 1e-7);
+    const std::size_t middle = (y.size() - 1) / 2;
+    const double median = std::max(order_statistic(std::move(y), middle), 1e-7);
     FlipExposures out{math::log(x / largest) / std::numbers::ln2, math::log(x / median) / std::numbers::ln2, 2};
     out.count = std::max(2, static_cast<int>(std::ceil(out.stop - out.start)));
     return out;
@@ -244,9 +245,8 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
     return flip_of_all(reference, test, ppd, factors(flip_exposures(reference)), isa);
 }
 
-std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, std::span<const FlipImage> tests,
-    std::span<const Box> boxes, double ppd, const std::string& isa) {
-    const std::vector<float> exposures = factors(flip_exposures(reference));
+std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, const FlipExposures& exposures,
+    std::span<const FlipImage> tests, std::span<const Box> boxes, double ppd, const std::string& isa) {
     std::vector<std::vector<float>> maps;
     for (std::size_t t = 0; t < tests.size(); ++t)
         for (const Box& box : boxes)
@@ -254,7 +254,7 @@ std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, std:
     std::vector<Wanted> wanted;
     for (std::size_t k = 0; k < maps.size(); ++k)
         wanted.push_back({reference, tests[k / boxes.size()], boxes[k % boxes.size()], maps[k].data()});
-    compute_flips(wanted, ppd, exposures, isa);
+    compute_flips(wanted, ppd, factors(exposures), isa);
     std::vector<std::vector<double>> out(tests.size());
     for (std::size_t k = 0; k < maps.size(); ++k) out[k / boxes.size()].push_back(mean_of(maps[k]));
     return out;

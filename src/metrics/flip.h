@@ -29,11 +29,6 @@ std::vector<float> ldr_flip(
 std::vector<float> hdr_flip(
     const FlipImage& reference, const FlipImage& test, double pixels_per_degree, const std::string& isa = "");
 
-/// Returns the mean of hdr_flip() over each box, for each test picture: out[test][box]. Only the pixels of a box and
-/// those that its filters reach are evaluated.
-std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, std::span<const FlipImage> tests,
-    std::span<const Box> boxes, double pixels_per_degree, const std::string& isa = "");
-
 /// The exposures of HDR-FLIP: 2^start .. 2^stop in `count` equal steps.
 struct FlipExposures {
     double start = 0, stop = 0;
@@ -41,5 +36,12 @@ struct FlipExposures {
 };
 /// Returns the exposures for a reference, in stops (Andersson et al. 2021, section 3.2).
 FlipExposures flip_exposures(const FlipImage& reference);
+
+/// Returns the mean of hdr_flip() over each box, for each test picture: out[test][box]. `exposures`: those of the
+/// reference. Only the pixels of a box and
+/// those that its filters reach are evaluated.
+std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, const FlipExposures& exposures,
+    std::span<const FlipImage> tests, std::span<const Box> boxes, double pixels_per_degree,
+    const std::string& isa = "");
 
 }  // namespace crescent::inline metrics

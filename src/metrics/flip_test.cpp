@@ -51,7 +51,7 @@ TEST(Flip, OfABoxIsThatOfTheWholePictureThere) {
     const std::vector<float> map = hdr_flip(reference, test, 30);
     const Box boxes[] = {{40, 20, 52, 29}, {0, 0, 7, 59}, {89, 59, 89, 59}};
     const FlipImage tests[] = {reference, test};
-    const auto means = mean_hdr_flips(reference, tests, boxes, 30);
+    const auto means = mean_hdr_flips(reference, flip_exposures(reference), tests, boxes, 30);
     for (std::size_t k = 0; k < std::size(boxes); ++k) {
         double sum = 0;
         for (int y = boxes[k].y0; y <= boxes[k].y1; ++y)

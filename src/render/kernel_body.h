@@ -116,28 +116,44 @@ template <class A, class L, class E, class F> struct Lane : E {
         return this->add_seen(drawn, seen, g, lobe, g * (c.fill_d + lobe * c.fill_s));
     }
 
-    [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<E, F>& c, const A& arm, const L& brdf,
-        const Vec4u<U>& h, bool odd, std::uint64_t j, const KernelCall& call) {
-        const Vec2<F> u =
-            odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
+    template <class First, class Second> struct TwoDirections {
+        First a;
+        Second b;
+        F weight_a, weight_b;
+    };
+
+    /// Draws what a sample needs from its random numbers: its direction, or both of them with their weights. Samplers
+    /// that draw later get the numbers themselves. `second`: the numbers of a second technique.
+    [[gnu::always_inline]] auto draw(
+        const Constants<E, F>& c, const A& arm, Vec2<F> u, [[maybe_unused]] const Vec2<F>& second) const {
+        if constexpr (requires { A::many_directions; } || requires { A::combines; }) {
+            return u;
+        } else if constexpr (requires { A::techniques; }) {
+            auto a = arm.template sample_technique<0>(c.wo, u);
+            auto b = arm.template sample_technique<1>(c.wo, second);
+            return TwoDirections<decltype(a), decltype(b)>{
+                a, b, arm.template weight<0>(c.wo, a), arm.template weight<1>(c.wo, b)};
+        } else {
+            return arm.sample(c.wo, u);
+        }
+    }
+
+    /// Takes one sample by what draw() returned.
+    template <class D> [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<E, F>& c, const A& arm,
+        const L& brdf, const D& drawn, std::uint64_t j, const KernelCall& call) {
         F x;
         if constexpr (requires { A::many_directions; }) {
             x = accumulate(to, c, brdf, arm.next->drawn, arm.next->weight), ++arm.next;
             for (std::size_t k = 1; k < arm.count; ++k, ++arm.next)
                 x = x + accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
         } else if constexpr (requires { A::combines; }) {
-            x = arm.sample(c.pixel, j, call.seed, u,
-                [&](auto& drawn, const auto& weigh) { return accumulate_seen(to, c, brdf, drawn, weigh); });
+            x = arm.sample(c.pixel, j, call.seed, drawn,
+                [&](auto& one, const auto& weigh) { return accumulate_seen(to, c, brdf, one, weigh); });
         } else if constexpr (requires { A::techniques; }) {
-            const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
-            const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)}
-                                  : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
-            const auto a = arm.template sample_technique<0>(c.wo, u);
-            const auto b = arm.template sample_technique<1>(c.wo, v);
-            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // sums depend on the order
-            x = x + accumulate(to, c, brdf, b, arm.template weight<1>(c.wo, b));
+            x = accumulate(to, c, brdf, drawn.a, drawn.weight_a);  // sums depend on the order
+            x = x + accumulate(to, c, brdf, drawn.b, drawn.weight_b);
         } else {
-            x = accumulate(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
+            x = accumulate(to, c, brdf, drawn, number<F>(1));
         }
         const F off = x - to.pivot;
         to.off = to.off + off;
@@ -231,10 +247,26 @@ template <class L, class F> L lobe_of(const ShadingPoints& points, const Shading
     else return L(at.s, at.alpha);
 }
 
-/// Runs one pack of pixels through all its samples; make(shading point) returns the sampler.
+/// Writes the random numbers of samples j to end, two each, from a block of their dimensions.
+template <class F> CRESCENT_INLINE void draw_numbers(
+    UintOf<F> pixel, std::uint32_t seed, std::uint32_t block, std::uint64_t j, std::uint64_t end, Vec2<F>* to) {
+    using U = UintOf<F>;
+    while (j < end) {
+        const Vec4u<U> h = draws<U>(pixel, static_cast<std::uint32_t>(j >> 1), block, seed);
+        if (!(j & 1)) {
+            *to++ = {unit_float<F>(h.x), unit_float<F>(h.y)};
+            if (++j == end) return;
+        }
+        *to++ = {unit_float<F>(h.z), unit_float<F>(h.w)};
+        ++j;
+    }
+}
+
+/// Runs one pack of pixels through all its samples; make(shading point) returns the sampler. A block's random numbers,
+/// directions and sums each have a loop of their own: a whole sample is a longer chain of dependent operations than a
+/// processor looks ahead, and the steps of a short loop overlap.
 template <class A, class L, class E, class F, class Make>
 void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
-    using U = UintOf<F>;
     Lane<A, L, E, F> lane(*call.shading_points, at, room);
     RunningSums<F> gathered;
     Totals<F> totals;
@@ -244,27 +276,25 @@ void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& roo
     const Constants<E, F> c = lane.constants();
     const std::uint64_t n = call.sample_counts.back();
     std::size_t sample_count = 0;
+    Vec2<F> u[block_length], second[block_length];
+    decltype(lane.draw(c, arm, u[0], second[0])) drawn[block_length];
     for (std::uint64_t j = 0; j < n;) {
         const std::uint64_t block_end = (j / block_length + 1) * block_length;
         const std::uint64_t end =
             block_end < call.sample_counts[sample_count] ? block_end : call.sample_counts[sample_count];
-        while (j < end) {
-            const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
-            if (!(j & 1)) {
-                lane.step(gathered, c, arm, brdf, h, false, j, call);
-                if (j == 0) {  // X - pivot is X because the pivot is 0
-                    gathered.pivot = gathered.off;
-                    gathered.off = gathered.square = number<F>(0);
-                }
-                if (++j == end) break;
-            }
-            lane.step(gathered, c, arm, brdf, h, true, j, call);
-            if (j == 1) {  // X_1 - X_0 is the sum so far; relative to the smaller of the two it is its size, and the
-                           // square is unchanged
+        draw_numbers(c.pixel, call.seed, 0, j, end, u);
+        if constexpr (requires { A::techniques; }) draw_numbers(c.pixel, call.seed, 1, j, end, second);
+        for (std::uint64_t k = 0; k < end - j; ++k) drawn[k] = lane.draw(c, arm, u[k], second[k]);
+        for (std::uint64_t k = 0; j < end; ++k, ++j) {
+            lane.step(gathered, c, arm, brdf, drawn[k], j, call);
+            if (j == 0) {  // X - pivot is X because the pivot is 0
+                gathered.pivot = gathered.off;
+                gathered.off = gathered.square = number<F>(0);
+            } else if (j == 1) {  // X_1 - X_0 is the sum so far; relative to the smaller of the two it is its size, and
+                                  // the square is unchanged
                 gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
                 gathered.off = abs(gathered.off);
             }
-            ++j;
         }
         if (j == block_end) {
             totals.take(gathered);

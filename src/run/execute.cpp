@@ -28,24 +28,45 @@ struct Flips {
     std::vector<double> values;
 };
 
+/// Returns whether the films of a seed have FLIP.
+bool has_flip(const RunPlan& plan, std::uint32_t seed) {
+    const std::vector<std::uint32_t> series = seeds_of(plan.whole);
+    const auto place = static_cast<std::size_t>(std::ranges::find(series, seed) - series.begin());
+    return place < static_cast<std::size_t>(std::max(plan.whole.flip_seeds, 1)) && !plan.experiment.regions.empty();
+}
+
+template <class AnyFilm> FlipImage flip_image(const AnyFilm& film) {
+    return {film.width, film.height, film.r, film.g, film.b};
+}
+
+/// Computes the exposures of the references that FLIP is measured against: all jobs of an exponent share them.
+std::vector<FlipExposures> exposures_of(const RunPlan& plan, const Prepared& prepared) {
+    if (std::ranges::none_of(plan.seeds, [&](std::uint32_t seed) { return has_flip(plan, seed); })) return {};
+    std::vector<FlipExposures> out(plan.exponents.size());
+    parallel_for(std::size_t{0}, out.size(), [&](std::size_t k) {
+        if (const ReferenceFilm* reference = reference_of(plan.experiment, prepared, plan.exponents[k]))
+            out[k] = flip_exposures(flip_image(*reference));
+    });
+    return out;
+}
+
 /// Computes FLIP, which costs more than all other metrics, for the first seeds of the series at one sample count: the
 /// experiment's own, at which arms are compared, or the highest.
-Flips flips_of(const RunPlan& plan, const Job& job, const std::vector<Film>& films, const ReferenceFilm& reference,
-    const std::string& isa) {
+Flips flips_of(const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films,
+    const ReferenceFilm& reference, const std::string& isa) {
+    if (!has_flip(plan, job.seed)) return {};
     const Experiment& experiment = plan.experiment;
-    const std::vector<std::uint32_t> series = seeds_of(plan.whole);
-    const auto place = static_cast<std::size_t>(std::ranges::find(series, job.seed) - series.begin());
-    if (place >= static_cast<std::size_t>(std::max(plan.whole.flip_seeds, 1)) || experiment.regions.empty()) return {};
-    const auto image = [](const auto& film) { return FlipImage{film.width, film.height, film.r, film.g, film.b}; };
     const ArmPlan* arm = experiment.find_arm(job.arm);
     ensure(arm != nullptr, "a job is of an arm of the experiment");
     const auto own = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
     Flips out;
     out.film = own == films.end() ? films.size() - 1 : static_cast<std::size_t>(own - films.begin());
-    const FlipImage test[] = {image(films[out.film])};
+    const FlipImage test[] = {flip_image(films[out.film])};
     std::vector<Box> boxes;
     for (const Region& region : experiment.regions) boxes.push_back(region.box);
-    out.values = mean_hdr_flips(image(reference), test, boxes, flip_pixels_per_degree, isa)[0];
+    const auto exponent = static_cast<std::size_t>(std::ranges::find(plan.exponents, job.s) - plan.exponents.begin());
+    out.values = mean_hdr_flips(
+        flip_image(reference), prepared.flip_exposures.at(exponent), test, boxes, flip_pixels_per_degree, isa)[0];
     return out;
 }
 
@@ -62,7 +83,7 @@ std::vector<RunMetrics> metrics_of(const RunPlan& plan, const Prepared& prepared
                 out[r] = measure(plan.experiment, key, films[r], *reference, prepared.shapes);
             });
         },
-        [&] { flips = flips_of(plan, job, films, *reference, isa); });
+        [&] { flips = flips_of(plan, prepared, job, films, *reference, isa); });
     for (std::size_t r = 0; r < flips.values.size(); ++r) out[flips.film].regions[r].flip = flips.values[r];
     return out;
 }
@@ -155,6 +176,7 @@ void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engin
     const Engine with = settled(engine);
     prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
         compute_references(plan, prepared, with, monitor);
+        prepared.flip_exposures = exposures_of(plan, prepared);
         finish_points(plan, prepared, monitor);
     });
 }

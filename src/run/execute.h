@@ -12,6 +12,7 @@
 
 #include "base/progress.h"
 #include "experiment/experiment.h"
+#include "metrics/flip.h"
 #include "metrics/metrics.h"
 #include "render/film.h"
 #include "render/tiles.h"
@@ -47,6 +48,7 @@ struct Prepared {
     std::vector<std::uint64_t> shape_pixels;  // of each shape, in the experiment's order
     std::uint64_t geometry_pixels = 0;
     std::vector<ReferenceFilm> quadrature, monte_carlo, paired;  // one per exponent, in the plan's order
+    std::vector<FlipExposures> flip_exposures;  // of the same that the metrics use; none if no film has FLIP
     bool stopped = false;
 };
 
