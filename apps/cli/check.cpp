@@ -2,12 +2,14 @@
 #include "check.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "commands.h"
 #include "crescent/crescent.h"
@@ -169,23 +171,94 @@ std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
 
 bool is_experiment(const CheckFlags& flags) { return flags.arm.ends_with(".toml"); }
 
+constexpr const char* not_a_number =
+    "needs a sampler whose draws are values: domain=number in its handshake, or in Python";
+
+/// The value of --domain.
+std::optional<Domain> domain_of(const CheckFlags& flags) {
+    if (flags.domain.empty()) return {};
+    const std::optional<Domain> domain = Domain::read(flags.domain);
+    if (!domain)
+        throw InputError({"--domain " + flags.domain, 0, 0},
+            std::string("expected ") + Domain::expected +
+                did_you_mean(flags.domain.substr(0, flags.domain.find(':')), Domain::names()));
+    return domain;
+}
+
+/// The sampler in a Python file or of --exec; null if there is none.
+std::shared_ptr<const ProgramSampler> program_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    const bool python = names_python_sampler(flags.arm);
+    if (python && !flags.settings.empty())
+        throw InputError({"--set " + flags.settings.front(), 0, 0},
+            "is for built-in samplers, and " + flags.arm + " has its own parameters");
+    if (python) return start_python_sampler(flags.arm, limits_of(flags, monitor));
+    return flags.exec.empty() ? nullptr : start_pipe(flags.exec, limits_of(flags, monitor), "", domain_of(flags));
+}
+
+/// An estimator of a number, which has no w_o.
+CheckCase number_case(const std::shared_ptr<const SamplerAdapter>& estimator) {
+    CheckCase out;
+    out.arm = estimator->name(), out.adapter = estimator;
+    return out;
+}
+
+/// The values of --estimates, one or one for each channel.
+std::array<double, 3> expected_values(const CheckFlags& flags, int channels) {
+    std::vector<double> values;
+    std::string rest = flags.estimates;
+    int depth = 0;
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= rest.size(); ++i) {
+        if (i < rest.size() && rest[i] == '(') ++depth;
+        if (i < rest.size() && rest[i] == ')') --depth;
+        if (i < rest.size() && (rest[i] != ',' || depth > 0)) continue;
+        try {
+            values.push_back(constant_value(rest.substr(begin, i - begin)));
+        } catch (const std::invalid_argument& e) {
+            throw InputError({"--estimates " + flags.estimates, 0, 0}, e.what());
+        }
+        begin = i + 1;
+    }
+    if (values.size() != 1 && (values.size() != 3 || channels != 3))
+        throw InputError({"--estimates " + flags.estimates, 0, 0},
+            channels == 3 ? "expected one value, or one for each of three channels" : "expected one value");
+    return {values.front(), values[values.size() / 2], values.back()};
+}
+
+/// An estimator of a number against its expected value, or against another estimator.
+CheckResult check_of_number(
+    const CheckFlags& flags, const std::shared_ptr<const SamplerAdapter>& estimator, Progress& monitor) {
+    if (flags.estimates.empty() == flags.against.empty())
+        throw InputError({"crescent check " + estimator->name(), 0, 0},
+            "draws values: expected either --estimates VALUE, their mean, or --against an estimator of the same "
+            "number");
+    check::ExpectedMean expected;
+    if (!flags.estimates.empty()) expected.value = expected_values(flags, estimator->traits().channels);
+    else {
+        const PipeLimits limits = limits_of(flags, monitor);
+        expected.estimator = names_python_sampler(flags.against) ? start_python_sampler(flags.against, limits)
+                                                                 : start_pipe(flags.against, limits);
+        if (!expected.estimator->traits().number ||
+            expected.estimator->traits().channels != estimator->traits().channels)
+            throw InputError({"--against " + flags.against, 0, 0}, "draws no values of as many channels");
+    }
+    return check::check_number(estimator, expected, test_settings_of(flags), monitor);
+}
+
 std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
     if (is_experiment(flags)) return cases_of_experiment(flags);
     if (!flags.sampler.empty() || flags.pixels > 0)
         throw InputError({flags.sampler.empty() ? "--pixels" : "--sampler", 0, 0},
             "needs an experiment: crescent check FILE.toml --sampler NAME");
-    const bool python = names_python_sampler(flags.arm);
-    if (python && !flags.settings.empty())
-        throw InputError({"--set " + flags.settings.front(), 0, 0},
-            "is for built-in samplers, and " + flags.arm + " has its own parameters");
-    if (python || !flags.exec.empty()) {
-        const auto adapter = python ? start_python_sampler(flags.arm, limits_of(flags, monitor))
-                                    : start_pipe(flags.exec, limits_of(flags, monitor));
+    if (const auto adapter = program_of(flags, monitor)) {
+        if (adapter->traits().number) return {number_case(adapter)};
+        if (!flags.estimates.empty()) throw InputError({"--estimates", 0, 0}, not_a_number);
         check_sides(flags, adapter->traits());
         check_light(flags, adapter->traits(), adapter->has_f());
         return make_user_cases(adapter, flags.full, grid_of(flags));
     }
     if (flags.light) throw InputError({"--light", 0, 0}, "needs --exec or a sampler in a Python file");
+    if (!flags.estimates.empty()) throw InputError({"--estimates", 0, 0}, not_a_number);
     if (!flags.plugin.empty()) {
         const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
@@ -233,6 +306,8 @@ std::string command_of(const CheckFlags& f) {
     if (!f.sampler.empty()) out += " --sampler " + shell_word(f.sampler);
     if (f.pixels > 0) out += fmt::format(" --pixels {}", f.pixels);
     if (f.light) out += " --light";
+    if (!f.domain.empty()) out += " --domain " + shell_word(f.domain);
+    if (!f.estimates.empty()) out += " --estimates " + shell_word(f.estimates);
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
              {"--pdf-table", &f.table}, {"--against", &f.against}})
@@ -345,10 +420,16 @@ int check(const CheckFlags& given) {
     try {
         const std::vector<CheckCase> check_cases = cases_for(flags, monitor);
         check_waivers(waivers, names_of(check_cases));
-        if (flags.describe) return describe_draws(flags, check_cases, monitor);
-        if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
-        log_cost(check_cases, test_settings_of(flags), monitor);
-        j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+        const bool number = check_cases.front().adapter && check_cases.front().adapter->traits().number;
+        if (number) {
+            if (flags.describe) throw InputError({"--describe", 0, 0}, "is for samplers of directions and points");
+            j = check_of_number(flags, check_cases.front().adapter, monitor);
+        } else {
+            if (flags.describe) return describe_draws(flags, check_cases, monitor);
+            if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
+            log_cost(check_cases, test_settings_of(flags), monitor);
+            j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+        }
     } catch (const SamplerError& fault) { j = unchecked_result(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();

@@ -126,6 +126,13 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(arm)
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
+    c->add_option("--domain", f->domain, "what a program draws that does not say so; docs/domains.md")
+        ->type_name("DOMAIN")
+        ->needs(exec)
+        ->check(not_empty);
+    c->add_option("--estimates", f->estimates, "the expected value of a sampler of domain=number: 0.8187, exp(-0.2)")
+        ->type_name("VALUE[,VALUE,VALUE]")
+        ->check(not_empty);
     limits(*c, *f);
     for (auto* other : {arm, set, planted}) {
         exec->excludes(other);

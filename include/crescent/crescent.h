@@ -28,6 +28,8 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "check/check.h"
+#include "check/numbers/expression.h"
+#include "check/numbers/number_check.h"
 #include "check/report/describe.h"
 #include "check/report/print.h"
 #include "check/sources/cases.h"

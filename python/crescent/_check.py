@@ -6,7 +6,7 @@ import difflib
 import inspect
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Unpack
@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._context import on_one_surface
-from ._domains import charted
+from ._domains import as_weights, charted
 from ._files import names_a_file, sampler_at
 from ._result import CheckResult
 from ._libraries import library_named, library_wanted
@@ -120,7 +120,10 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     try:
         s = _of_library(s)
         chart = None
-        if not s.of_directions():
+        number = s.is_number()
+        if number:
+            s = as_weights(s)
+        elif not s.of_directions():
             s, chart = charted(s)
         channels, weighs, delta = _look(s)
     except IndexError as e:
@@ -149,6 +152,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         full=full,
         grid=grid,
         domain=chart,
+        number=number,
     )
 
 
@@ -164,6 +168,7 @@ def _run_checks(
     other: _crescent.CheckCases | None = None,
     expect_same: bool = False,
     progress: Progress | None = None,
+    estimates: list[float] | None = None,
 ) -> CheckResult:
     if progress is not None and not callable(progress):
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total)")
@@ -180,6 +185,7 @@ def _run_checks(
         threads=threads,
         command=command,
         progress=progress,
+        estimates=estimates,
     )
     return CheckResult(checked)
 
@@ -280,6 +286,7 @@ def check(
     full: bool = False,
     against: Sampler | str | None = None,
     expect_same: bool = False,
+    estimates: float | Sequence[float] | None = None,
     settings: Mapping[str, float] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
@@ -300,7 +307,8 @@ def check(
 
     `wo_deg`: angles from the normal, or (angle, azimuth), in degrees, instead of the grid. `alpha`: the probability
     that a correct sampler is reported as wrong, over everything in the call. `against`: a second sampler, compared with
-    the first. `progress(what, done, total)` is called several times a second.
+    the first. `estimates`: the expected value of a sampler with ``domain="number"``, whose draws are values, or one for
+    each of three channels; or `against` is another estimator of the same number. `progress(what, done, total)` is called several times a second.
     """
     of_experiment = sampler is not None or _is_experiment(sample)
     if of_experiment:
@@ -325,9 +333,15 @@ def check(
         raise TypeError(
             f"against is {type(against).__name__}: expected a crescent.Sampler(sample, pdf, f), or the name of an arm"
         )
+    is_number = not of_experiment and cases.number
+    if (estimates is None) == (against is None) and is_number:
+        raise TypeError(f"{title} draws values: expected either estimates=VALUE, their mean, or against=another estimator")
+    if estimates is not None and not is_number:
+        raise TypeError("estimates is for a sampler whose draws are values: domain='number'")
     return _run_checks(
         cases,
         f"crescent.check({title!r})",
+        estimates=None if estimates is None else [float(v) for v in np.atleast_1d(estimates)],
         alpha=alpha,
         seed=seed,
         full=full,

@@ -43,6 +43,22 @@ def points(answer: Any, n: int, name: str, coordinates: int) -> Points:
     )
 
 
+def values(answer: Any, n: int, name: str) -> Array:
+    """Returns values[n, c] from the result of `sample` of an estimator of a number."""
+    return _arrays.channels(answer, n, f"{name}: sample's values")
+
+
+def as_weights(s: Sampler) -> Sampler:
+    """Returns an estimator of a number as a sampler whose weights are its values."""
+    name = s.title()
+
+    def sample(u: Array) -> tuple[Array, Array, Array]:
+        n = len(u)
+        return np.broadcast_to([0.0, 0.0, 1.0], (n, 3)), np.ones(n), values(s.sample(u), n, name)
+
+    return replace(s, sample=sample, name=name, numbers=None, domain="sphere")
+
+
 def as_given(x: Array, chart: Any) -> Array:
     """Returns points as the callables take them."""
     if x.shape[1] == 1:

@@ -73,7 +73,7 @@ class Sampler:
     u_bits: int = 24  #: their resolution in a check: 24 bits, as in a run, or 53
     #: what it draws: directions of the "sphere" or "hemisphere", where pdf and f are 0 below the surface for any result
     #: of the callables there; or points, "disk", "square", "cube", "triangle", "line:A,B", "set:N" or a product such as
-    #: "sphere x line:0,inf": sample(u) -> (x, pdf[, weight]), pdf(x), f(x)
+    #: "sphere x line:0,inf": sample(u) -> (x, pdf[, weight]), pdf(x), f(x); or "number": sample(u) -> values[n]
     domain: str = "sphere"
     #: the w_o that it supports; "none": sample(u) and pdf(wi), as for an environment light. None: "upper", and "none" for
     #: points
@@ -132,7 +132,17 @@ class Sampler:
         """Whether it draws directions, and not points of another domain."""
         return self.domain in DIRECTIONS
 
+    def is_number(self) -> bool:
+        """Whether its draws are values, estimates of a number."""
+        return self.domain == "number"
+
     def _check_points(self) -> None:
+        if self.is_number():
+            for what in ("pdf", "f", "delta", "eta", "uses", "radiance"):
+                if getattr(self, what):
+                    raise ValueError(f"{what} is given: an estimator of a number has sample(u) -> values alone")
+            object.__setattr__(self, "wo", "none")
+            return
         chart = _crescent.domain_chart(self.domain)
         most = 8 - chart.spreads
         if self.u > most:

@@ -20,7 +20,7 @@ from . import _arrays, _crescent
 from ._arrays import Array
 from ._check import _look, _of_library
 from ._context import ContextCalls, columns_of, decoded, on_one_surface
-from ._domains import as_given, points
+from ._domains import as_given, points, values
 from ._files import sampler_at
 from ._sampler import Sampler, rows_to_look_with
 
@@ -77,6 +77,17 @@ def _started_points(s: Sampler) -> tuple[str, Sampler, dict[bytes, tuple[int, An
         b"f___": (calls.wo + coordinates, lambda rows: calls.f(rows, count)),
     }
     return _handshake(s, count, weights > 0, False), s, operations
+
+
+def _started_number(s: Sampler) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]:
+    """As `_started`, for an estimator of a number."""
+    inner = _of_library(s)
+
+    def sample(u: Array) -> Array:
+        return values(inner.sample(u), len(u), s.title())
+
+    count = s.channels or sample(rows_to_look_with(8, s.u)[1]).shape[1]
+    return _handshake(s, count, False, False), s, {b"smpl": (s.u, sample)}
 
 
 class _Calls:
@@ -165,6 +176,8 @@ def _started(where: str) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]
     """The handshake of the sampler there, the sampler, and for each operation the columns before those of the context,
     and its answer."""
     s = sampler_at(where)
+    if s.is_number():
+        return _started_number(s)
     if not s.of_directions():
         return _started_points(s)
     channels, weighs, delta = _look(on_one_surface(s, {}) if s.uses else _of_library(s))

@@ -39,7 +39,7 @@ Traits::WoDomain wo_domain(const std::string& wo) {
 CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers,
     int u_bits, int channels, const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial,
     bool reciprocal, bool own_random, std::optional<std::vector<double>> eta, bool importance, bool full,
-    const Grid& grid, std::shared_ptr<DomainChart> domain) {
+    const Grid& grid, std::shared_ptr<DomainChart> domain, bool number) {
     Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
     c.traits.numbers = numbers;
     c.traits.u_bits = u_bits;
@@ -51,9 +51,13 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     c.traits.own_random = own_random;
     c.traits.importance = importance;
     c.traits.domain = std::move(domain);
+    c.traits.number = number;
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
     const auto adapter = std::make_shared<CallableSampler>(std::move(c));
-    return {make_user_cases(adapter, full, grid), adapter};
+    if (!number) return {make_user_cases(adapter, full, grid), adapter};
+    CheckCase only;
+    only.arm = adapter->name(), only.adapter = adapter;
+    return {{std::move(only)}, adapter};
 }
 
 CheckCases of_experiment(const Experiment& experiment, const std::string& sampler, int pixels, bool full,
@@ -97,12 +101,22 @@ bool is_serial(const CheckCases& check_cases) {
 }
 
 CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::uint32_t seed, bool full,
-    bool accept_few, bool expect_same, int threads, const std::string& command, const nb::object& progress) {
+    bool accept_few, bool expect_same, int threads, const std::string& command, const nb::object& progress,
+    const std::optional<std::vector<double>>& estimates) {
     const TestSettings settings = settings_of(alpha, seed, full, accept_few);
     PolledMonitor monitor;
     Raised raised(monitor);
     CheckRun out{{}, {version(), commit(), command}, other != nullptr};
     const auto work = [&] {
+        if (estimates || (check_cases.adapter && check_cases.adapter->traits().number)) {
+            out.against = false;
+            check::ExpectedMean expected;
+            if (estimates)
+                expected.value = {estimates->front(), estimates->at(estimates->size() / 2), estimates->back()};
+            else expected.estimator = other->adapter;
+            out.result = check::check_number(check_cases.adapter, expected, settings, monitor);
+            return;
+        }
         if (!other) {
             out.result = run_checks(check_cases.all, settings, monitor);
             return;
@@ -239,6 +253,7 @@ void add_checking(nb::module_& m) {
     using namespace nb::literals;
     nb::class_<CheckCases>(m, "CheckCases", "A sampler over a grid of w_o, ready to be checked.")
         .def("__len__", &CheckCases::size)
+        .def_prop_ro("number", [](const CheckCases& t) { return t.adapter && t.adapter->traits().number; })
         .def_prop_ro(
             "draws",
             [](const CheckCases& t) {
@@ -248,7 +263,7 @@ void add_checking(nb::module_& m) {
             "Draws that the callables made so far.");
     m.def("cases_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
         "u_bits"_a, "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a,
-        "own_random"_a, "eta"_a.none(), "importance"_a, "full"_a, "grid"_a, "domain"_a.none());
+        "own_random"_a, "eta"_a.none(), "importance"_a, "full"_a, "grid"_a, "domain"_a.none(), "number"_a);
     m.def("cases_of_experiment", &of_experiment, "experiment"_a, "sampler"_a, "pixels"_a, "full"_a, "callables"_a,
         "grid"_a, "keyword"_a,
         "An arm of an experiment at pixels of its scene; 0: over the grid of w_o on each material.");
@@ -262,7 +277,7 @@ void add_checking(nb::module_& m) {
         "Draws this many batches of 32768 from the callables, on all cores, and drops them: the cost of the calls.");
     m.def("baseline_of", &arm_beside, "arm"_a, "cases"_a);
     m.def("run_checks", &checked, "cases"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
-        "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
+        "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none(), "estimates"_a.none());
     m.def("describe", &described, "cases"_a, "seed"_a, "full"_a, "threads"_a, "progress"_a.none());
     m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes a temporary file and renames it.");
     m.def("sampler_names", &sampler_names, "The built-in arms.");

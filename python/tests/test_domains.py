@@ -127,3 +127,20 @@ def test_a_file_states_its_domain(tmp_path, monkeypatch):
     monkeypatch.setenv("CRESCENT_PYTHON", sys.executable)
     run = subprocess.run([program, "check", str(tmp_path / "ramp.py"), "--quiet"], capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_an_estimator_of_a_number():
+    def roulette(u):
+        return np.where(u[:, 0] < 0.05, 20.0, 0.0)
+
+    known = {"domain": "number", "numbers": 1}
+    assert crescent.check(roulette, estimates=1.0, **known).state == "right"
+    assert crescent.check(roulette, estimates=1.1, **known).state == "wrong"
+    against = crescent.Sampler(lambda u: 2 * u[:, 0], **known)
+    assert crescent.check(roulette, against=against, **known).state == "right"
+    with pytest.raises(TypeError, match="expected either estimates"):
+        crescent.check(roulette, **known)
+    with pytest.raises(TypeError, match="estimates is for a sampler whose draws are values"):
+        crescent.check(disk(np.sqrt), uniform_in_disk, domain="disk", estimates=1.0)
+    heavy = crescent.check(lambda u: 0.3 * u[:, 0] ** -0.7, estimates=1.0, **known)
+    assert states(heavy)["mean"] == "inconclusive"

@@ -311,6 +311,7 @@ std::string unseen_text(const CheckResult& result) {
     add("constant", "a constant factor of {:.2g} %", 100);
     add("leak", "{:.2g} % of the draws uniform", 100);
     add("cap", "a cap with {:.2g} % of p never drawn", 100);
+    add("bias", "a bias of {:.2g} %", 100);
     add("gap", "a gap with {:.2g} % of p never drawn", 100);
     add("rotation", "a rotation by {:.2g} rad", 1);
     add("shift", "a shift by {:.2g} % of the range", 100);

@@ -41,9 +41,9 @@ public:
 
 /// Starts `command` with /bin/sh -c. Throws SamplerError with the request, the answer and the expected answer;
 /// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is the prefix of
-/// its stderr output and of that text; "": the command.
-std::shared_ptr<const ProgramSampler> start_pipe(
-    const std::string& command, const PipeLimits& limits = {}, const std::string& label = "");
+/// its stderr output and of that text; "": the command. `domain`: what it draws, if its handshake does not say so.
+std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits = {},
+    const std::string& label = "", const std::optional<Domain>& domain = {});
 
 // ---- The declaration of a program; docs/samplers.md has the keys.
 

@@ -38,10 +38,11 @@ constexpr check::StreamKey chart_key{.seed = 0x6c696e65, .purpose = check::Purpo
 
 class PipeSampler : public ProgramSampler {
 public:
-    PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label)
+    PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label,
+        const std::optional<Domain>& domain)
         : connection_(command, limits, label) {
         try {
-            handshake_with_program(label);
+            handshake_with_program(label, domain);
         } catch (const SamplerError&) {
             const std::string& broken = connection_.broken();
             const bool unknown =
@@ -141,13 +142,21 @@ private:
     std::size_t own_numbers() const { return static_cast<std::size_t>(hello_.traits.own_numbers()); }
     const DomainChart* domain() const { return hello_.traits.domain.get(); }
     /// Columns of w_o and of a point in a row.
-    std::size_t columns_of_wo() const { return domain() && hello_.traits.wo == Traits::WoDomain::none ? 0 : 3; }
+    std::size_t columns_of_wo() const {
+        return (domain() || is_number()) && hello_.traits.wo == Traits::WoDomain::none ? 0 : 3;
+    }
     std::size_t columns_of_point() const { return domain() ? domain()->domain().coordinates() : 3; }
-    std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
+    bool is_number() const { return hello_.traits.number; }
+    std::size_t weights() const {
+        return hello_.weight || is_number() ? static_cast<std::size_t>(hello_.traits.channels) : 0;
+    }
+    /// Columns of the answer to a request for a sample.
+    std::size_t columns_of_draw() const { return (is_number() ? 0 : columns_of_point() + 1) + weights(); }
     Vec3d wo_to_send(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
             hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
+        if (is_number()) return weights() == 1 ? "one number, the value" : "three numbers, a value for each channel";
         if (domain())
             out = fmt::format("{} numbers '{} pdf", columns_of_point() + 1 + weights(),
                 columns_of_point() == 1 ? "x" : "the point's coordinates,");
@@ -186,7 +195,7 @@ private:
     /// Requests samples for rows of w_o, u and the context; calls take(i, answer, delta) for each row in order.
     template <class Take>
     void query_samples(const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
-        const std::size_t given = columns_of_sample(lights), got = columns_of_point() + 1 + weights();
+        const std::size_t given = columns_of_sample(lights), got = columns_of_draw();
         std::vector<double> answers(count * got);
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
@@ -228,6 +237,11 @@ private:
     /// No sample if pdf is 0, or if the draw is below the horizon of a sampler of the hemisphere.
     Draw drawn(std::span<const double> a, bool delta, const PrimarySample& u) const {
         if (domain()) return drawn_point(a, u);
+        if (is_number()) {
+            Draw value{{0, 0, 1}, 1};
+            take_weight(a, value);
+            return value;
+        }
         Draw d{{a[0], a[1], a[2]}, a[3]};
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
         const bool nothing = !delta && d.pdf == 0;
@@ -297,21 +311,32 @@ private:
         }
     }
 
-    void handshake_with_program(const std::string& label) {
+    void handshake_with_program(const std::string& label, const std::optional<Domain>& given) {
         connection_.lines(
             1, handshake_form, [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
                 Handshake hello;
+                if (given) {
+                    hello.hemisphere = given->name() == "hemisphere";
+                    if (!given->is_direction()) hello.domain = given;
+                }
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
                     connection_.fault("hello 2", 0, fault.got, fault.expected);
+                const std::string stated = hello.traits.number ? "number"
+                    : hello.domain                             ? hello.domain->name()
+                    : hello.hemisphere                         ? "hemisphere"
+                                                               : "sphere";
+                if (given && stated != given->name())
+                    throw InputError(
+                        {"--domain " + given->name(), 0, 0}, "the program draws " + stated + " by its handshake");
                 hello_ = hello;
                 example_ = example_context(hello.uses);
                 return true;
             });
         connection_.finish_handshake();
         if (domain()) fit_domain();
-        probe_f();
+        if (!is_number()) probe_f();
     }
     /// Fits the charts of infinite lines to draws, over all w_o that the program takes.
     void fit_domain() {
@@ -372,9 +397,9 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const ProgramSampler> start_pipe(
-    const std::string& command, const PipeLimits& limits, const std::string& label) {
-    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label);
+std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits,
+    const std::string& label, const std::optional<Domain>& domain) {
+    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label, domain);
 }
 
 // ---- A table of keys with their values, from which the messages are made too. The name is the text before the first
@@ -411,6 +436,8 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     return true;
 }
 
+const std::string number_or_domain = std::string("number, ") + Domain::expected;
+
 struct HandshakeKey {
     const char* name;
     const char* values;
@@ -422,8 +449,10 @@ const std::array<HandshakeKey, 16>& keys() {
     static const std::array<HandshakeKey, 16> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
-        {"domain", Domain::expected,
+        {"domain", number_or_domain.c_str(),
             [](S v, Handshake& g) {
+                g.domain.reset();
+                if ((g.traits.number = v == "number")) return true;
                 const std::optional<Domain> domain = Domain::read(v);
                 g.hemisphere = v == "hemisphere";
                 if (domain && !domain->is_direction()) g.domain = domain;
@@ -500,6 +529,12 @@ std::size_t end_of_word(std::string_view rest) {
 
 /// What the domain decides: without wo=, no w_o; and the numbers that spread a point.
 HandshakeError settle_domain(Handshake& out) {
+    if (out.traits.number) {
+        if (out.delta || out.weight || !out.uses.empty())
+            return {"no delta=, weight= and uses= with domain=number", "got one of them"};
+        out.traits.wo = Traits::WoDomain::none, out.traits.has_pdf = false;
+        return {};
+    }
     if (!out.domain) return {};
     const auto chart = std::make_shared<const DomainChart>(*out.domain);
     const int most = PrimarySample::most - static_cast<int>(chart->spreads());

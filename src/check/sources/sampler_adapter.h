@@ -79,6 +79,7 @@ struct Traits {
     bool importance = false;  // f is scaled by eta^2 as importance is, not as radiance
     int bits = 0;             // precision of its arithmetic: 24, 53; 0: determined from the answers
     int u_bits = 24;          // of its random numbers: 24, or 53 if it asks for them
+    bool number = false;      // each draw is one value, its weight: an estimate of a number
     /// The chart through which it draws directions for points of another domain; null: it draws directions.
     std::shared_ptr<const DomainChart> domain{};
     /// Whether n has a meaning: draws below it are no samples, and f is multiplied by the cosine.

@@ -1,0 +1,118 @@
+// Recursive descent: sums of products of powers.
+#include "check/numbers/expression.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace crescent::inline results {
+
+namespace {
+
+struct NamedFunction {
+    std::string_view name;
+    double (*value)(double);
+};
+constexpr std::array<NamedFunction, 8> named_functions = {
+    {{"exp", [](double x) { return std::exp(x); }}, {"log", [](double x) { return std::log(x); }},
+        {"sqrt", [](double x) { return std::sqrt(x); }}, {"sin", [](double x) { return std::sin(x); }},
+        {"cos", [](double x) { return std::cos(x); }}, {"tan", [](double x) { return std::tan(x); }},
+        {"abs", [](double x) { return std::fabs(x); }}, {"erf", [](double x) { return std::erf(x); }}}};
+
+class ExpressionReader {
+public:
+    explicit ExpressionReader(std::string_view text) : text_(text) {}
+    double all() {
+        const double value = sum();
+        if (!at_end()) fail("an operator or the end");
+        return value;
+    }
+
+private:
+    static constexpr int deepest = 64;
+    std::string_view text_;
+    std::size_t at_ = 0;
+    int depth_ = 0;
+
+    [[noreturn]] void fail(const char* expected) const {
+        throw std::invalid_argument(fmt::format("column {}: expected {}", at_ + 1, expected));
+    }
+    bool at_end() {
+        while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+        return at_ == text_.size();
+    }
+    bool take(char c) {
+        const bool there = !at_end() && text_[at_] == c;
+        at_ += there;
+        return there;
+    }
+    double sum() {
+        double value = product();
+        for (;;) {
+            if (take('+')) value += product();
+            else if (take('-')) value -= product();
+            else return value;
+        }
+    }
+    double product() {
+        double value = signed_power();
+        for (;;) {
+            if (take('*')) value *= signed_power();
+            else if (take('/')) value /= signed_power();
+            else return value;
+        }
+    }
+    double signed_power() {
+        if (++depth_ > deepest) fail("fewer parentheses and signs");
+        const bool negative = take('-');
+        if (!negative) take('+');
+        const double base = negative ? signed_power() : atom();
+        const double value = negative ? -base : take('^') ? std::pow(base, signed_power()) : base;
+        --depth_;
+        return value;
+    }
+    double atom() {
+        if (take('(')) {
+            const double value = sum();
+            if (!take(')')) fail("')'");
+            return value;
+        }
+        if (at_end()) fail("a number");
+        double value = 0;
+        const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+        if (error == std::errc{}) {
+            at_ = static_cast<std::size_t>(end - text_.data());
+            return value;
+        }
+        return named();
+    }
+    double named() {
+        constexpr double pi = 3.14159265358979323846, e = 2.71828182845904523536;
+        std::size_t end = at_;
+        while (end < text_.size() && text_[end] >= 'a' && text_[end] <= 'z') ++end;
+        const std::string_view name = text_.substr(at_, end - at_);
+        if (name == "pi") return at_ = end, pi;
+        if (name == "e") return at_ = end, e;
+        for (const NamedFunction& f : named_functions) {
+            if (name != f.name) continue;
+            at_ = end;
+            if (!take('(')) fail("'('");
+            const double x = sum();
+            if (!take(')')) fail("')'");
+            return f.value(x);
+        }
+        fail("a number, pi, e, or exp, log, sqrt, sin, cos, tan, abs or erf of one");
+    }
+};
+
+}  // namespace
+
+double constant_value(std::string_view text) {
+    const double value = ExpressionReader(text).all();
+    if (!std::isfinite(value)) throw std::invalid_argument("expected a finite value");
+    return value;
+}
+
+}  // namespace crescent::inline results

@@ -1,0 +1,13 @@
+// Expressions of constants, such as exp(-1.7) or 2 * pi / 3, for expected values.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace crescent::inline results {
+
+/// The value of an expression: numbers, pi, e, + - * / ^, parentheses, and exp, log, sqrt, sin, cos, tan, abs, erf.
+/// Throws std::invalid_argument with the column and what was expected.
+double constant_value(std::string_view text);
+
+}  // namespace crescent::inline results
