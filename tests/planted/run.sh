@@ -3,14 +3,17 @@
 # builds the program of the test that the patch names, and expects that test to fail, and to pass without the patch. By
 # hand: a build of its own, then about half a minute a patch.
 #
-# A patch is one changed line, after two lines of text: what a user would lose, and `test: CTEST_NAME [GTEST_FILTER]`.
+# A patch is one changed line, after two lines of text: what a user would lose, and `test: CTEST_NAME [FILTER]`: of
+# GoogleTest, or of pytest.
 # PLANTED_BUILD: a folder for the copy and its build, which the next call uses again; else a temporary one.
 set -u
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 here=$root/tests/planted
 work=${PLANTED_BUILD:-$(mktemp -d)}
 source=$work/source build=$work/build log=$work/log
-planted=$work/planted  # the patch that is applied, if any
+planted=$work/planted                           # the patch that is applied, if any
+python=$root/build/python-test/bin/python       # of `./test --all`; without it, tests of Python are skipped
+. "$root/tools/targets.sh"
 seen=0 missed=0 skipped=0
 
 # change [-R]: applies the patch $planted to the copy, or reverts it.
@@ -22,23 +25,18 @@ clean_up() {
 trap clean_up EXIT
 trap 'exit 130' INT TERM
 
-# target_of TEST: what is built for the test.
-target_of() {
-    case $1 in
-    unit-film) echo crescent_explainer_tests ;;
-    unit-gl-*) echo crescent_gl_tests ;;
-    unit-*) local folder=${1#unit-} && echo "crescent_${folder%%/*}_tests" ;;
-    conformance) echo crescent_conformance ;;
-    *) echo crescent_every_part ;;
-    esac
+# build TEST: what the test needs.
+build() {
+    local target
+    target=$(target_of_test "$1")
+    [ "$1" != python ] || { [ -x "$python" ] || return 0; target=crescent_python; }
+    ninja -C "$build" "${target:-crescent_every_part}" >"$log" 2>&1
 }
-
-build() { ninja -C "$build" "$1" >"$log" 2>&1; }
 
 # passes TEST FILTER: 0 it passes, 1 it fails, 77 it was skipped or there is no such test.
 passes() {
     local test=$1 filter=$2 program got=0
-    program=$(find "$build/" -type f -name "$(target_of "$test")" -perm -u+x | head -n 1)
+    program=$(find "$build/" -type f -name "$(target_of_test "$test")" -perm -u+x | head -n 1)
     case $test in
     unit-* | conformance)
         [ -n "$program" ] || return 77
@@ -51,6 +49,11 @@ passes() {
         timeout 600 "$program" --gtest_brief=1 --gtest_filter="${filter:-*}" >>"$log" 2>&1 || got=$?
         unset CRESCENT_GL_CONTEXT CRESCENT_TEST_FOLDER
         grep -q '0 tests from 0 test suites ran' "$log" && return 77
+        ;;
+    python)  # links to the package's files: only the module is built
+        [ -x "$python" ] || return 77
+        PYTHONPATH=$build/python "$python" -m pytest -q -p crescent.pytest_plugin -p no:cacheprovider \
+            "$source/python/tests" ${filter:+-k "$filter"} >>"$log" 2>&1 || got=$?
         ;;
     *)
         ctest --test-dir "$build" --output-on-failure -R "^$test\$" >>"$log" 2>&1 || got=$?
@@ -82,7 +85,7 @@ plant() {
         miss ": $test $filter fails without it" && return
     fi
     cp "$patch" "$planted" && change
-    if ! build "$(target_of "$test")"; then
+    if ! build "$test"; then
         miss ": it does not compile: $(grep -m 1 'error:' "$log")"
     else
         passes "$test" "$filter" || got=$?
@@ -101,7 +104,10 @@ mkdir -p "$source"
 (cd "$root" && git ls-files -z --cached --others --exclude-standard | xargs -0 cp -pu --parents -t "$source") || exit 3
 export CCACHE_BASEDIR=$work CCACHE_NOHASHDIR=1
 if [ ! -f "$build/build.ninja" ]; then
-    (cd "$source" && cmake --preset release -B "$build" -DCRESCENT_UNITY=OFF -DCRESCENT_ISAS=native) >"$log" 2>&1 ||
+    module=()
+    [ ! -x "$python" ] || module=(-DCRESCENT_PYTHON=ON "-DPython_EXECUTABLE=$python")
+    (cd "$source" && cmake --preset release -B "$build" -DCRESCENT_UNITY=OFF -DCRESCENT_ISAS=native "${module[@]}") \
+        >"$log" 2>&1 ||
         { tail -n 20 "$log" && exit 3; }
 fi
 names=("$@")
@@ -109,7 +115,7 @@ names=("$@")
 for name in "${names[@]}"; do  # all tests of the unchanged tree first: its programs are built once
     read -r test filter < <(sed -n '2s/^test: //p' "$here/$name.patch" 2>"$log")
     [ -n "${test:-}" ] && [ -z "${without[$test $filter]:-}" ] || continue
-    build "$(target_of "$test")" || { tail -n 20 "$log" && exit 3; }
+    build "$test" || { tail -n 20 "$log" && exit 3; }
     got=0 && passes "$test" "$filter" || got=$?
     without[$test $filter]=$got
 done

@@ -1,8 +1,9 @@
 // The main function of the test programs. CRESCENT_TEST_FOLDER=src/check/explain runs only the tests of the files in
-// that folder, without its subfolders.
+// that folder, without its subfolders; empty, it is not set.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -32,7 +33,15 @@ std::string tests_of(const std::string& folder) {
 
 int main(int argc, char** argv) {
     testing::InitGoogleMock(&argc, argv);
-    if (const char* folder = std::getenv("CRESCENT_TEST_FOLDER"); folder && GTEST_FLAG_GET(filter) == "*")
-        GTEST_FLAG_SET(filter, tests_of(folder));
+    const char* folder = std::getenv("CRESCENT_TEST_FOLDER");
+    if (folder && *folder && GTEST_FLAG_GET(filter) == "*") {
+        const std::string filter = tests_of(folder);
+        if (filter.empty()) {
+            std::fprintf(
+                stderr, "CRESCENT_TEST_FOLDER=%s: no test is in this folder; expected src/math or another\n", folder);
+            return 2;
+        }
+        GTEST_FLAG_SET(filter, filter);
+    }
     return RUN_ALL_TESTS();
 }
