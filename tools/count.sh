@@ -63,7 +63,7 @@ check() {
     ctest --test-dir "$dir" -j "$(nproc)" --output-on-failure "${@:2}" 2>&1 | follow_tests "$1" >"$log"
     # Lines such as " 3/12 Test  #5: unit-1 .......   Passed    0.41 sec".
     while read -r name outcome; do
-        xml="$dir/results/$name.xml"
+        xml="$dir/results/${name//\//-}.xml"  # unit-check/sources writes unit-check-sources.xml
         if [ -f "$xml" ]; then
             local all bad
             all=$(sum tests "$xml") bad=$(($(sum failures "$xml") + $(sum errors "$xml")))
