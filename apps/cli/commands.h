@@ -69,8 +69,8 @@ struct CheckFlags {
     std::string sampler;
     std::vector<std::string> settings;  // s=128
     std::string exec, plugin, samples, table;
-    std::string domain;     // of a program that states none
-    std::string estimates;  // the expected value of an estimator of a number, one or three expressions
+    std::string domain;                     // of a program that states none
+    std::string estimates;                  // the expected value of an estimator of a number, one or three expressions
     std::string against;                    // a built-in arm, or a program
     std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails
     std::vector<std::string> wo;            // x,y,z or degrees

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._context import on_one_surface
-from ._domains import as_weights, charted
+from ._domains import as_weights, charted, with_weights
 from ._files import names_a_file, sampler_at
 from ._result import CheckResult
 from ._libraries import library_named, library_wanted
@@ -120,7 +120,9 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     try:
         s = _of_library(s)
         chart = None
-        number = s.is_number()
+        number, reciprocal = s.is_number(), s.weight is not None
+        if reciprocal:
+            s = with_weights(s)
         if number:
             s = as_weights(s)
         elif not s.of_directions():
@@ -153,6 +155,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         grid=grid,
         domain=chart,
         number=number,
+        reciprocal_weight=reciprocal,
     )
 
 

@@ -59,6 +59,23 @@ def as_weights(s: Sampler) -> Sampler:
     return replace(s, sample=sample, name=name, numbers=None, domain="sphere")
 
 
+def with_weights(s: Sampler) -> Sampler:
+    """Returns a sampler of (w_i, W) as one without pdf whose weights are W, and whose f is the target."""
+    name, takes_wo = s.title(), s.wo != "none"
+
+    def sample(*given: Array) -> tuple[Any, Array, Array]:
+        answer = s.sample(*given)
+        if not isinstance(answer, (tuple, list)) or len(answer) != 2:
+            raise ValueError(f"{name}: sample gave {type(answer).__name__}, expected (wi, W)")
+        weight = _arrays.column(answer[1], len(given[-1]), f"{name}: sample's W")
+        return answer[0], (weight != 0).astype(np.float64), weight[:, None]
+
+    target = s.target
+    assert target is not None
+    f = target if takes_wo or not s.of_directions() else lambda wo, wi: target(wi)
+    return replace(s, sample=sample, f=f, name=name, weight=None, target=None)
+
+
 def as_given(x: Array, chart: Any) -> Array:
     """Returns points as the callables take them."""
     if x.shape[1] == 1:

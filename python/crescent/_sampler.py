@@ -93,6 +93,9 @@ class Sampler:
     #: of a light, radiance(wi[n,3]) -> [n] or [n,3], W/(sr m^2): wo is "none", and `check` compares the estimate of the
     #: irradiance with its quadrature
     radiance: Callable[..., Any] | None = None
+    #: "reciprocal": sample(wo, u) -> (wi, W), where W is random and estimates 1/p, as that of a reservoir does
+    weight: Literal["reciprocal"] | None = None
+    target: Callable[..., Any] | None = None  #: target(wo[n,3], wi[n,3]) -> [n], on whose support E[h W] is the integral of h
 
     def __post_init__(self) -> None:
         if self.radiance is not None:
@@ -127,6 +130,12 @@ class Sampler:
             raise TypeError(f"domain is {self.domain!r}: expected a text")
         if not self.of_directions():
             self._check_points()
+        if self.weight not in (None, "reciprocal"):
+            raise ValueError(f"weight is {self.weight!r}: expected None or 'reciprocal'")
+        if (self.weight is None) != (self.target is None):
+            raise TypeError("weight='reciprocal' and target(wo, wi) go together: samples are (wi, W), and W estimates 1/p")
+        if self.weight and (self.pdf is not None or self.f is not None or self.delta):
+            raise ValueError("pdf, f or delta is given: a sampler with weight='reciprocal' has sample and target alone")
 
     def of_directions(self) -> bool:
         """Whether it draws directions, and not points of another domain."""
@@ -176,6 +185,8 @@ class Known(TypedDict, total=False):
     array_module: Any
     device: Any
     radiance: Callable[..., Any] | None
+    weight: Literal["reciprocal"] | None
+    target: Callable[..., Any] | None
 
 
 def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from . import _arrays, _crescent
 from ._arrays import Array
 from ._check import _look, _of_library
 from ._context import ContextCalls, columns_of, decoded, on_one_surface
-from ._domains import as_given, points, values
+from ._domains import as_given, points, values, with_weights
 from ._files import sampler_at
 from ._sampler import Sampler, rows_to_look_with
 
@@ -90,6 +90,25 @@ def _started_number(s: Sampler) -> tuple[str, Sampler, dict[bytes, tuple[int, An
     return _handshake(s, count, False, False), s, {b"smpl": (s.u, sample)}
 
 
+def _started_reservoir(s: Sampler) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]:
+    """As `_started`, for a sampler of directions with weights that estimate 1/p."""
+    if not s.of_directions():
+        raise ValueError("weight='reciprocal' in a file is for directions; crescent.check takes other domains too")
+    inner = _of_library(s)
+    drawing, takes_wo = with_weights(inner), s.wo != "none"
+
+    def sample(rows: Array) -> Array:
+        given = (rows[:, :3], rows[:, 3:]) if takes_wo else (rows[:, 3:],)
+        wi, _, weight = drawing.sample(*given)
+        return np.column_stack([_arrays.directions(wi, len(rows), f"{s.title()}: sample's wi"), weight])
+
+    def target(rows: Array) -> Array:
+        assert drawing.f is not None
+        return _arrays.column(drawing.f(rows[:, :3], rows[:, 3:6]), len(rows), f"{s.title()}: target")
+
+    return _handshake(s, 1, False, False), s, {b"smpl": (3 + s.u, sample), b"trgt": (6, target)}
+
+
 class _Calls:
     """The callables of a sampler on rows of w_o, a second part and the columns of a context."""
 
@@ -155,9 +174,9 @@ def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
     """The line that declares what the sampler is."""
     keys: dict[str, Any] = {"u": s.u, "domain": s.domain, "wo": s.wo, "channels": count, "block": "f64"}
     given = {
-        "weight": ("yes", weighs),
+        "weight": (s.weight or "yes", weighs or s.weight is not None),
         "delta": ("yes", delta),
-        "pdf": ("no", s.pdf is None),
+        "pdf": ("no", s.pdf is None and s.weight is None),
         "transport": ("importance", s.importance),
         "reciprocal": ("no", not s.reciprocal),
         "random": ("own", s.own_random),
@@ -178,6 +197,8 @@ def _started(where: str) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]
     s = sampler_at(where)
     if s.is_number():
         return _started_number(s)
+    if s.weight is not None:
+        return _started_reservoir(s)
     if not s.of_directions():
         return _started_points(s)
     channels, weighs, delta = _look(on_one_surface(s, {}) if s.uses else _of_library(s))

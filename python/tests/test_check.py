@@ -289,7 +289,7 @@ def test_w_o_may_be_a_number_or_an_array():
 @pytest.mark.parametrize(
     "known",
     [
-        *({"u": 9}, {"channels": 2}, {"domain": "disk"}, {"wo": "left"}, {"alpha": 2}, {"seed": -1}, {"threads": -1}),
+        *({"u": 9}, {"channels": 2}, {"domain": "disc"}, {"wo": "left"}, {"alpha": 2}, {"seed": -1}, {"threads": -1}),
         *({"eta": -1}, {"eta": [1.5, 1.6]}, {"eta": float("nan")}, {"against": "cosin"}),
         *({"wo_deg": at} for at in (90, [(30, float("nan"))], [(30, 2, 3)], ["x"], 120)),
         {"wo": "none", "wo_deg": 30},

@@ -144,3 +144,37 @@ def test_an_estimator_of_a_number():
         crescent.check(disk(np.sqrt), uniform_in_disk, domain="disk", estimates=1.0)
     heavy = crescent.check(lambda u: 0.3 * u[:, 0] ** -0.7, estimates=1.0, **known)
     assert states(heavy)["mean"] == "inconclusive"
+
+
+def reservoirs(loss):
+    """Of eight cosine-distributed candidates one is kept in proportion to the target over its pdf."""
+    rng = np.random.default_rng(5)
+
+    def target(wo, wi):
+        return np.maximum(wi[:, 2], 0) * (0.2 + np.maximum(wi @ np.array([0.6, 0, 0.8]), 0) ** 8)
+
+    def sample(wo, u):
+        n = len(wo)
+        kept, total = np.tile([0.0, 0.0, 1.0], (n, 1)), np.zeros(n)
+        for _ in range(8):
+            a = rng.random((n, 2))
+            r, phi = np.sqrt(a[:, 0]), 2 * np.pi * a[:, 1]
+            wi = np.column_stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - a[:, 0])])
+            weight = target(wo, wi) / np.maximum(wi[:, 2] / np.pi, 1e-12)
+            total += weight
+            take = rng.random(n) * total < weight
+            kept[take] = wi[take]
+        count = 8 * (1 + loss * (rng.random(n) < 0.05) / 0.05)
+        return kept, total / count / np.maximum(target(wo, kept), 1e-30)
+
+    return {"sample": sample, "target": target, "weight": "reciprocal", "own_random": True, "domain": "hemisphere"}
+
+
+@pytest.mark.parametrize("loss, state", [(0.0, "right"), (0.03, "wrong")])
+def test_reservoirs(loss, state):
+    result = crescent.check(wo_deg=40, **reservoirs(loss))
+    assert result.state == state
+    if loss:
+        assert "light is lost" in next(v.say for v in result.verdicts if v.name == "mean")
+    with pytest.raises(TypeError, match="go together"):
+        crescent.check(disk(np.sqrt), weight="reciprocal")

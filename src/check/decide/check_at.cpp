@@ -88,9 +88,9 @@ public:
         if (!source_.f_estimates) source_.unscaled = both_ways(source_.adapter, key_) != BothWays::not_known;
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
-        for (int look = 0; look < budget_.looks; ++look) {
+        for (int look = is_of_weights() ? budget_.looks - 1 : 0; look < budget_.looks; ++look) {
             if (decided_by(look)) break;
-            if (look == 0 && regrown()) look = -1;
+            if (look == 0 && !is_of_weights() && regrown()) look = -1;
         }
         for (int k = 0; k < further_looks && goes_on(); ++k) look_further(k);
         finish();
@@ -111,6 +111,11 @@ private:
     double confirming_ = 0;          // evaluations of second stages
     std::optional<ResolutionEffect> resolution_;
 
+    /// Only the weights of a sampler without density show a fault: those of all draws are used, and all points have f.
+    bool is_of_weights() const { return source_.traits.reciprocal_weight; }
+    std::uint32_t draws_with_weights() const {
+        return is_of_weights() ? std::numeric_limits<std::uint32_t>::max() : budget_.of_f();
+    }
     double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
     double remaining() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
@@ -122,7 +127,7 @@ private:
         Look last = look_of(all);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
         begin.points = std::max(begin.points, 2 * static_cast<std::uint32_t>(out_.plan->tree.leaves().size()));
-        const double of_f = Stage::of_f(source_, begin, budget_.of_f());
+        const double of_f = Stage::of_f(source_, begin, is_of_weights() ? begin.independent : budget_.of_f());
         const double evaluated = first_.observations.weighted_draws + first_.integrals.light.points;
         last = look_of(all - std::max(of_f - evaluated, 0.0));
         return last.divided_by(parts);
@@ -160,7 +165,7 @@ private:
     }
 
     bool look_at(const Look& to, int look, double level) {
-        first_.extend(source_, *out_.plan, to, budget_.of_f(), key_, look);
+        first_.extend(source_, *out_.plan, to, draws_with_weights(), key_, look);
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
         note_answers(e);
@@ -230,7 +235,7 @@ private:
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
         second.integrals.light.lost_in = first_.integrals.light.lost_in;
-        second.extend(source_, *out_.plan, to, of_f || early ? budget_.of_f() : 0, key, 0);
+        second.extend(source_, *out_.plan, to, of_f || early ? draws_with_weights() : 0, key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {

@@ -29,6 +29,7 @@ struct Sizes {
     std::optional<double> leak;       // share of the draws that is uniform and missing in p
     std::optional<double> cap;        // mass of a cap that is never drawn
     std::optional<double> rotation;   // radians, about an axis across the mean direction
+    std::optional<double> bias;       // relative: of the mean of the weights, where they are all there is
     std::optional<double> parameter;  // relative error of an exponent: draws by p^(1 + e)
     // Change of the distribution by a fault of size 1, as total variation: a rotation does not change a uniform
     // density.

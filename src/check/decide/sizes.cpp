@@ -545,8 +545,24 @@ void by_exponent(const Evidence& e, const std::vector<SumTest>& whole, Sizes& ou
 
 }  // namespace
 
+namespace {
+
+/// The relative bias of all weights that is found; a node has more noise.
+std::optional<double> bias_of(const Evidence& e, double level) {
+    const Sums& s = e.observations.mean[0];
+    const Estimate& expected = e.integrals.light.mean[0];
+    const double n = e.observations.weighted_draws;
+    if (!(n > 1) || !(expected.value > 0)) return {};
+    const double mean = s.sum / n, v = std::max(s.square / n - mean * mean, 0.0) / n + expected.variance;
+    const double errors = statistics::student_two_sided_quantile(1e6, level) + power_of_each;
+    return errors * std::sqrt(v) / expected.value + detection_floor;
+}
+
+}  // namespace
+
 Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t draws, const StreamKey& key) {
     Sizes out;
+    if (source.traits.reciprocal_weight) out.bias = bias_of(e, level);
     if (!e.source.has_density()) return out;
     const std::vector<SumTest> whole = whole_sums(e, level);
     const std::vector<NodeSums> sums = node_sums(e);
@@ -575,7 +591,7 @@ double worst_ratio(const Sizes& s) {
     const auto look = [&](const std::optional<double>& size, double target, double changed) {
         if (size) worst = std::max(worst, std::min(*size / target, *size * changed / target_leak));
     };
-    look(s.integral, target_constant, 1e300);
+    look(s.bias, target_bias_of_weights, 1e300), look(s.integral, target_constant, 1e300);
     look(s.constant, target_constant, 1e300), look(s.cap, target_cap, 1e300), look(s.leak, target_leak, s.by_leak);
     look(s.rotation, target_rotation, s.by_rotation), look(s.parameter, target_parameter, s.by_parameter);
     return worst;

@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::uint32_t looks[] = {1u << 14, 1u << 16, 1u << 18, 1u << 20, 1u << 22};
 constexpr double quick_seconds = 10, thorough_seconds = 120;
-constexpr double target_bias = 5e-3;         // relative: a right verdict is given at once
-constexpr double most_bias = 1e-2;           // a verdict that could hide more is inconclusive
-constexpr double screening = 2e-3;           // level of one look at stage 1, of all channels
-constexpr double confirming = 0.05;          // of stage 2: five looks accuse a right estimator with 5e-4
-constexpr double most_unusable = 1e-3;       // share of the values, for a mean
-constexpr double least_roots = 12;           // sqrt(n) over the skewness, so that the normal law holds to 3 errors
+constexpr double target_bias = 5e-3;    // relative: a right verdict is given at once
+constexpr double most_bias = 1e-2;      // a verdict that could hide more is inconclusive
+constexpr double screening = 2e-3;      // level of one look at stage 1, of all channels
+constexpr double confirming = 0.05;     // of stage 2: five looks reject a right estimator with a probability of 5e-4
+constexpr double most_unusable = 1e-3;  // share of the values, for a mean
+constexpr double least_roots = 12;      // sqrt(n) over the skewness, so that the normal law holds to 3 errors
 constexpr std::size_t most_kept = 1u << 18;  // values for the tail
 
 /// Sums of one channel about its first value.

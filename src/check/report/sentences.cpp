@@ -110,7 +110,10 @@ std::string channel_of(const Answer& a, bool of_three) {
 }
 
 /// What the weights are an estimate of.
-const char* integrand(const Traits& traits) { return traits.domain ? "f" : "f L cos"; }
+const char* integrand(const Traits& traits) {
+    if (traits.reciprocal_weight) return "h = target / (target + q)";
+    return traits.domain ? "f" : "f L cos";
+}
 
 std::string light_sentence(const Answer& a, Family family, const Traits& traits) {
     const double half = half_width_95 * a.sd;
@@ -121,6 +124,12 @@ std::string light_sentence(const Answer& a, Family family, const Traits& traits)
     if (family == Family::albedo)
         return fmt::format("f returns {} times the power of a uniform light{}. Expected at most 1.",
             with_error(1 + a.difference, half), channel_of(a, of_three));
+    if (traits.reciprocal_weight)
+        return fmt::format(
+            "The draws with their weights W give {} times the integral of {} over the support of the "
+            "target: light is {}. Expected 1.",
+            with_error(1 + a.difference / a.expected, half / a.expected), integrand(traits),
+            a.difference > 0 ? "gained" : "lost");
     return fmt::format("The weighted draws give {} times the integral of {}{}. Expected 1.",
         with_error(1 + a.difference / a.expected, half / a.expected), traits.domain ? "f" : "f cos",
         channel_of(a, of_three));

@@ -25,6 +25,7 @@ void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
         v.evidence["would_have_found"][name] = most;
     };
     if (v.name == "normalised") add("constant", s.constant);
+    if (v.name == "mean") add("bias", s.bias);
     if (v.name != "density") return;
     add("leak", s.leak), add(of_points ? "gap" : "cap", s.cap), add(of_points ? "shift" : "rotation", s.rotation),
         add("parameter", s.parameter);
@@ -112,6 +113,13 @@ void decide_at(const CheckAt& c, Verdict& v) {
             "draws differ from p by no more than that.",
             100 * c.moved_by_resolution);
         v.next_step = "Random numbers of 53 bits (u_bits=53).";
+        return;
+    }
+    if (v.name == "mean" && c.sizes.bias && *c.sizes.bias > c.most_ratio() * target_bias_of_weights) {
+        v.state = State::inconclusive;
+        v.message = fmt::format("Only a bias of {:.2g} % would have been found. Right requires at most {:g} %.",
+            100 * *c.sizes.bias, 100 * c.most_ratio() * target_bias_of_weights);
+        v.next = {NextStep::Kind::more_draws, sqr(*c.sizes.bias / (c.most_ratio() * target_bias_of_weights))};
         return;
     }
     if (v.name == "density" || v.name == "normalised") {

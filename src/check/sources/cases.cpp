@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
+#include "check/sources/reciprocal_weights.h"
 #include "check/sources/sampler_adapter.h"
 #include "math/functions.h"
 
@@ -277,9 +278,10 @@ Grid grid_for(const Traits& traits, bool full) {
 
 }  // namespace
 
-std::vector<CheckCase> make_user_cases(
-    const std::shared_ptr<const SamplerAdapter>& adapter, bool full, const Grid& own) {
+std::vector<CheckCase> make_user_cases(const std::shared_ptr<const SamplerAdapter>& given, bool full, const Grid& own) {
     std::vector<CheckCase> check_cases;
+    const std::shared_ptr<const SamplerAdapter> adapter =
+        given->traits().reciprocal_weight ? with_bounded_weights(given) : given;
     const Traits traits = adapter->traits();
     const Grid grid = own.empty() ? grid_for(traits, full) : own;
     for (const auto& [theta, azimuth] : grid) {

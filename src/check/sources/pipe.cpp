@@ -119,7 +119,8 @@ public:
         values("pdf_", "pdf", "one number", at, 1, out, example_, example_lights);
     }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        if (hello_.traits.channels == 1) return values("f___", "f", "one number", at, 1, out, example_, example_lights);
+        if (hello_.traits.channels == 1)
+            return values(f_operation(), f_verb(), "one number", at, 1, out, example_, example_lights);
         std::vector<Vec3d> by_channel(out.size());
         f_channels(at, by_channel);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
@@ -133,6 +134,8 @@ public:
 
 private:
     mutable PipeConnection connection_;
+    const char* f_operation() const { return hello_.traits.reciprocal_weight ? "trgt" : "f___"; }
+    const char* f_verb() const { return hello_.traits.reciprocal_weight ? "target" : "f"; }
     static constexpr std::size_t example_lights = 1;  // of example_context()
     Handshake hello_;
     std::vector<double> example_;  // the columns of the context in a check
@@ -151,11 +154,16 @@ private:
         return hello_.weight || is_number() ? static_cast<std::size_t>(hello_.traits.channels) : 0;
     }
     /// Columns of the answer to a request for a sample.
-    std::size_t columns_of_draw() const { return (is_number() ? 0 : columns_of_point() + 1) + weights(); }
+    std::size_t columns_of_draw() const { return (is_number() ? 0 : columns_of_point() + with_pdf()) + weights(); }
+    /// Whether an answer has a pdf next to the weight.
+    std::size_t with_pdf() const { return hello_.traits.reciprocal_weight ? 0 : 1; }
     Vec3d wo_to_send(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
             hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
+        if (hello_.traits.reciprocal_weight)
+            return fmt::format(
+                "{} numbers, {} and W", columns_of_point() + 1, domain() ? "the point's coordinates" : "w_i");
         if (is_number()) return weights() == 1 ? "one number, the value" : "three numbers, a value for each channel";
         if (domain())
             out = fmt::format("{} numbers '{} pdf", columns_of_point() + 1 + weights(),
@@ -242,6 +250,12 @@ private:
             take_weight(a, value);
             return value;
         }
+        if (hello_.traits.reciprocal_weight) {
+            Draw reservoir{{a[0], a[1], a[2]}, a[3] == 0 ? 0.0 : 1.0};
+            if (hello_.hemisphere && a[2] <= 0) reservoir.pdf = 0;
+            if (reservoir.pdf > 0) reservoir.weight = a[3];
+            return reservoir;
+        }
         Draw d{{a[0], a[1], a[2]}, a[3]};
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
         const bool nothing = !delta && d.pdf == 0;
@@ -261,9 +275,10 @@ private:
     /// a: the coordinates of a point of the domain, its pdf and weights.
     Draw drawn_point(std::span<const double> a, const PrimarySample& u) const {
         const std::size_t columns = columns_of_point();
+        // W of a reservoir represents the pdf: 0 is no sample.
         Draw d = draw_of_point(*domain(), a.first(columns), a[columns], u, numbers());
         if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
-        take_weight(a.subspan(columns + 1), d);
+        if (d.pdf > 0) take_weight(a.subspan(columns + with_pdf()), d);
         return d;
     }
 
@@ -336,7 +351,8 @@ private:
             });
         connection_.finish_handshake();
         if (domain()) fit_domain();
-        if (!is_number()) probe_f();
+        has_f_ = hello_.traits.reciprocal_weight;
+        if (!is_number() && !has_f_) probe_f();
     }
     /// Fits the charts of infinite lines to draws, over all w_o that the program takes.
     void fit_domain() {
@@ -470,7 +486,12 @@ const std::array<HandshakeKey, 16>& keys() {
             }},
         {"channels", "1 or 3",
             [](S v, Handshake& g) { return whole_number(v, 1, 3, g.traits.channels) && g.traits.channels != 2; }},
-        {"weight", "yes or no", [](S v, Handshake& g) { return (g.weight = v == "yes") || v == "no"; }},
+        {"weight", "yes, no or reciprocal",
+            [](S v, Handshake& g) {
+                g.traits.reciprocal_weight = v == "reciprocal";
+                g.weight = v == "yes" || g.traits.reciprocal_weight;
+                return g.weight || v == "no";
+            }},
         {"delta", "yes or no", [](S v, Handshake& g) { return (g.delta = v == "yes") || v == "no"; }},
         {"pdf", "yes or no", [](S v, Handshake& g) { return (g.traits.has_pdf = v == "yes") || v == "no"; }},
         {"f", "cos or nocos", [](S v, Handshake& g) { return (g.f_cos = v == "cos") || v == "nocos"; }},
@@ -529,6 +550,11 @@ std::size_t end_of_word(std::string_view rest) {
 
 /// What the domain decides: without wo=, no w_o; and the numbers that spread a point.
 HandshakeError settle_domain(Handshake& out) {
+    if (out.traits.reciprocal_weight) {
+        if (out.delta || out.traits.channels != 1)
+            return {"channels=1 and no delta=yes with weight=reciprocal", "got one of them"};
+        out.traits.has_pdf = false;
+    }
     if (out.traits.number) {
         if (out.delta || out.weight || !out.uses.empty())
             return {"no delta=, weight= and uses= with domain=number", "got one of them"};

@@ -71,21 +71,22 @@ struct Traits {
     int numbers = 2;   // random numbers of a sample, and those that spread a point of `domain`
     int channels = 1;  // of f and of the weight, 1 or 3
     WoDomain wo = WoDomain::upper;
-    bool has_pdf = true;      // false: no pdf(w), and the pdf of a draw is 1 or 0
-    bool own_random = false;  // it uses its own random numbers: the same u may give another answer
-    bool delta = false;       // some of its draws belong to delta parts
-    bool reciprocal = true;   // false: f is known not to be reciprocal
-    Index eta{};              // index below over above
-    bool importance = false;  // f is scaled by eta^2 as importance is, not as radiance
-    int bits = 0;             // precision of its arithmetic: 24, 53; 0: determined from the answers
-    int u_bits = 24;          // of its random numbers: 24, or 53 if it asks for them
-    bool number = false;      // each draw is one value, its weight: an estimate of a number
+    bool has_pdf = true;             // false: no pdf(w), and the pdf of a draw is 1 or 0
+    bool own_random = false;         // it uses its own random numbers: the same u may give another answer
+    bool delta = false;              // some of its draws belong to delta parts
+    bool reciprocal = true;          // false: f is known not to be reciprocal
+    Index eta{};                     // index below over above
+    bool importance = false;         // f is scaled by eta^2 as importance is, not as radiance
+    int bits = 0;                    // precision of its arithmetic: 24, 53; 0: determined from the answers
+    int u_bits = 24;                 // of its random numbers: 24, or 53 if it asks for them
+    bool reciprocal_weight = false;  // a draw's weight is random and estimates 1/p; f is the target, without a cosine
+    bool number = false;             // each draw is one value, its weight: an estimate of a number
     /// The chart through which it draws directions for points of another domain; null: it draws directions.
     std::shared_ptr<const DomainChart> domain{};
     /// Whether n has a meaning: draws below it are no samples, and f is multiplied by the cosine.
-    bool has_surface() const { return wo != WoDomain::none && !domain; }
+    bool has_surface() const { return wo != WoDomain::none && !domain && !reciprocal_weight; }
     /// |cos| of f's integrand: 1 where there is no surface at all.
-    double cosine(Vec3d wi) const { return domain ? 1 : std::fabs(wi.z); }
+    double cosine(Vec3d wi) const { return domain || reciprocal_weight ? 1 : std::fabs(wi.z); }
     /// A density per solid angle as one over the domain.
     double density(Vec3d w, double per_sr) const { return domain ? domain->density(w, per_sr) : per_sr; }
     /// Random numbers that the sampler itself takes.

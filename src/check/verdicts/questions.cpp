@@ -57,11 +57,14 @@ namespace crescent::check::kinds {
 namespace {
 
 bool always(const SamplerAdapter&) { return true; }
+bool draws_by_density(const SamplerAdapter& s) { return !s.traits().reciprocal_weight; }
 bool never(const SamplerAdapter&) { return false; }
 bool with_pdf(const SamplerAdapter& s) { return s.traits().has_pdf; }
 bool with_pdf_and_f(const SamplerAdapter& s) { return s.traits().has_pdf && s.has_f(); }
 bool with_f(const SamplerAdapter& s) { return s.has_f(); }
-bool with_power(const SamplerAdapter& s) { return (s.has_f() || s.traits().delta) && !s.traits().domain; }
+bool with_power(const SamplerAdapter& s) {
+    return (s.has_f() || s.traits().delta) && !s.traits().domain && !s.traits().reciprocal_weight;
+}
 bool with_weights(const SamplerAdapter& s) { return s.has_drawn_f(); }
 
 }  // namespace
@@ -69,7 +72,8 @@ bool with_weights(const SamplerAdapter& s) { return s.has_drawn_f(); }
 constinit const VerdictKind valid = {.applies = always};
 constinit const VerdictKind support = {.applies = with_pdf_and_f, .needs = "Needs pdf and f."};
 constinit const VerdictKind normalised = {.applies = with_pdf, .needs = "Needs pdf."};
-constinit const VerdictKind density = {.applies = always};  // without a pdf: the density that the draws imply
+constinit const VerdictKind density = {.applies = draws_by_density,
+    .needs = "Needs draws with one density."};  // without a pdf: the density that the draws imply
 constinit const VerdictKind identity = {.applies = always};
 constinit const VerdictKind physics = {.applies = with_power, .needs = "Needs f of a surface."};
 constinit const VerdictKind tail = {.applies = with_weights, .needs = "Needs f or weights."};

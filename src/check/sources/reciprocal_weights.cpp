@@ -1,0 +1,85 @@
+// The target is evaluated at each draw, and q once for each w_o from draws of its own.
+#include "check/sources/reciprocal_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
+
+#include "check/estimate/stream.h"
+
+namespace crescent::inline sources {
+
+namespace {
+
+class BoundedWeights : public ForwardingAdapter {
+public:
+    explicit BoundedWeights(std::shared_ptr<const SamplerAdapter> inner)
+        : ForwardingAdapter(std::move(inner)), traits_(this->inner().traits()) {}
+
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        const double q = scale_at(wo);
+        inner().sample(t, wo, u, out);
+        const std::vector<double> target = targets_at(wo, out);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            Draw& d = out[i];
+            if (d.weight) *d.weight *= bounded(target[i], q);
+        }
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        inner().f(at, out);
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const double target = traits_.density(at[i].wi, out[i]);
+            // Over another domain f is the target times a factor of measure, which h has too.
+            out[i] = target > 0 ? bounded(target, scale_at(at[i].wo)) * (out[i] / target) : target;
+        }
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        SamplerAdapter::f_channels(at, out);
+    }
+
+private:
+    Traits traits_;
+    mutable std::mutex lock_;
+    mutable std::map<std::tuple<double, double, double>, double> scales_;
+
+    static double bounded(double target, double q) { return target / (target + q); }
+
+    /// The target at each draw with a weight; 0 for the others.
+    std::vector<double> targets_at(Vec3d wo, std::span<const Draw> draws) const {
+        std::vector<Pair> at;
+        std::vector<std::size_t> of;
+        for (std::size_t i = 0; i < draws.size(); ++i)
+            if (draws[i].pdf > 0 && draws[i].weight && std::isfinite(dot(draws[i].wi, draws[i].wi)))
+                at.push_back({wo, draws[i].wi}), of.push_back(i);
+        std::vector<double> answers(at.size()), out(draws.size());
+        inner().f(at, answers);
+        for (std::size_t k = 0; k < of.size(); ++k) out[of[k]] = traits_.density(at[k].wi, answers[k]);
+        return out;
+    }
+
+    double scale_at(Vec3d wo) const {
+        const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        double& q = scales_[{wo.x, wo.y, wo.z}];
+        if (q > 0) return q;
+        constexpr std::uint32_t pilot = 512;
+        constexpr check::StreamKey key{.seed = 0x72657376, .purpose = check::Purpose::pilot};
+        const std::vector<PrimarySample> u = check::first_numbers(key, pilot, traits_);
+        std::vector<Draw> draws(u.size());
+        inner().sample(0, wo, u, draws);
+        std::vector<double> targets = targets_at(wo, draws);
+        std::erase_if(targets, [](double t) { return !(t > 0) || !std::isfinite(t); });
+        const auto middle = targets.begin() + std::ssize(targets) / 2;
+        if (!targets.empty()) std::nth_element(targets.begin(), middle, targets.end());
+        return q = targets.empty() ? 1 : *middle;
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> with_bounded_weights(std::shared_ptr<const SamplerAdapter> sampler) {
+    return std::make_shared<BoundedWeights>(std::move(sampler));
+}
+
+}  // namespace crescent::inline sources
