@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "crescent/crescent.h"
+#include "memory.h"
 #include "progress.h"
 #include "signals.h"
 
@@ -409,6 +410,7 @@ int check(const CheckFlags& given) {
     const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
+    keep_freed_memory();
     check_limits(flags);
     try_files(flags);
     if (flags.planted) return check_planted(flags, monitor);

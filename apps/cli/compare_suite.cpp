@@ -1,16 +1,12 @@
 // crescent compare SUITE.toml: golden images of several views.
 #include <ctime>
-#include <limits>
 #include <fmt/format.h>
 
 #include "commands.h"
 #include "crescent/crescent.h"
+#include "memory.h"
 #include "progress.h"
 #include "signals.h"
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace crescent::cli {
 
@@ -59,15 +55,6 @@ std::string suite_command(const CompareFlags& f) {
     for (const std::string& layer : f.layers) out += " --layer " + shell_word(layer);
     if (f.new_baseline) out += " --new-baseline";
     return out;
-}
-
-/// Each view allocates and frees planes of the same sizes: keeps the freed memory, so that the system need not provide
-/// new pages each time.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-#endif
 }
 
 /// 2026-11-25T21:04:05Z; "unknown" if the clock has no date, as at the ends of 64 bits.

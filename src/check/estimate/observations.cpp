@@ -353,6 +353,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     const auto before = static_cast<std::uint32_t>(to.independent);
     const std::uint32_t last_draw = source.available(draws, look.independent);
     to.independent = std::max(last_draw, before);
+    to.met.reserve(last_draw);
     for (std::uint32_t from = before; from < last_draw; from += batch_size) {
         u.resize(std::min(batch_size, last_draw - from));
         observer.batch(draws, from, u, with_weights && from < of_f);

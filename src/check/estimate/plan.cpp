@@ -306,7 +306,16 @@ void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves)
         std::array<std::uint32_t, together> node{};
         for (std::size_t k = 0; k < together; ++k) {
             points[k] = at[first + std::min(k, n - 1)];
-            node[k] = start_of(points[k]);
+            node[k] = start_in(0, points[k]);
+        }
+        for (bool deeper = true; deeper;) {  // without a branch for each point: few of them could be predicted
+            deeper = false;
+            for (std::size_t k = 0; k < together; ++k) {
+                const bool in_grid = (node[k] & is_grid) != 0;
+                const std::uint32_t next = start_in(in_grid ? node[k] & ~is_grid : 0, points[k]);
+                node[k] = in_grid ? next : node[k];
+                deeper |= (node[k] & is_grid) != 0;
+            }
         }
         for (bool moved = true; moved;) {
             moved = false;

@@ -94,17 +94,18 @@ private:
     std::vector<std::uint32_t> starts_;  // a node, or is_grid and a grid
     int depth_ = 0;
     std::size_t rows_ = 0;
-    std::uint32_t start_of(ChartPoint at) const {
+    /// The entry of a point in a grid.
+    std::uint32_t start_in(std::uint32_t grid, ChartPoint at) const {
         const auto cell = [](double x) {
             return static_cast<std::uint32_t>(std::min(std::max(0.0, x), cells - 1.0));  // 0 for NaN
         };
-        std::uint32_t start = is_grid;
-        while (start & is_grid) {
-            const Grid& g = grids_[start & ~is_grid];
-            const std::uint32_t t = cell((at.t - g.t0) * g.cells_per_t),
-                                phi = cell((at.phi - g.phi0) * g.cells_per_phi);
-            start = starts_[g.first + t * cells + phi];
-        }
+        const Grid& g = grids_[grid];
+        const std::uint32_t t = cell((at.t - g.t0) * g.cells_per_t), phi = cell((at.phi - g.phi0) * g.cells_per_phi);
+        return starts_[g.first + t * cells + phi];
+    }
+    std::uint32_t start_of(ChartPoint at) const {
+        std::uint32_t start = start_in(0, at);
+        while (start & is_grid) start = start_in(start & ~is_grid, at);
         return start;
     }
     friend class StartGrids;
