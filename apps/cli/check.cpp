@@ -366,6 +366,8 @@ std::vector<std::string> names_of(std::span<const CheckCase> check_cases) {
 
 /// Describes the distribution of the draws; gives no verdict.
 int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cases, Progress& monitor) {
+    for (const CheckCase& t : check_cases)
+        if (t.adapter->traits().domain) throw InputError({"--describe", 0, 0}, "is for samplers of directions");
     check::DescribeSettings settings;
     settings.seed = flags.seed;
     if (flags.full) settings.draws *= 16, settings.draws_of_limited *= 16;

@@ -146,6 +146,8 @@ private:
         v.next_step = "A valid sampler; `crescent check` of it alone shows more.";
     }
 
+    Traits traits() const { return a_.check_case.adapter->traits(); }
+
     std::string sentence_of(const AgainstAnswer& r) const {
         const double half = 1.959964 * r.sd;
         switch (r.family) {
@@ -164,11 +166,15 @@ private:
                         "A is {} concentrated than B: the mean logarithm of their density differs by "
                         "{:.3g} +- {:.1g}.",
                         r.difference > 0 ? "more" : "less", std::fabs(r.difference), half);
+                if (traits().domain) return "The means of their draws differ.";
                 return fmt::format("The mean direction of A is off that of B in {} by {:+.3g} +- {:.1g}.",
                     "xyz"[r.member - mean_x], r.difference, half);
             default: break;
         }
         const ChartRect& rect = common_->tree.nodes()[static_cast<std::size_t>(r.member)].rect;
+        if (traits().domain)
+            return fmt::format("Draws of A and B divide differently {}: by {:+.3g} +- {:.1g} of those there.",
+                traits().domain->text(rect), r.difference, half);
         return fmt::format(
             "About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
             "of those there.",
@@ -198,7 +204,7 @@ private:
         v.evidence["would_have_found"]["part"] = *sizes.part;
         v.message +=
             fmt::format(" A part of {:.2g} of the draws that one of them lacks would have been found", *sizes.part);
-        if (sizes.distance) {
+        if (sizes.distance && !traits().domain) {
             v.evidence["would_have_found"]["distance"] = *sizes.distance;
             v.message += fmt::format(", and mean directions {:.2g} apart", *sizes.distance);
         }

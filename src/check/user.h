@@ -14,6 +14,8 @@
 //
 //   crescent::CheckResult j = crescent::check_sampler("mine", MySampler{});
 //
+// Points of other domains than directions: a PointSampler (check/sources/point_sampler.h).
+//
 // A pointer to a sampler is checked like the sampler; sampler_of(sample, pdf, f) makes a sampler from lambdas.
 //
 // Members that are const are called by many threads at the same time, others by one; so are closures of sampler_of that
@@ -25,6 +27,7 @@
 #include <fmt/format.h>
 
 #include "check/check.h"
+#include "check/sources/point_sampler.h"
 #include "check/sources/sampler_adapter.h"
 #include "check/sources/user_sampler.h"
 
@@ -272,7 +275,12 @@ template <class Given> CheckResult check_sampler(std::string name, Given&& sampl
     static_assert(std::is_abstract_v<S> || std::is_constructible_v<S, Given>,
         "a sampler is copied, and this one cannot be: pass a pointer to it, check_sampler(name, &sampler), or move it");
     if constexpr (std::is_abstract_v<S> || !std::is_constructible_v<S, Given>) return {};
-    else if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
+    else if constexpr (std::is_same_v<S, PointSampler>) {
+        ProgressMonitor alone;
+        return run_checks(
+            make_user_cases(limited_in_time(adapter_of(sampler, name), settings.seconds), settings.full, settings.wo),
+            settings, monitor ? *monitor : alone);
+    } else if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
         const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), S(std::forward<Given>(sampler)));
         ProgressMonitor alone;
         return run_checks(make_user_cases(limited_in_time(adapter, settings.seconds), settings.full, settings.wo),

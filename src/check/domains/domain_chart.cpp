@@ -308,6 +308,21 @@ bool DomainChart::has_point(Vec3d w) const {
     return everywhere || point(w, std::span(x).first(domain_.coordinates())) > 0;
 }
 
+Vec3d DomainChart::in_chart(const DomainChart& other, Vec3d w) const {
+    std::vector<double> y = cube_of(w);
+    std::size_t d = 0;
+    for (std::size_t k = 0; k < knots_.size(); ++k) {
+        const DomainPart& part = domain_.parts()[k];
+        double x = 0;
+        if (part.is_infinite()) {
+            knots_[k].from_unit(y[d], x);
+            y[d] = std::clamp(other.knots_[k].to_unit(x), 0.0, below_one);
+        }
+        d += part.dimensions();
+    }
+    return other.from_cube_to_direction(y, check::to_chart(w).phi / two_pi);
+}
+
 Vec3d DomainChart::shifted(Vec3d w, std::size_t axis, double by) const {
     std::vector<double> y = cube_of(w);
     for (std::size_t d = axis; d < y.size(); d += 2) {

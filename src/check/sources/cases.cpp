@@ -332,9 +332,21 @@ private:
 
 }  // namespace
 
+namespace {
+
+std::string domain_name(const SamplerAdapter& sampler) {
+    const Traits traits = sampler.traits();
+    return traits.number ? "numbers" : traits.domain ? "points of " + traits.domain->domain().name() : "directions";
+}
+
+}  // namespace
+
 std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<const CheckCase> a) {
     std::vector<CheckCase> out;
     for (const CheckCase& t : a) {
+        if (domain_name(*t.adapter) != "directions")
+            throw InputError({"--against " + name, 0, 0},
+                fmt::format("draws directions, and {} {}", t.adapter->name(), domain_name(*t.adapter)));
         CheckCase b = t;
         b.arm = name;
         b.theory = {};
@@ -344,9 +356,80 @@ std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<
     return out;
 }
 
+namespace {
+
+/// A sampler over a domain with an infinite line, on the chart of another sampler: directions of both are then those of
+/// the same points.
+class OnChart : public ForwardingAdapter {
+public:
+    OnChart(std::shared_ptr<const SamplerAdapter> inner, std::shared_ptr<const DomainChart> chart)
+        : ForwardingAdapter(std::move(inner)), own_(this->inner().traits().domain), chart_(std::move(chart)) {}
+    Traits traits() const override {
+        Traits out = inner().traits();
+        out.domain = chart_;
+        return out;
+    }
+    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        inner().sample(t, wo, u, out);
+        for (Draw& d : out) {
+            if (!(d.pdf > 0) || !std::isfinite(dot(d.wi, d.wi))) continue;
+            const Vec3d there = own_->in_chart(*chart_, d.wi);
+            if (inner().traits().has_pdf) d.pdf = own_->density(d.wi, d.pdf) / chart_->density(there, 1);
+            d.wi = there;
+        }
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        inner().pdf(t, of_inner(at), out);
+        rescale(at, out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        inner().exact_pdf(t, of_inner(at), out);
+        rescale(at, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        inner().f(of_inner(at), out);
+        rescale(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        inner().f_channels(of_inner(at), out);
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = out[i] * factor(at[i].wi);
+    }
+
+private:
+    std::shared_ptr<const DomainChart> own_, chart_;
+
+    std::vector<Pair> of_inner(std::span<const Pair> at) const {
+        std::vector<Pair> out(at.begin(), at.end());
+        for (Pair& p : out) p.wi = chart_->in_chart(*own_, p.wi);
+        return out;
+    }
+    /// From a density on the chart of `inner` to one on the common chart.
+    double factor(Vec3d w) const { return own_->density(chart_->in_chart(*own_, w), 1) / chart_->density(w, 1); }
+    void rescale(std::span<const Pair> at, std::span<double> values) const {
+        for (std::size_t i = 0; i < at.size(); ++i) values[i] *= factor(at[i].wi);
+    }
+};
+
+/// B over the domain of A. Throws InputError if it has another one.
+std::shared_ptr<const SamplerAdapter> over_the_domain_of(
+    const SamplerAdapter& a, const std::shared_ptr<const SamplerAdapter>& b) {
+    if (domain_name(a) != domain_name(*b))
+        throw InputError({"--against", 0, 0},
+            fmt::format("{} draws {}, and {} {}", a.name(), domain_name(a), b->name(), domain_name(*b)));
+    if (a.traits().reciprocal_weight || b->traits().reciprocal_weight)
+        throw InputError({"--against", 0, 0}, "is not for samplers with weight=reciprocal, which have no density");
+    const std::shared_ptr<const DomainChart> chart = a.traits().domain;
+    const bool infinite = chart && std::ranges::any_of(chart->domain().parts(), &DomainPart::is_infinite);
+    return infinite ? std::make_shared<OnChart>(b, chart) : b;
+}
+
+}  // namespace
+
 std::vector<CheckCase> sampler_against(
-    const std::shared_ptr<const SamplerAdapter>& adapter, std::span<const CheckCase> a) {
+    const std::shared_ptr<const SamplerAdapter>& given, std::span<const CheckCase> a) {
     std::vector<CheckCase> out;
+    const std::shared_ptr<const SamplerAdapter> adapter =
+        a.empty() || !a.front().adapter ? given : over_the_domain_of(*a.front().adapter, given);
     for (const CheckCase& t : a) {
         out.push_back(t);
         out.back().arm = adapter->name();
