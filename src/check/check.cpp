@@ -227,10 +227,14 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
             for (const CheckAt& c : o.at[k])
                 if (std::optional<BinHistogram> map = check::bin_map(check_cases[i], c))
                     maps[i].push_back(std::move(*map));
+            for (const CheckAt& c : o.at[k])
+                if (std::optional<LineHistogram> line = check::line_picture(check_cases[i], c);
+                    line && settings.pictures)
+                    j.lines.push_back(std::move(*line));
             if (!o.tails[k].has_weights) continue;
             weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.at[k]), o.tails[k]);
             try {
-                check::add_rose(check_cases[i], *weights[i]);
+                if (!check_cases[i].adapter->traits().domain) check::add_rose(check_cases[i], *weights[i]);
             } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // the program ended
         }
     if (!settings.pictures) return;

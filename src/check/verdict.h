@@ -102,6 +102,17 @@ struct BinHistogram {
     std::vector<double> edges{};             // of the rings: 1 - cos of the angle to the axis
     std::vector<double> sector_edges{};      // degrees about the axis; empty: uniform from 0
     double full_scale = 0;                   // of a density, 1/sr
+    // Of another domain than directions: labels at five places of each side, and what they are.
+    std::array<std::string, 5> ring_labels{}, sector_labels{};
+    std::string ring_axis{}, sector_axis{};
+};
+
+/// Draws and expectation over a line or a set: bars of an entry or of an interval each.
+struct LineHistogram {
+    std::string arm, check_case, axis;
+    std::vector<double> edges;               // of x, or of the entries
+    std::vector<double> observed, expected;  // draws; expected empty: no density
+    bool entries = false;
 };
 
 /// The largest weights, a histogram of all, and p and f L cos along a grid of directions.
@@ -127,6 +138,7 @@ struct CheckResult {
     std::vector<SkippedCase> left_out;
     std::vector<std::string> unmet;  // expectations of the caller that no verdict meets, a sentence each
     std::vector<BinHistogram> maps;
+    std::vector<LineHistogram> lines;
     std::vector<WeightHistogram> weights;
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice

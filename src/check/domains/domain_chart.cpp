@@ -420,6 +420,56 @@ std::string DomainChart::text(const check::ChartRect& rect) const {
     return ranges.empty() ? "everywhere" : fmt::format("at {}", fmt::join(ranges, ", "));
 }
 
+double DomainChart::value_at(double t) const {
+    const DomainPart& part = domain_.parts()[0];
+    if (part.kind == Kind::set) return std::min(t / 2 * cells_of(part), static_cast<double>(part.count));
+    std::array<double, Domain::most_coordinates> x{};
+    const double y = std::clamp(t / 2, 0.0, below_one);
+    from_cube({&y, 1}, x);
+    return x[0];
+}
+
+std::string DomainChart::axis(std::size_t dimension) const {
+    for (const DomainPart& part : domain_.parts()) {
+        if (dimension >= part.dimensions()) {
+            dimension -= part.dimensions();
+            continue;
+        }
+        switch (part.kind) {
+            case Kind::sphere:
+            case Kind::hemisphere: return dimension == 0 ? "cos theta" : "phi in degrees";
+            case Kind::disk: return dimension == 0 ? "radius" : "angle in degrees";
+            case Kind::triangle: return dimension == 0 ? "b0" : "b1 / (1 - b0)";
+            case Kind::set: return "entry";
+            default: return std::array{"x", "y", "z"}[dimension];
+        }
+    }
+    return "";
+}
+
+std::string DomainChart::label(std::size_t dimension, double share) const {
+    std::vector<double> y(domain_.dimensions(), 0.5);
+    y[dimension] = std::min(share, below_one);
+    std::array<double, Domain::most_coordinates> x{};
+    from_cube(y, x);
+    std::size_t c = 0, d = dimension;
+    for (const DomainPart& part : domain_.parts()) {
+        if (d >= part.dimensions()) {
+            d -= part.dimensions(), c += part.coordinates();
+            continue;
+        }
+        const bool turns =
+            d == 1 && (part.kind == Kind::disk || part.kind == Kind::sphere || part.kind == Kind::hemisphere);
+        const double value = turns                                         ? 360 * share
+            : part.kind == Kind::disk                                      ? std::sqrt(share)
+            : part.kind == Kind::triangle                                  ? (d == 0 ? 1 - std::sqrt(share) : share)
+            : part.coordinates() == 3 && d == 0 && part.kind != Kind::cube ? x[c + 2]
+                                                                           : x[c + d];
+        return fmt::format("{:.3g}", value);
+    }
+    return "";
+}
+
 std::optional<std::uint32_t> DomainChart::entry(const check::ChartRect& rect) const {
     const DomainPart& part = domain_.parts()[0];
     if (!is_line() || part.kind != Kind::set) return {};

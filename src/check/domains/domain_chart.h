@@ -59,6 +59,11 @@ public:
     std::string text(const check::ChartRect& rect) const;
     /// The entry of a set that a rectangle of the sphere's chart is a part of; none if it has several, or no set.
     std::optional<std::uint32_t> entry(const check::ChartRect& rect) const;
+    /// The value of coordinate 0 of a line, or the entry of a set, at t of the sphere's chart.
+    double value_at(double t) const;
+    /// The name of a dimension, and its value at a share of its range: "radius", "0.5".
+    std::string axis(std::size_t dimension) const;
+    std::string label(std::size_t dimension, double share) const;
     /// Whether a dimension alone is spread over the azimuth.
     bool is_line() const { return domain_.dimensions() == 1; }
 

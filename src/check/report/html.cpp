@@ -66,7 +66,9 @@ Json ring_ticks(const BinHistogram& m) {
         const std::size_t edge = static_cast<std::size_t>(std::lround(0.25 * i * m.rings));
         if (edge >= m.edges.size()) continue;
         const double y = map_top + map_height * static_cast<double>(edge) / m.rings;
-        out.push_back({{"y", pixels(y)}, {"text_y", pixels(y + 4)}, {"degrees", degrees(degrees_of(m.edges[edge]))}});
+        const std::string& label = m.ring_labels[static_cast<std::size_t>(i)];
+        out.push_back({{"y", pixels(y)}, {"text_y", pixels(y + 4)},
+            {"degrees", label.empty() ? degrees(degrees_of(m.edges[edge])) : label}});
     }
     return out;
 }
@@ -77,7 +79,8 @@ Json sector_ticks(const BinHistogram& m) {
         const std::size_t sector = static_cast<std::size_t>(std::lround(0.25 * i * m.sectors));
         const double x = map_left + map_width * static_cast<double>(sector) / m.sectors;
         const double turn = sector < m.sector_edges.size() ? m.sector_edges[sector] : 90 * i;
-        out.push_back({{"x", pixels(x)}, {"degrees", degrees(turn)}});
+        const std::string& label = m.sector_labels[static_cast<std::size_t>(i)];
+        out.push_back({{"x", pixels(x)}, {"degrees", label.empty() ? degrees(turn) : label}});
     }
     return out;
 }
@@ -103,7 +106,11 @@ Json frame_of(const BinHistogram& m, const std::vector<double>& deviations) {
 
 Json map_of(const BinHistogram& m) {
     Json out = {{"coordinates", m.coordinates}, {"sectors", m.sectors}, {"rings", m.rings}, {"bins", m.observed.size()},
-        {"ring_ticks", ring_ticks(m)}, {"sector_ticks", sector_ticks(m)}, {"frame", false}};
+        {"ring_ticks", ring_ticks(m)}, {"sector_ticks", sector_ticks(m)}, {"frame", false},
+        {"sides",
+            m.ring_axis.empty() ? "Degrees: theta downwards, phi to the right."
+                                : m.ring_axis + " downwards, " + m.sector_axis + " to the right."},
+        {"unit", m.ring_axis.empty() ? "1/sr" : "of its largest value"}};
     if (m.expected.empty()) {  // a density, 1/sr
         const double top = std::max(m.full_scale, 1e-300);
         out["top"] = fmt::format("{:.4g}", top), out["full_scale"] = fmt::format("{:.6g}", top);
@@ -119,6 +126,26 @@ Json map_of(const BinHistogram& m) {
     out["expected_draws"] = fmt::format("{:.1f}", fmt::join(m.expected, ","));
     out["deviations"] = fmt::format("{:.2f}", fmt::join(deviations, ","));
     return out;
+}
+
+/// Draws and expectation over a line, or bars of the entries of a set.
+Json line_of(const LineHistogram& h) {
+    std::vector<double> all = h.observed;
+    all.insert(all.end(), h.expected.begin(), h.expected.end());
+    all.push_back(0);
+    Axis x = linear_axis(h.axis, {h.edges.front(), h.edges.back()});
+    x.low = h.edges.front(), x.high = h.edges.back();
+    Chart chart(640, 240, x, linear_axis("draws", all), "Draws over " + h.axis);
+    std::vector<Point> expected;
+    for (std::size_t i = 0; i < h.observed.size(); ++i) {
+        const double from = h.edges[i], to = h.edges[i + 1];
+        if (h.observed[i] > 0) chart.band({from, to}, {0, 0}, {h.observed[i], h.observed[i]}, "c1");
+        if (h.expected.empty()) continue;
+        expected.push_back({from, h.expected[i]});
+        expected.push_back({to, h.expected[i]});
+    }
+    if (!expected.empty()) chart.line(expected, "c2");
+    return {{"chart", chart.str()}, {"of", h.entries ? "entries" : "intervals of x"}, {"has_p", !h.expected.empty()}};
 }
 
 /// The points of a polar curve over the angles of the plane of incidence, scaled to its largest value.
@@ -194,13 +221,14 @@ void add_matrix(const CheckResult& j, Json& to) {
 /// Every case with its verdicts, maps, implied density and weights.
 Json case_models(const CheckResult& j) {
     Json out = Json::array();
-    std::size_t map = 0, weight = 0;
+    std::size_t map = 0, line = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
         const std::string arm = j.verdicts[i].arm, check_case = j.verdicts[i].check_case;
         const auto is_here = [&](const auto& all, std::size_t k) {
             return k < all.size() && all[k].arm == arm && all[k].check_case == check_case;
         };
-        Json verdicts = Json::array(), implied = Json::array(), maps = Json::array(), weights = Json::array();
+        Json verdicts = Json::array(), implied = Json::array(), maps = Json::array(), weights = Json::array(),
+             lines = Json::array();
         bool open = false;
         for (; is_here(j.verdicts, i); ++i) {
             const Verdict& v = j.verdicts[i];
@@ -211,10 +239,11 @@ Json case_models(const CheckResult& j) {
         }
         open = open || (out.empty() && !implied.empty());  // only the first table of an implied density is open
         for (; is_here(j.maps, map); ++map) maps.push_back(map_of(j.maps[map]));
+        for (; is_here(j.lines, line); ++line) lines.push_back(line_of(j.lines[line]));
         for (; is_here(j.weights, weight); ++weight)
             weights.push_back({{"histogram", histogram(j.weights[weight])}, {"rose", rose_of(j.weights[weight])}});
         out.push_back({{"arm", arm}, {"case", check_case}, {"open", open}, {"verdicts", verdicts}, {"maps", maps},
-            {"implied", implied}, {"weights", weights}});
+            {"lines", lines}, {"implied", implied}, {"weights", weights}});
     }
     return out;
 }

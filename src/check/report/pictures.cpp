@@ -2,6 +2,7 @@
 #include "check/report/verdicts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
@@ -129,6 +130,14 @@ MapEdges map_edges(const std::vector<LeafDraws>& leaves, const Vec3d& middle) {
     return out;
 }
 
+/// Of equal measure, for another domain than directions.
+MapEdges even_edges() {
+    MapEdges out;
+    for (int i = 0; i <= map_rings; ++i) out.theta.push_back(angle_of(2.0 * i / map_rings));
+    for (int i = 0; i <= map_sectors; ++i) out.phi.push_back(two_pi * i / map_sectors);
+    return out;
+}
+
 /// Degrees in [0, 360]; the last edge is above the first.
 double degrees_from(double seam, double turned) {
     const double d = (seam + turned) * 360 / two_pi;
@@ -142,10 +151,17 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
     const bool has_density = check_case.adapter->traits().has_pdf;
     const std::vector<LeafDraws> leaves = leaf_draws(c, has_density);
     if (leaves.empty()) return {};
-    const MapEdges edges = map_edges(leaves, c.plan->middle);
+    const DomainChart* domain = c.traits.domain.get();
+    if (domain && domain->domain().dimensions() != 2) return {};
+    const MapEdges edges = domain ? even_edges() : map_edges(leaves, c.plan->middle);
     BinHistogram out;
     out.arm = check_case.arm, out.check_case = check_case.text();
-    out.coordinates = "theta from n and phi about it";
+    out.coordinates = domain ? domain->axis(0) + " and " + domain->axis(1) : "theta from n and phi about it";
+    for (std::size_t k = 0; domain && k < out.ring_labels.size(); ++k) {
+        out.ring_labels[k] = domain->label(0, static_cast<double>(k) / 4);
+        out.sector_labels[k] = domain->label(1, static_cast<double>(k) / 4);
+    }
+    if (domain) out.ring_axis = domain->axis(0), out.sector_axis = domain->axis(1);
     if (check_case.adapter->techniques() > 1) out.coordinates += fmt::format(", technique {}", c.technique + 1);
     out.rings = static_cast<int>(edges.theta.size()) - 1, out.sectors = static_cast<int>(edges.phi.size()) - 1;
     const auto sectors = static_cast<std::size_t>(out.sectors), bins = static_cast<std::size_t>(out.rings) * sectors;
@@ -171,6 +187,42 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
         out.full_scale = std::max(out.full_scale, out.observed[i]);
     }
     out.expected.clear(), out.sd.clear();
+    return out;
+}
+
+std::optional<LineHistogram> line_picture(const CheckCase& check_case, const CheckAt& c) {
+    constexpr int most_bins = 64;
+    constexpr double outside = 2e-3;  // of the mass of an infinite line, at either end
+    const DomainChart* domain = c.traits.domain.get();
+    if (!domain || !domain->is_line() || !c.plan || c.observations.counts.empty()) return {};
+    const bool has_density = check_case.adapter->traits().has_pdf;
+    const std::vector<LeafDraws> leaves = leaf_draws(c, has_density);
+    if (leaves.empty()) return {};
+    LineHistogram out;
+    out.arm = check_case.arm, out.check_case = check_case.text(), out.axis = domain->axis(0);
+    out.entries = domain->is_discrete();
+    const DomainPart& part = domain->domain().parts()[0];
+    std::vector<Spread1d> mass;
+    for (const LeafDraws& d : leaves) mass.push_back({d.rect.t0, d.rect.t1, d.observed + d.expected});
+    double low = 0, high = out.entries ? 2.0 * part.count / std::bit_ceil(part.count) : 2;
+    if (part.is_infinite()) {
+        const double from = quantile_of(mass, outside, 0, 2), to = quantile_of(mass, 1 - outside, 0, 2);
+        if (!std::isfinite(part.from)) low = from;
+        if (!std::isfinite(part.to)) high = to;
+    }
+    const double first = domain->value_at(low), last = domain->value_at(high);
+    const int bins = out.entries ? static_cast<int>(std::min<std::uint32_t>(part.count, most_bins)) : most_bins;
+    for (int i = 0; i <= bins; ++i) out.edges.push_back(first + (last - first) * i / bins);
+    if (out.entries)
+        for (double& e : out.edges) e = std::round(e);
+    const auto count = static_cast<std::size_t>(bins);
+    out.observed.assign(count, 0), out.expected.assign(count, 0);
+    for (const LeafDraws& d : leaves)
+        share_out(
+            domain->value_at(d.rect.t0), domain->value_at(d.rect.t1), out.edges, [&](std::size_t bin, double share) {
+                out.observed[bin] += share * d.observed, out.expected[bin] += share * d.expected;
+            });
+    if (!has_density) out.expected.clear();
     return out;
 }
 

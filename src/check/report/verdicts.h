@@ -73,6 +73,8 @@ std::vector<Verdict> verdicts_of(
 /// Draws of one technique by bins of theta and phi about n, from the leaves of its tree, finer where most draws are.
 /// Both sides are sums of h = q / (p + q), in units of draws. Without a density: the density that the draws imply, in
 /// 1/sr. None if there are no draws.
+/// Draws and expectation over a line or a set; none for another domain.
+std::optional<LineHistogram> line_picture(const CheckCase& check_case, const CheckAt& at);
 std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& c);
 /// Histogram of the weights with the fitted tail. x: weights of all techniques.
 WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail);
