@@ -15,7 +15,9 @@
 #include "crescent/crescent.h"
 #include "memory.h"
 #include "progress.h"
+#include "repro.h"
 #include "signals.h"
+#include "terminal.h"
 
 namespace crescent::cli {
 
@@ -281,8 +283,22 @@ std::string given_sampler(const CheckFlags& flags) {
     return !flags.exec.empty() ? flags.exec : !flags.plugin.empty() ? flags.plugin : flags.arm;
 }
 
+/// Writes the script, or says why there is none.
+void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& j) {
+    if (flags.repro.empty()) return;
+    std::string why =
+        j.state == State::wrong ? "no wrong verdict shows in 65,536 draws and directions" : "no verdict is wrong";
+    try {
+        if (const std::optional<std::string> script = repro_script(flags, check_cases, j))
+            return write_whole(flags.repro, *script);
+    } catch (const SamplerError& e) { why = e.what(); }
+    print_to_stderr(fmt::format("--repro: {} is not written: {}\n", flags.repro, why));
+}
+
 /// --patience and --accept-few are for programs, a Python interpreter among them, and for arms of experiments.
 void check_limits(const CheckFlags& flags) {
+    if (!flags.repro.empty() && (is_experiment(flags) || (flags.exec.empty() && !names_python_sampler(flags.arm))))
+        throw InputError({"--repro", 0, 0}, "needs --exec or a sampler in a Python file");
     if (!flags.exec.empty() || names_python_sampler(flags.arm) || is_experiment(flags)) return;
     for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
         if (given) throw InputError({flag, 0, 0}, "needs --exec, an experiment or a sampler in a Python file");
@@ -327,7 +343,7 @@ std::string command_of(const CheckFlags& f) {
 
 /// Opens every file before the first draw, so that minutes of work are not lost to a missing folder.
 void try_files(const CheckFlags& flags) {
-    for (const std::string& path : {flags.json, flags.timing, flags.junit, flags.html})
+    for (const std::string& path : {flags.json, flags.timing, flags.junit, flags.html, flags.repro})
         if (!path.empty()) can_write(path);
 }
 
@@ -405,9 +421,16 @@ std::string cost_of(const CheckResult& j, double seconds) {
 
 }  // namespace
 
+void print_verdicts(const CheckResult& j, bool verbose) {
+    if (verbose || !one_sampler(j)) return print(verdict_table(j));
+    const Terminal terminal = terminal_of_stdout();
+    print_marked(screen_of(j, terminal.columns), terminal);
+}
+
 int check(const CheckFlags& given) {
     CheckFlags flags = given;
-    for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may call chdir
+    for (std::string* file :
+        {&flags.json, &flags.timing, &flags.junit, &flags.html, &flags.repro})  // a sampler may call chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
     const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
@@ -427,19 +450,21 @@ int check(const CheckFlags& given) {
         const bool number = check_cases.front().adapter && check_cases.front().adapter->traits().number;
         if (number) {
             if (flags.describe) throw InputError({"--describe", 0, 0}, "is for samplers of directions and points");
+            if (!flags.repro.empty()) throw InputError({"--repro", 0, 0}, "is for samplers of directions");
             j = check_of_number(flags, check_cases.front().adapter, monitor);
         } else {
             if (flags.describe) return describe_draws(flags, check_cases, monitor);
             if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
             log_cost(check_cases, test_settings_of(flags), monitor);
             j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+            write_repro(flags, check_cases, j);
         }
     } catch (const SamplerError& fault) { j = unchecked_result(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
     const bool all = whole_list(flags);
     if (all) j.state = j.as_expected ? State::right : State::wrong;  // the state is that of the whole list
-    print(verdict_table(j));
+    print_verdicts(j, flags.verbose);
     if (flags.verbose) print(cost_of(j, watch.seconds()));
     if (all)
         print(j.as_expected ? "every arm gets the verdicts expected of it\n"
@@ -510,7 +535,7 @@ int check_against(
     } catch (const SamplerError& fault) {  // B's own: A has responded
         const CheckResult j = unchecked_result(fault, flags, flags.against);
         monitor.clear();
-        print(verdict_table(j));
+        print_verdicts(j, flags.verbose);
         write_files(flags, j);
         return exit_of(j.state, flags);
     }

@@ -11,6 +11,8 @@ TestSettings test_settings_of(const CheckFlags& flags);
 int exit_of(State state);
 /// The same, if inconclusive results may be allowed.
 int exit_of(State state, const CheckFlags& flags);
+/// Prints at most 12 lines for one sampler; with `verbose`, or for several, the table and the details.
+void print_verdicts(const CheckResult& j, bool verbose);
 void write_files(const CheckFlags& flags, const CheckResult& j);
 std::string shortest(double v);
 /// Returns the result for a program or plugin that could not be checked.

@@ -75,6 +75,7 @@ struct CheckFlags {
     std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails
     std::vector<std::string> wo;            // x,y,z or degrees
     std::string json, timing, junit, html;  // files to write
+    std::string repro;                      // a script to write
     double alpha = 1e-3, patience = 0;      // patience: s for a program; 0: two minutes, with --full an hour
     double timeout = 0;                     // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
@@ -82,7 +83,7 @@ struct CheckFlags {
     bool no_code = false;
     bool light = false;  // f is the radiance of a light
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
-    bool verbose = false;   // prints the cost
+    bool verbose = false;   // prints the details and the cost
     bool describe = false;  // describes the distribution of the draws, without a verdict
 };
 int check(const CheckFlags& flags);
@@ -121,5 +122,7 @@ int version(const VersionFlags& flags);
 void print(const std::string& text);
 /// Writes to stderr. In both, no control character in a name, a file or a word reaches the terminal.
 void print_to_stderr(const std::string& text);
+/// Like print(), with the control characters of a text that the caller has made safe.
+void print_as_it_is(const std::string& text);
 
 }  // namespace crescent::cli

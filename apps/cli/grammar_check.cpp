@@ -59,7 +59,8 @@ void outputs(CLI::App& c, CheckFlags& f) {
         {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
             c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
             c.add_option("--junit", f.junit, "write for a build server"),
-            c.add_option("--html", f.html, "write one page with maps, histograms and roses")})
+            c.add_option("--html", f.html, "write one page with maps, histograms and roses"),
+            c.add_option("--repro", f.repro, "write a Python script that shows the first fault without crescent")})
         file->type_name("FILE")->check(not_empty);
 }
 
@@ -146,15 +147,16 @@ void add_check(CLI::App& app, Work& work) {
         ->check(not_empty);
     auto* wo = c->add_option("--wo", f->wo, "check only at this w_o; may be repeated; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
+    outputs(*c, *f);
     auto* against = comparison(*c, *f);
     auto* describe = c->add_flag("--describe", f->describe,
         "print what distribution the draws have, with intervals, and no verdict; --json writes it");
     for (auto* other : {planted, against}) describe->excludes(other);
+    for (auto* other : {planted, against, describe}) c->get_option("--repro")->excludes(other);
     auto* expect = waivers(*c, *f);
     for (auto* option : {expect, against, wo}) option->excludes(planted);
-    outputs(*c, *f);
-    c->add_flag("--quiet", f->quiet, "no progress; the table stays");
-    c->add_flag("--verbose", f->verbose, "time, memory and evaluations, after the table");
+    c->add_flag("--quiet", f->quiet, "no progress; the verdicts stay");
+    c->add_flag("--verbose", f->verbose, "print every finding, the number of tests, time, memory and evaluations");
 }
 
 }  // namespace crescent::cli

@@ -15,8 +15,9 @@
 
 namespace crescent::cli {
 
-void print(const std::string& anything) {
-    const std::string text = printable_lines(anything);
+void print(const std::string& text) { print_as_it_is(printable_lines(text)); }
+
+void print_as_it_is(const std::string& text) {
     errno = 0;
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     if (!written && errno != EPIPE) throw OutputError(std::string("cannot write to stdout: ") + std::strerror(errno));

@@ -135,7 +135,8 @@ class CheckResult:
         return self._run.text()
 
     def text(self, all: bool = False) -> str:
-        """The table of the terminal; `all`: every verdict with its message."""
+        """The verdicts as on a terminal, at most 12 lines for one sampler; `all`: a table, then every verdict with its
+        message."""
         return self._run.text(all)
 
     def json(self) -> str:

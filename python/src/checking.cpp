@@ -240,7 +240,9 @@ void add_check_run(nb::module_& m) {
         .def(
             "text",
             [](const CheckRun& j, bool all) {
-                return j.against ? against_text(j.result) : verdict_table(j.result, all);
+                if (j.against) return against_text(j.result);
+                return all || !one_sampler(j.result) ? verdict_table(j.result, all)
+                                                     : verdict_screen(j.result, FrontEnd::python);
             },
             nb::arg("all") = false)
         .def("json", [](const CheckRun& j) { return verdict_json(j.result, j.source); })

@@ -266,7 +266,7 @@ for signal in INT TERM KILL; do
     [ ! -s pids ] || die "SIG$signal: the hosts $(cat pids) live on"
 done
 
-expect 0 "$CRESCENT" check --plugin ./libcosine.so --json right.json
+expect 0 "$CRESCENT" check --plugin ./libcosine.so --json right.json --verbose
 grep -Eq '; [1-9][0-9]+ questions were answered' printed || die "nothing is told of questions: $(tail -n 1 printed)"
 sed 's|pdf\[i\] = wi|pdf[i] = 1.01 * wi|; s|pdf\[i\] = cos_theta|pdf[i] = 1.01 * cos_theta|' \
     "$CRESCENT_SOURCE/examples/plugin/cosine.c" >bright.c && cc_shared bright

@@ -2,6 +2,7 @@
 // contains its pictures.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,8 @@ struct Finding {
 std::vector<Finding> findings_of(const CheckResult& result);
 /// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
 std::string describe(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
+/// "at 3 of 8 w_o (75 to 89 deg), worst at w_o 89 deg az 180"; "" for a sampler that is checked once, without w_o.
+std::string where_found(const Finding& finding);
 /// "Left out: all but valid at 3 of 8 w_o (w_o 0 deg; ...). ..."; "" if nothing was left out.
 std::string skipped_text(const CheckResult& result);
 /// Sizes of faults that right verdicts would have found, over all cases: "... a constant factor of 0.03 %, ..."; "" if
@@ -77,6 +80,24 @@ std::string summary_of(const CheckResult& result);
 /// The findings in at most `most_lines` (5 or more), for a failing test: message, size, place and cause of the first
 /// ones, then the names of the others and the next step in calls of C++; "" if there are none.
 std::string what_is_wrong(const CheckResult& result, std::size_t most_lines = 8);
+
+// ---- The first view of one sampler on a terminal: at most 12 lines.
+
+/// A line with its mark. `head` is short and may be coloured; `text` may have several rows, the later ones indented.
+struct ScreenLine {
+    std::optional<State> state;  // of the mark; none: no mark
+    std::string head, text;
+};
+
+/// One line for each verdict, wrong ones first; what does not fit in 12 rows is shortened, right verdicts first.
+/// `columns`: where rows are broken; 0: nowhere.
+std::vector<ScreenLine> screen_of(
+    const CheckResult& result, std::size_t columns = 0, FrontEnd front_end = FrontEnd::command_line);
+const char* mark_of(State state);
+/// The lines of screen_of() without colours.
+std::string verdict_screen(const CheckResult& result, FrontEnd front_end = FrontEnd::command_line);
+/// Whether all verdicts are of one sampler, so that a screen can show them.
+bool one_sampler(const CheckResult& result);
 
 // ---- The end of a result's table: the density implied by draws without pdf(w).
 

@@ -184,17 +184,12 @@ std::vector<Finding> findings_of(const CheckResult& j) {
     return out;
 }
 
-namespace {
-
-/// "at 3 of 8 w_o (75 to 89 deg), worst at w_o 89 deg az 180"; "" for a sampler that is checked once, without w_o.
 std::string where_found(const Finding& f) {
     if (f.count == 1 && !f.worst->place.empty()) return "at " + f.worst->place;
     if (f.of == 1 && f.worst->check_case == without_wo) return "";
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
     return fmt::format("at {} of {} {}{}, {} {}", f.count, f.of, f.cases, f.range, as, f.worst->check_case);
 }
-
-}  // namespace
 
 std::string describe(const Finding& f, FrontEnd front_end) {
     const std::string message = described(*f.worst, f.named_cause, front_end);

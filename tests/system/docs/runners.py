@@ -59,6 +59,7 @@ class Page:
             "PYTHONPATH": str(s.build / "python"),
             "PYTHONDONTWRITEBYTECODE": "1",
             "MPLBACKEND": "agg",
+            "COLUMNS": "100",
             "CXX": s.compiler,
         }
 

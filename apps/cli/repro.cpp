@@ -1,0 +1,612 @@
+// The fault is measured again, by means over one set of random directions and draws or at a single one, since a short
+// script can do no more. w_o, u and w are then replaced by rounder ones as long as the fault keeps half of its size.
+#include "repro.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <random>
+#include <regex>
+#include <sstream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace crescent::cli {
+
+namespace {
+
+constexpr std::size_t evaluations = 1u << 16;  // the longest block of docs/samplers.md
+constexpr double clear_errors = 6;             // standard errors: several hundred means are compared
+constexpr double kept_size = 0.5;              // of the fault at the worst w_o, at a rounder one
+constexpr double rounding = 1e-3;              // relative: a difference that single precision does not explain
+constexpr double below_one = 1 - 0x1p-24;      // the largest u of single precision
+constexpr double degree = pi / 180;
+
+/// A direction by its angles in degrees, as the script writes it.
+struct Angles {
+    double theta = 0, phi = 0;
+    Vec3d direction() const {
+        const double sine = std::sin(theta * degree);
+        return {sine * std::cos(phi * degree), sine * std::sin(phi * degree), std::cos(theta * degree)};
+    }
+};
+
+Angles angles_of(Vec3d w) {
+    const double phi = std::atan2(w.y, w.x) / degree;
+    return {std::acos(std::clamp(w.z, -1.0, 1.0)) / degree, phi < 0 ? phi + 360 : phi};
+}
+
+/// A rectangle of cos theta and phi, degrees.
+struct Cell {
+    double from_cos = 0, to_cos = 0, from_phi = 0, to_phi = 0;
+};
+
+/// A fault that a script shows: its kind, its size, and where.
+struct ShownFault {
+    enum class Kind { bad_draw, bad_pdf, bad_f, dark, integral, cell, two_pdfs, energy, not_reciprocal, mean };
+    Kind kind = Kind::integral;
+    double size = 0;
+    PrimarySample u{};
+    Angles a{}, b{};
+    Cell cell{};
+    int channel = 0;
+};
+
+/// Mean and standard error of values.
+struct Mean {
+    double value = 0, error = 0;
+    explicit Mean(std::span<const double> x) {
+        const auto n = static_cast<double>(x.size());
+        double square = 0;
+        for (const double v : x) value += v / n;
+        for (const double v : x) square += sqr(v - value) / n;
+        error = std::sqrt(square / n);
+    }
+};
+
+bool differ(double a, double b, double error) { return std::fabs(a - b) > clear_errors * error; }
+bool usable(double x) { return std::isfinite(x) && x >= 0; }
+bool usable(const Draw& d) { return usable(d.pdf) && (d.pdf == 0 || std::fabs(length(d.wi) - 1) < rounding); }
+
+/// One sampler at one w_o, with the same random numbers at each.
+class Bench {
+public:
+    Bench(const SamplerAdapter& sampler, bool hemisphere, Vec3d wo)
+        : sampler_(sampler), traits_(sampler.traits()), hemisphere_(hemisphere), wo_(wo) {}
+
+    /// The fault that the verdict names, if it shows here.
+    std::optional<ShownFault> find(std::string_view verdict) const {
+        if (verdict == "valid") return find_unusable();
+        if (verdict == "support") return find_dark();
+        if (verdict == "normalised") return find_integral();
+        if (verdict == "density") return find_cell();
+        if (verdict == "identity") return find_two_pdfs();
+        if (verdict == "physics") return find_physics();
+        if (verdict == "mean") return find_mean();
+        return {};
+    }
+
+private:
+    using Kind = ShownFault::Kind;
+
+    std::vector<PrimarySample> numbers() const {
+        std::mt19937_64 random(1);
+        std::vector<PrimarySample> out(evaluations);
+        for (PrimarySample& u : out)
+            for (int k = 0; k < traits_.numbers; ++k) u[k] = static_cast<double>(random() >> 40) * 0x1p-24;
+        return out;
+    }
+    double lowest() const { return hemisphere_ ? 0 : -1; }
+    /// Uniform over the domain.
+    std::vector<Vec3d> directions() const {
+        std::mt19937_64 random(2);
+        std::vector<Vec3d> out;
+        while (out.size() < evaluations) {
+            const double z = lowest() + (1 - lowest()) * static_cast<double>(random() >> 11) * 0x1p-53;
+            const double phi = 2 * pi * static_cast<double>(random() >> 11) * 0x1p-53, r = std::sqrt(1 - z * z);
+            out.push_back({r * std::cos(phi), r * std::sin(phi), z});
+        }
+        return out;
+    }
+    double solid_angle() const { return 2 * pi * (1 - lowest()); }
+    /// Of the upper hemisphere, with the density cos / pi or uniform.
+    static std::vector<Vec3d> upper(bool cosine) {
+        std::mt19937_64 random(3);
+        std::vector<Vec3d> out;
+        while (out.size() < evaluations) {
+            const double u = static_cast<double>(random() >> 11) * 0x1p-53, z = cosine ? std::sqrt(1 - u) : u;
+            const double phi = 2 * pi * static_cast<double>(random() >> 11) * 0x1p-53, r = std::sqrt(1 - z * z);
+            out.push_back({r * std::cos(phi), r * std::sin(phi), z});
+        }
+        return out;
+    }
+    /// The integral of g over the domain, from directions above the surface and their images below it.
+    Mean integrate(bool cosine, const std::function<std::vector<double>(std::span<const Vec3d>)>& g) const {
+        std::vector<Vec3d> w = upper(cosine);
+        std::vector<double> out = g(w);
+        for (Vec3d& v : w) v.z = -v.z;
+        if (!hemisphere_) {
+            const std::vector<double> below = g(w);
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] += below[i];
+        }
+        for (double& x : out) x *= cosine ? pi : 2 * pi;
+        return Mean(out);
+    }
+    /// The integral of f cos.
+    Mean power(int channel) const {
+        return integrate(true, [&](std::span<const Vec3d> w) {
+            std::vector<double> out;
+            for (const Vec3d v : f(w)) out.push_back(channel_of(v, channel));
+            return out;
+        });
+    }
+    std::vector<Draw> draw(std::span<const PrimarySample> u) const {
+        std::vector<Draw> out(u.size());
+        sampler_.sample(0, wo_, u, out);
+        return out;
+    }
+    std::vector<double> pdf(std::span<const Vec3d> w) const {
+        std::vector<Pair> pairs;
+        for (const Vec3d v : w) pairs.push_back({wo_, v});
+        std::vector<double> out(w.size());
+        sampler_.pdf(0, pairs, out);
+        return out;
+    }
+    std::vector<Vec3d> f(std::span<const Pair> pairs) const {
+        std::vector<Vec3d> out(pairs.size());
+        sampler_.f_channels(pairs, out);
+        return out;
+    }
+    std::vector<Vec3d> f(std::span<const Vec3d> w) const {
+        std::vector<Pair> pairs;
+        for (const Vec3d v : w) pairs.push_back({wo_, v});
+        return f(pairs);
+    }
+
+    /// The first u for which the predicate holds, with as few digits as it needs.
+    std::optional<PrimarySample> shortest_u(
+        std::span<const PrimarySample> u, const std::function<bool(const Draw&)>& holds) const {
+        const std::vector<Draw> drawn = draw(u);
+        const auto at = std::ranges::find_if(drawn, holds);
+        if (at == drawn.end()) return {};
+        const PrimarySample found = u[static_cast<std::size_t>(at - drawn.begin())];
+        for (double scale = 10; scale < 1e8; scale *= 10) {
+            PrimarySample round = found;
+            for (int k = 0; k < traits_.numbers; ++k)
+                if (found[k] < below_one) round[k] = std::min(std::round(found[k] * scale) / scale, below_one);
+            if (holds(draw({&round, 1})[0])) return round;
+        }
+        return found;
+    }
+    /// Angles of as few digits as the predicate allows, near those of w.
+    static Angles shortest_angles(Vec3d w, const std::function<bool(Vec3d)>& holds) {
+        const Angles found = angles_of(w);
+        for (const double step : {15.0, 5.0, 1.0, 0.1, 0.01, 1e-4}) {
+            const Angles round{std::round(found.theta / step) * step, std::round(found.phi / step) * step};
+            if (holds(round.direction())) return round;
+        }
+        return found;
+    }
+
+    std::optional<ShownFault> find_unusable() const {
+        std::vector<PrimarySample> u;
+        for (int corner = 0; corner < 1 << traits_.numbers; ++corner) {
+            PrimarySample at;
+            for (int k = 0; k < traits_.numbers; ++k) at[k] = corner >> k & 1 ? below_one : 0;
+            u.push_back(at);
+        }
+        const std::vector<PrimarySample> more = numbers();
+        u.insert(u.end(), more.begin(), more.end());
+        if (const auto at = shortest_u(u, [](const Draw& d) { return !usable(d) && !(d.delta > 0); }))
+            return ShownFault{.kind = Kind::bad_draw, .size = 1, .u = *at};
+        const std::vector<Vec3d> w = directions();
+        const auto bad = [this](Vec3d v) { return !usable(pdf(std::span(&v, 1))[0]); };
+        if (traits_.has_pdf) {
+            const std::vector<double> p = pdf(w);
+            const auto at = std::ranges::find_if_not(p, [](double v) { return usable(v); });
+            if (at != p.end())
+                return ShownFault{.kind = Kind::bad_pdf,
+                    .size = 1,
+                    .a = shortest_angles(w[static_cast<std::size_t>(at - p.begin())], bad)};
+        }
+        if (!sampler_.has_f()) return {};
+        const std::vector<Vec3d> all = f(w);
+        for (int c = 0; c < traits_.channels; ++c) {
+            const auto at = std::ranges::find_if_not(all, [c](Vec3d v) { return usable(channel_of(v, c)); });
+            if (at == all.end()) continue;
+            const auto bad_f = [this, c](Vec3d v) { return !usable(channel_of(f(std::span(&v, 1))[0], c)); };
+            return ShownFault{.kind = Kind::bad_f,
+                .size = 1,
+                .a = shortest_angles(w[static_cast<std::size_t>(at - all.begin())], bad_f),
+                .channel = c};
+        }
+        return {};
+    }
+    std::optional<ShownFault> find_dark() const {
+        if (!traits_.has_pdf || !sampler_.has_f()) return {};
+        const std::vector<Vec3d> w = directions(), of_f = f(w);
+        const std::vector<double> p = pdf(w);
+        std::optional<std::size_t> best;
+        double lost = 0;
+        for (std::size_t i = 0; i < w.size(); ++i) {
+            const double here = p[i] == 0 ? of_f[i].x * std::fabs(w[i].z) : 0;
+            if (here > 0) lost += here * solid_angle() / static_cast<double>(w.size());
+            if (here > 0 && (!best || here > of_f[*best].x * std::fabs(w[*best].z))) best = i;
+        }
+        if (!best) return {};
+        const auto dark = [this](Vec3d v) {
+            return pdf(std::span(&v, 1))[0] == 0 && f(std::span(&v, 1))[0].x * std::fabs(v.z) > 0;
+        };
+        return ShownFault{.kind = Kind::dark, .size = lost, .a = shortest_angles(w[*best], dark)};
+    }
+    /// The part of the draws that are directions.
+    Mean drawn_share() const {
+        std::vector<double> drawn;
+        for (const Draw& d : draw(numbers())) drawn.push_back(d.pdf > 0 ? 1 : 0);
+        return Mean(drawn);
+    }
+    std::optional<ShownFault> find_integral() const {
+        if (!traits_.has_pdf) return {};
+        const Mean integral = integrate(false, [&](std::span<const Vec3d> w) { return pdf(w); }), drawn = drawn_share();
+        const double size = std::fabs(integral.value - drawn.value);
+        if (!differ(integral.value, drawn.value, std::hypot(integral.error, 0.5 / std::sqrt(evaluations)))) return {};
+        return ShownFault{.kind = Kind::integral, .size = size};
+    }
+    /// Bands of cos theta, sectors of phi, and their intersections, an eighth of the domain each way.
+    std::optional<ShownFault> find_cell() const {
+        if (!traits_.has_pdf) return {};
+        constexpr std::size_t parts = 8;
+        std::array<std::array<double, parts>, parts> drawn{}, claimed{}, square{};
+        const auto part_of = [&](Vec3d w) {
+            const double across = (w.z - lowest()) / (1 - lowest()) * parts, about = angles_of(w).phi / 360 * parts;
+            const auto index = [](double x) {
+                return static_cast<std::size_t>(std::clamp(x, 0.0, static_cast<double>(parts) - 1));
+            };
+            return std::pair(index(across), index(about));
+        };
+        const std::vector<Vec3d> w = directions();
+        const std::vector<double> p = pdf(w);
+        double draws = 0, all = 0;
+        for (const Draw& d : draw(numbers()))
+            if (d.pdf > 0 && (!hemisphere_ || d.wi.z > 0)) {
+                const auto [i, j] = part_of(d.wi);
+                drawn[i][j] += 1, draws += 1;
+            }
+        for (std::size_t k = 0; k < w.size(); ++k) {
+            const auto [i, j] = part_of(w[k]);
+            claimed[i][j] += p[k], square[i][j] += p[k] * p[k], all += p[k];
+        }
+        if (!(draws > 0 && all > 0)) return {};
+        ShownFault best{.kind = Kind::cell};
+        const auto look = [&](std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) {
+            double s = 0, q = 0, variance = 0;
+            for (std::size_t i = i0; i < i1; ++i)
+                for (std::size_t j = j0; j < j1; ++j)
+                    s += drawn[i][j] / draws, q += claimed[i][j] / all, variance += square[i][j] / (all * all);
+            const double error = std::sqrt(std::max(s, 1 / draws) / draws + variance);
+            if (!differ(s, q, error) || std::fabs(s - q) <= best.size) return;
+            const auto cosine = [&](std::size_t i) {
+                return lowest() + (1 - lowest()) * static_cast<double>(i) / static_cast<double>(parts);
+            };
+            const double sector = 360.0 / parts;
+            best.size = std::fabs(s - q);
+            best.cell = {cosine(i0), cosine(i1), static_cast<double>(j0) * sector, static_cast<double>(j1) * sector};
+        };
+        for (std::size_t i = 0; i < parts; ++i) {
+            look(i, i + 1, 0, parts);
+            look(0, parts, i, i + 1);
+            for (std::size_t j = 0; j < parts; ++j) look(i, i + 1, j, j + 1);
+        }
+        return best.size > 0 ? std::optional(best) : std::nullopt;
+    }
+    std::optional<ShownFault> find_two_pdfs() const {
+        if (!traits_.has_pdf) return {};
+        double size = 0;
+        const auto two = [&](const Draw& d) {
+            if (!(d.pdf > 0) || !usable(d)) return false;
+            const double p = pdf(std::span(&d.wi, 1))[0];
+            size = std::fabs(p - d.pdf) / d.pdf;
+            return size > rounding;
+        };
+        const std::vector<PrimarySample> u = numbers();
+        const auto at = shortest_u(std::span(u).first(1024), two);
+        if (!at) return {};
+        return ShownFault{.kind = Kind::two_pdfs, .size = size, .u = *at};
+    }
+    std::optional<ShownFault> find_physics() const {
+        if (!sampler_.has_f()) return {};
+        for (int c = 0; c < traits_.channels; ++c) {
+            const Mean reflected = power(c);
+            if (!traits_.eta && reflected.value - 1 > clear_errors * reflected.error)
+                return ShownFault{.kind = Kind::energy, .size = reflected.value - 1, .channel = c};
+        }
+        if (!traits_.reciprocal) return {};
+        const std::vector<Vec3d> w = directions();
+        std::vector<Pair> there, back;
+        for (std::size_t i = 0; i + 1 < w.size(); i += 2)
+            if (w[i].z > 0.05 && w[i + 1].z > 0.05) there.push_back({w[i], w[i + 1]}), back.push_back({w[i + 1], w[i]});
+        const std::vector<Vec3d> one = f(there), other = f(back);
+        std::optional<ShownFault> best;
+        for (std::size_t i = 0; i < there.size(); ++i)
+            for (int c = 0; c < traits_.channels; ++c) {
+                const double a = channel_of(one[i], c), b = channel_of(other[i], c);
+                const double size = std::fabs(a - b) / std::max({std::fabs(a), std::fabs(b), 1e-6});
+                if (size < 10 * rounding || (best && size <= best->size)) continue;
+                best = {.kind = Kind::not_reciprocal,
+                    .size = size,
+                    .a = angles_of(there[i].wo),
+                    .b = angles_of(there[i].wi),
+                    .channel = c};
+            }
+        if (!best) return {};
+        for (const double step : {15.0, 5.0, 1.0, 0.1}) {
+            const auto round = [step](double x) { return std::round(x / step) * step; };
+            const Angles a{round(best->a.theta), round(best->a.phi)}, b{round(best->b.theta), round(best->b.phi)};
+            const Pair pair{a.direction(), b.direction()}, turned{b.direction(), a.direction()};
+            const double x = channel_of(f(std::span(&pair, 1))[0], best->channel),
+                         y = channel_of(f(std::span(&turned, 1))[0], best->channel);
+            if (std::fabs(x - y) < kept_size * best->size * std::max(std::fabs(x), std::fabs(y)) || a.theta >= 90 ||
+                b.theta >= 90 || x == y)
+                continue;
+            best->a = a, best->b = b;
+            break;
+        }
+        return best;
+    }
+    std::optional<ShownFault> find_mean() const {
+        if (!sampler_.has_f() || !traits_.has_pdf || traits_.delta) return {};
+        std::vector<double> weights;
+        std::vector<Vec3d> wi;
+        const std::vector<Draw> drawn = draw(numbers());
+        for (const Draw& d : drawn) wi.push_back(d.pdf > 0 ? d.wi : Vec3d{0, 0, 1});
+        const std::vector<Vec3d> at_draws = f(wi);
+        for (std::size_t i = 0; i < wi.size(); ++i)
+            weights.push_back(drawn[i].pdf > 0 ? at_draws[i].x * std::fabs(wi[i].z) / drawn[i].pdf : 0);
+        const Mean integral = power(0), mean(weights);
+        if (!differ(integral.value, mean.value, std::hypot(integral.error, mean.error))) return {};
+        return ShownFault{.kind = Kind::mean, .size = std::fabs(integral.value - mean.value)};
+    }
+
+    const SamplerAdapter& sampler_;
+    Traits traits_;
+    bool hemisphere_;
+    Vec3d wo_;
+};
+
+/// Rounder angles of the same side of the surface, the roundest first; then the given ones.
+std::vector<Angles> rounder(Angles worst) {
+    std::vector<Angles> out;
+    for (const double step : {90.0, 45.0, 30.0, 15.0, 10.0, 5.0, 1.0})
+        for (const double phi_step : {360.0, 90.0, 45.0, 10.0, 1.0}) {
+            const Angles a{
+                std::round(worst.theta / step) * step, std::fmod(std::round(worst.phi / phi_step) * phi_step, 360.0)};
+            if (std::fabs(a.theta - 90) >= 1 && (a.theta < 90) == (worst.theta < 90)) out.push_back(a);
+        }
+    out.push_back(worst);
+    return out;
+}
+
+/// How a script reaches the sampler.
+struct Reach {
+    bool hemisphere = false;
+    std::string lines;  // of Python: define sample(wo, u), pdf(wo, wi) and f(wo, wi)
+};
+
+std::string python_text(const std::string& text) { return nlohmann::json(text).dump(); }
+
+/// The first line that the program answers.
+Handshake handshake_with(const std::string& program) {
+    Handshake out;
+    const std::string command = "printf 'hello 2\\n' | (" + program + "\n) 2>/dev/null";
+    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
+    std::string line;
+    for (int c = 0; pipe && (c = std::fgetc(pipe.get())) != EOF && c != '\n';) line += static_cast<char>(c);
+    static_cast<void>(read_handshake(line, out));
+    return out;
+}
+
+Reach reach_program(const std::string& program) {
+    const Handshake hello = handshake_with(program);
+    Reach out{.hemisphere = hello.hemisphere, .lines = {}};
+    out.lines = "import subprocess, sys\nimport numpy as np\n\n\ndef ask(verb, *columns):  # the protocol of " +
+        std::string(hello.blocks ? "blocks" : "lines") + "\n    rows = np.hstack(columns)\n";
+    if (hello.blocks)
+        out.lines +=
+            "    block = verb.encode() + np.uint32(len(rows)).tobytes() + rows.astype('<f8').tobytes()\n"
+            "    said = subprocess.run(" +
+            python_text(program) +
+            ", shell=True, input=b'hello 2\\n' + block, stdout=-1).stdout\n"
+            "    return np.frombuffer(said.split(b'\\n', 1)[1][4:], '<f8').reshape(len(rows), -1)\n";
+    else
+        out.lines +=
+            "    lines = ['hello 2', *(' '.join([verb, *map(str, row)]) for row in rows.tolist())]\n"
+            "    said = subprocess.run(" +
+            python_text(program) +
+            ", shell=True, text=True, input='\\n'.join(lines) + '\\n', stdout=-1).stdout\n"
+            "    words = [line.replace('delta', '-').replace('- ', '-').split() for line in said.splitlines()[1:]]\n"
+            "    return np.array([[float(x) if x != '-' else np.nan for x in row[:4]] for row in words])\n";
+    const auto verb = [&](const char* line, const char* block) { return hello.blocks ? block : line; };
+    out.lines += fmt::format(
+        "\n\ndef sample(wo, u): a = ask('{}', wo, u); return a[:, :3], a[:, 3]\n"
+        "def pdf(wo, wi): return ask('{}', wo, wi)[:, 0]\n"
+        "def f(wo, wi): return ask('{}', wo, wi){}\n",
+        verb("sample", "smpl"), verb("pdf", "pdf_"), verb("f", "f___"), hello.f_cos ? " / np.abs(wi[:, 2:])" : "");
+    return out;
+}
+
+/// `word`: FILE.py, FILE.py:NAME or module:NAME, imported as crescent imports it.
+Reach reach_python(const std::string& word, Traits::WoDomain wo) {
+    namespace fs = std::filesystem;
+    const std::size_t colon = word.ends_with(".py") ? std::string::npos : word.rfind(':');
+    const std::string file = word.substr(0, colon), name = colon == std::string::npos ? "" : word.substr(colon + 1);
+    std::string module = file, folder = fs::current_path().string();
+    if (file.ends_with(".py")) {
+        const fs::path path = fs::absolute(file).lexically_normal();
+        fs::path top = path.parent_path();
+        while (fs::exists(top / "__init__.py")) top = top.parent_path();
+        folder = top.string();
+        module = path.lexically_relative(top).replace_extension().string();
+        std::ranges::replace(module, '/', '.');
+    }
+    Reach out;
+    out.lines = "import sys; sys.path.insert(0, " + python_text(folder) + ")\nimport numpy as np\n";
+    out.lines += name.empty() ? "import " + module + " as sampler\n"
+                              : "from " + module + " import " + name +
+            " as sampler\n"
+            "sampler = sampler() if isinstance(sampler, type) else sampler\n";
+    const char* given = wo == Traits::WoDomain::none ? "" : "wo, ";
+    out.lines += fmt::format(
+        "\n\ndef sample(wo, u): return sampler.sample({0}u)[:2]\n"
+        "def pdf(wo, wi): return sampler.pdf({0}wi)\n"
+        "def f(wo, wi): return np.reshape(sampler.f({0}wi), (len(wi), -1))\n",
+        given);
+    return out;
+}
+
+/// The lines without the functions that the script does not call.
+std::string without_unused(const std::string& lines, const std::string& script) {
+    static const std::regex definition("def (\\w+)\\(wo, .*");
+    std::string out;
+    std::istringstream in(lines);
+    for (std::string line; std::getline(in, line);)
+        if (std::smatch name; !std::regex_match(line, name, definition) ||
+            std::regex_search(script, std::regex("\\b" + name[1].str() + "\\(")))
+            out += line + "\n";
+    return out;
+}
+
+std::string at_text(Angles a) { return fmt::format("at({:.9g}, {:.9g})", a.theta, a.phi); }
+
+/// The lines that show the fault: they print what was expected and what is, and set `wrong`.
+std::string lines_of(const ShownFault& fault, const Reach& reach, int numbers) {
+    using Kind = ShownFault::Kind;
+    std::string u = "np.array([[";
+    for (int k = 0; k < numbers; ++k) u += fmt::format("{}{:.9g}", k > 0 ? ", " : "", fault.u[k]);
+    u += "]])";
+    const auto directions = [](const char* z) {
+        return fmt::format(
+            "z, phi = {}, rng.uniform(0, 2 * np.pi, n)\n"
+            "w = np.stack([np.sqrt(1 - z**2) * np.cos(phi), np.sqrt(1 - z**2) * np.sin(phi), z], -1)\n",
+            z);
+    };
+    const std::string uniform = directions("rng.random(n)"), cosine = directions("np.sqrt(rng.random(n))");
+    // The sum over both sides of the surface, or one side alone.
+    const auto over_sides = [&](const std::string& value) {
+        return reach.hemisphere
+            ? fmt::format(fmt::runtime(value), "w")
+            : "sum(" + fmt::format(fmt::runtime(value), "w * [1, 1, side]") + " for side in (1, -1))";
+    };
+    const std::string power =
+        fmt::format("x = np.pi * {}\n", over_sides(fmt::format("f(wo, {{}})[:, {}]", fault.channel)));
+    const std::string many =
+        fmt::format("n, rng = {}, np.random.default_rng(1)\nwo = np.repeat(wo, n, 0)\n", evaluations);
+    const std::string draws = fmt::format("wi, p = sample(wo, rng.random((n, {}), np.float32).astype(float))\n{}",
+        numbers, reach.hemisphere ? "p = np.where(wi[:, 2] > 0, p, 0)\n" : "");
+    switch (fault.kind) {
+        case Kind::bad_draw:
+            return fmt::format(
+                "wi, p = sample(wo, {})\n"
+                "print('w_i', wi[0], 'of length', np.linalg.norm(wi[0]), 'pdf', p[0])\n"
+                "wrong = not (0 <= p[0] < np.inf and abs(np.linalg.norm(wi[0]) - 1) < {:g})\n",
+                u, rounding);
+        case Kind::bad_pdf:
+            return fmt::format(
+                "p = pdf(wo, {})[0]\nprint('pdf', p, 'expected a number >= 0')\nwrong = not 0 <= p < np.inf\n",
+                at_text(fault.a));
+        case Kind::bad_f:
+            return fmt::format(
+                "x = f(wo, {})[0, {}]\nprint('f', x, 'expected a number >= 0')\nwrong = not 0 <= x < np.inf\n",
+                at_text(fault.a), fault.channel);
+        case Kind::dark:
+            return fmt::format(
+                "w = {}\nprint('f cos', f(wo, w)[0] * abs(w[0, 2]), 'and pdf', pdf(wo, w)[0])\n"
+                "wrong = pdf(wo, w)[0] == 0 and f(wo, w)[0, 0] > 0\n",
+                at_text(fault.a));
+        case Kind::two_pdfs:
+            return fmt::format(
+                "wi, p = sample(wo, {})\nq = pdf(wo, wi)\n"
+                "print('pdf of the draw', p[0], 'and pdf(w_i)', q[0], 'expected the same')\n"
+                "wrong = abs(p[0] - q[0]) > {:g} * p[0]\n",
+                u, rounding);
+        case Kind::not_reciprocal:
+            return fmt::format(
+                "a, b = {}, {}\nx, y = f(a, b)[0, {}], f(b, a)[0, {}]\n"
+                "print('f(a, b)', x, 'and f(b, a)', y, 'expected the same')\n"
+                "wrong = abs(x - y) > {:g} * max(abs(x), abs(y))\n",
+                at_text(fault.a), at_text(fault.b), fault.channel, fault.channel, rounding);
+        case Kind::integral:
+            return many + uniform + draws +
+                fmt::format(
+                    "x = 2 * np.pi * {}\n"
+                    "error = np.hypot(x.std(), 0.5) / n**0.5\n"
+                    "print('pdf integrates to', x.mean(), '+-', error)\n"
+                    "print('samples that draw a direction:', np.mean(p > 0))\n"
+                    "wrong = abs(x.mean() - np.mean(p > 0)) > 5 * error\n",
+                    over_sides("pdf(wo, {})"));
+        case Kind::cell:
+            return many + uniform + (reach.hemisphere ? "" : "w[:, 2] *= rng.choice([-1, 1], n)\n") + draws +
+                fmt::format(
+                    "def inside(w):\n"
+                    "    phi = np.degrees(np.arctan2(w[:, 1], w[:, 0])) % 360\n"
+                    "    return (w[:, 2] >= {:g}) & (w[:, 2] <= {:g}) & (phi >= {:g}) & (phi <= {:g})\n"
+                    "q = pdf(wo, w) / np.sum(pdf(wo, w))\n"
+                    "x, y = np.mean(inside(wi[p > 0])), np.sum(q * inside(w))\n"
+                    "print('in this part: of the draws', x, 'and of pdf', y)\n"
+                    "wrong = abs(x - y) > 5 * np.hypot((max(x, 1 / n) / n)**0.5, np.sum((q * inside(w))**2)**0.5)\n",
+                    fault.cell.from_cos, fault.cell.to_cos, fault.cell.from_phi, fault.cell.to_phi);
+        case Kind::energy:
+            return many + cosine + power +
+                "print('reflects', x.mean(), '+-', x.std() / n**0.5, 'expected at most 1')\n"
+                "wrong = x.mean() - 1 > 5 * x.std() / n**0.5\n";
+        case Kind::mean:
+            return many + cosine + draws + power +
+                "wi = np.where(p[:, None] > 0, wi, [0, 0, 1])\n"
+                "y = np.where(p > 0, f(wo, wi)[:, 0] * np.abs(wi[:, 2]) / np.where(p > 0, p, 1), 0)\n"
+                "print('integral of f cos', x.mean(), 'and mean of the weights', y.mean())\n"
+                "wrong = abs(x.mean() - y.mean()) > 5 * np.hypot(x.std(), y.std()) / n**0.5\n";
+    }
+    return "";
+}
+
+}  // namespace
+
+std::optional<std::string> repro_script(
+    const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result) {
+    std::optional<Reach> reach;
+    for (const Finding& finding : findings_of(result)) {
+        if (finding.state != State::wrong) continue;
+        const auto worst = std::ranges::find(check_cases, finding.worst->check_case, &CheckCase::text);
+        if (worst == check_cases.end()) continue;
+        const SamplerAdapter& sampler = *worst->adapter;
+        const Traits traits = sampler.traits();
+        if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits.wo) : reach_program(flags.exec);
+        const auto found = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
+        if (!found) continue;
+        Angles wo = angles_of(worst->wo);
+        ShownFault shown = *found;
+        for (const Angles& round : rounder(wo)) {
+            const auto here = Bench(sampler, reach->hemisphere, round.direction()).find(finding.name);
+            if (!here || here->size < kept_size * found->size) continue;
+            wo = round, shown = *here;
+            break;
+        }
+        const std::string script = lines_of(shown, *reach, traits.numbers);
+        return fmt::format(
+            "# {}: {}\n{}\n\n"
+            "def at(theta, phi):  # degrees from n = +z, and about it from x\n"
+            "    t, p = np.radians([theta, phi])\n"
+            "    return np.array([[np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)]])\n\n\n"
+            "wo = {}\n{}sys.exit('wrong' if wrong else 0)\n",
+            finding.name, sentences_of(printable(finding.worst->message)).front(), without_unused(reach->lines, script),
+            at_text(wo), script);
+    }
+    return {};
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,91 @@
+#!/bin/bash
+# `check --repro`: a script without crescent that shows the fault at a w_o of round numbers, and ends with 0 once the
+# sampler is corrected; for programs of both protocols and for samplers in Python files.
+. "$(dirname "$0")/common.sh"
+. "$here/docs/python.sh"
+/usr/bin/python3 -c 'import numpy' || die "python3-numpy is missing"
+
+# A cosine lobe over Lambert of 0.5 with one fault.
+cat >faulty.c <<'C'
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+static const char *kind;
+
+static int has(const char *name) { return strcmp(kind, name) == 0; }
+
+static double lobe(double z) {
+    if (z <= 0 || (has("dark") && z < 0.3)) return 0;
+    return z / pi * (has("factor") ? 1.2 : 1) / (has("dark") ? 0.91 : 1);
+}
+
+int main(int count, char **words) {
+    static char line[4096];
+    double x[6];
+    kind = words[count - 1];
+    while (fgets(line, sizeof line, stdin)) {
+        const int numbers = sscanf(line, "%*s %lf %lf %lf %lf %lf %lf", x, x + 1, x + 2, x + 3, x + 4, x + 5);
+        if (line[0] == 'h') puts("hello 2 faulty domain=hemisphere");
+        else if (numbers == 5) {
+            const double u = has("dark") ? 0.91 * x[3] : x[3], z = has("uniform") ? 1 - u : sqrt(1 - u);
+            const double r = sqrt(1 - z * z), p = lobe(z) * (has("two") ? 1.1 : 1);
+            printf("%.17g %.17g %.17g %.17g\n", r * cos(2 * pi * x[4]), r * sin(2 * pi * x[4]), z,
+                has("nan") && u > 0.7 ? NAN : p);
+        } else if (line[0] == 'p') printf("%.17g\n", lobe(x[5]));
+        else printf("%.17g\n", (has("bright") ? 1.02 : has("lopsided") ? 0.5 + 0.2 * x[5] : 0.5) / pi);
+        fflush(stdout);
+    }
+    return 0;
+}
+C
+expect 0 "${CC:-cc}" -O2 -o faulty faulty.c -lm
+
+# shows WORDS SCRIPT: it fails, prints these words, is short, and needs nothing of crescent.
+shows() {
+    expect 1 /usr/bin/python3 "$2"
+    grep -q -- "$1" printed || die "$2 does not print '$1': $(cat printed "$2")"
+    ! grep -q crescent "$2" || die "$2 needs crescent: $(cat "$2")"
+    [ "$(wc -l <"$2")" -le 42 ] || die "$2 is long: $(cat "$2")"
+}
+while read -r kind verdict words; do
+    expect 1 "$CRESCENT" check --quiet --exec "./faulty $kind" --wo 50.3,12.7 --repro $kind.py
+    grep -q "^# $verdict: " $kind.py || die "$kind is not shown by $verdict: $(head -n 1 $kind.py)"
+    grep -q "^wo = at(45, 0)$" $kind.py || die "w_o of $kind is not round: $(grep '^wo' $kind.py)"
+    shows "$words" $kind.py
+    sed -i "s/faulty $kind/faulty right/" $kind.py
+    expect 0 /usr/bin/python3 $kind.py
+done <<'END'
+nan valid pdf nan
+dark support f cos
+factor normalised pdf integrates to 1.2
+uniform density of the draws
+two identity pdf of the draw
+bright physics reflects 1.0[12]
+lopsided physics f(a, b)
+END
+grep -q "sample(wo, np.array(\[\[0\.[0-9]*, 0\(\.[0-9]\)*\]\]))" nan.py two.py || die "u is not round: $(grep sample nan.py two.py)"
+
+expect 0 "${CC:-cc}" -O2 -o block "$CRESCENT_SOURCE/examples/pipe_samplers/cosine_block.c" -lm
+sed 's/up \/ pi/up \/ 3.0/; s/row\[5\] \/ pi/row[5] \/ 3.0/' "$CRESCENT_SOURCE/examples/pipe_samplers/cosine_block.c" >dim.c
+expect 0 "${CC:-cc}" -O2 -o dim dim.c -lm
+expect 1 "$CRESCENT" check --quiet --exec ./dim --wo 45 --repro dim.py
+shows "pdf integrates to" dim.py
+sed -i "s/\.\/dim/.\/block/" dim.py
+expect 0 /usr/bin/python3 dim.py
+
+# Without a fault there is no script; other samplers than a program and a Python file have none.
+expect 0 "$CRESCENT" check --quiet --exec "./faulty right" --wo 45 --repro none.py
+grep -q "no verdict is wrong" said && [ ! -e none.py ] || die "a script without a fault: $(cat said)"
+expect 2 "$CRESCENT" check --quiet phong --repro none.py
+grep -q -- "--repro.*needs --exec or a sampler in a Python file" said || die "no reason: $(cat said)"
+
+python=$(page_python)
+[ -n "$python" ] || exit 0
+mkdir -p bsdf/lobes && touch bsdf/lobes/__init__.py
+cp "$CRESCENT_SOURCE/examples/clearcoat.py" bsdf/lobes/
+export CRESCENT_PYTHON=$python PYTHONPATH=$CRESCENT_BUILD/python
+expect 1 "$CRESCENT" check --quiet bsdf/lobes/clearcoat.py --repro clearcoat_repro.py
+unset PYTHONPATH
+shows "pdf integrates to 2.8" clearcoat_repro.py
