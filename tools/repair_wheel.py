@@ -6,6 +6,7 @@ of the libraries and of the font, as Debian's packages state them, go into the w
 """
 
 import json
+import platform
 import re
 import shutil
 import subprocess
@@ -18,7 +19,7 @@ import auditwheel.policy
 from auditwheel.libc import Libc
 from auditwheel.wheeltools import InWheelCtx
 
-PLATFORM = "manylinux_2_36_x86_64"
+PLATFORM = f"manylinux_2_36_{platform.machine()}"
 # Sonames, to their first dot.
 EVERYWHERE = {"libc", "libm", "libmvec", "libdl", "libpthread", "librt", "libresolv", "libutil", "libgcc_s", "libstdc++"}
 

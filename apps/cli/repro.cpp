@@ -430,7 +430,8 @@ Reach reach_program(const std::string& program) {
             python_text(program) +
             ", shell=True, text=True, input='\\n'.join(lines) + '\\n', stdout=-1).stdout\n"
             "    words = [line.replace('delta', '-').replace('- ', '-').split() for line in said.splitlines()[1:]]\n"
-            "    return np.array([[float(x) if x != '-' else np.nan for x in row[:4]] for row in words])\n";
+            "    number = lambda x: np.nan if x == '-' else float.fromhex(x) if 'x' in x else float(x)\n"
+            "    return np.array([[number(x) for x in row[:4]] for row in words])\n";
     const auto verb = [&](const char* line, const char* block) { return hello.blocks ? block : line; };
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): a = ask('{}', wo, u); return a[:, :3], a[:, 3]\n"
@@ -585,6 +586,7 @@ std::optional<std::string> repro_script(
         if (worst == check_cases.end()) continue;
         const SamplerAdapter& sampler = *worst->adapter;
         const Traits traits = sampler.traits();
+        if (traits.domain) continue;  // a script has directions
         if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits.wo) : reach_program(flags.exec);
         const auto found = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
         if (!found) continue;

@@ -33,7 +33,7 @@ int main(int count, char **words) {
             const double r = sqrt(1 - z * z), p = lobe(z) * (has("two") ? 1.1 : 1);
             printf("%.17g %.17g %.17g %.17g\n", r * cos(2 * pi * x[4]), r * sin(2 * pi * x[4]), z,
                 has("nan") && u > 0.7 ? NAN : p);
-        } else if (line[0] == 'p') printf("%.17g\n", lobe(x[5]));
+        } else if (line[0] == 'p') printf("%a\n", lobe(x[5]));
         else printf("%.17g\n", (has("bright") ? 1.02 : has("lopsided") ? 0.5 + 0.2 * x[5] : 0.5) / pi);
         fflush(stdout);
     }
