@@ -46,7 +46,7 @@ def test_a_judgement_is_data_files_and_no_truth_value(tmp_path):
     j.junit(tmp_path / "j.xml")
     j.html(tmp_path / "j.html")
     assert (tmp_path / "j.xml").read_text().startswith("<?xml") and "<html" in (tmp_path / "j.html").read_text()
-    assert "srcdoc=" in j._repr_html_() and "mine" in str(j)
+    assert "srcdoc=" in j._repr_html_() and "density: right" in str(j) and "mine" in j.text(all=True)
     other = pickle.loads(pickle.dumps(j))  # as from another process
     assert other.verdicts == j.verdicts and other.json() == j.json() and str(other) == str(j)
     assert other._repr_html_() == j._repr_html_() and repr(other) == repr(j)
