@@ -335,13 +335,13 @@ Vec3d DomainChart::shifted(Vec3d w, std::size_t axis, double by) const {
 // ---- Words.
 
 void DomainChart::note_outside(std::span<const double> point) const {
-    const std::lock_guard<std::mutex> one_at_a_time(outside_->lock);
+    const Guard one_at_a_time(outside_->lock);
     if (outside_->first.empty())
         outside_->first = fmt::format("{}, which {}", domain_.text(point), domain_.fault(point));
 }
 
 std::string DomainChart::first_outside() const {
-    const std::lock_guard<std::mutex> one_at_a_time(outside_->lock);
+    const Guard one_at_a_time(outside_->lock);
     return outside_->first;
 }
 

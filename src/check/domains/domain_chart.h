@@ -3,12 +3,12 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/vec.h"
 #include "check/domains/domain.h"
 #include "check/estimate/chart.h"
@@ -78,7 +78,7 @@ private:
     };
     /// Shared by copies of a chart.
     struct Outside {
-        std::mutex lock;
+        Mutex lock;
         std::string first;
     };
     Domain domain_;

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <tuple>
 
+#include "base/parallel.h"
 #include "check/estimate/stream.h"
 
 namespace crescent::inline sources {
@@ -41,7 +41,7 @@ public:
 
 private:
     Traits traits_;
-    mutable std::mutex lock_;
+    mutable Mutex lock_;
     mutable std::map<std::tuple<double, double, double>, double> scales_;
 
     static double bounded(double target, double q) { return target / (target + q); }
@@ -60,7 +60,7 @@ private:
     }
 
     double scale_at(Vec3d wo) const {
-        const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        const Guard one_at_a_time(lock_);
         double& q = scales_[{wo.x, wo.y, wo.z}];
         if (q > 0) return q;
         constexpr std::uint32_t pilot = 512;
