@@ -54,6 +54,7 @@ make_environment() {
 add_python_module() {
     local python packages=(nanobind numpy pytest mypy matplotlib pandas xarray mitsuba jax 'arviz<1')
     packages+=('dask==2026.8.*' 'distributed==2026.8.*' 'dask-jobqueue==0.9.*' 'pyarrow==26.*')  # of sweeps
+    packages+=(wgpu)  # of shaders
     python=$(find_python) && (make_environment "$1" "$python" "${packages[@]}") ||
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&

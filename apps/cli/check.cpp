@@ -11,6 +11,8 @@
 #include <set>
 #include <stdexcept>
 
+#include <unistd.h>
+
 #include "commands.h"
 #include "crescent/crescent.h"
 #include "memory.h"
@@ -248,11 +250,79 @@ CheckResult check_of_number(
     return check::check_number(estimator, expected, test_settings_of(flags), monitor);
 }
 
+/// The options of the shader, as words of its host. `value`: that of --over.
+std::vector<std::string> shader_words(const CheckFlags& flags, const std::string& value = "") {
+    std::vector<std::string> out;
+    for (const auto& [flag, values] : flags.shader)
+        for (const std::string& text : values) out.push_back(flag + (flag.starts_with("--") ? "=" : "") + text);
+    for (const std::string& text : flags.settings) out.push_back("--set=" + text);
+    if (!flags.domain.empty()) out.push_back("--domain=" + flags.domain);
+    if (!value.empty()) {
+        const std::string name = flags.over.substr(0, flags.over.find('='));
+        out.push_back("--set=" + name + "=" + value);
+        out.push_back(fmt::format("--name={} {} {}", std::filesystem::path(flags.arm).stem().string(), name, value));
+    }
+    return out;
+}
+
+/// The values of --over NAME=V1,V2,...; without it one that is empty.
+std::vector<std::string> values_over(const CheckFlags& flags) {
+    if (flags.over.empty()) return {""};
+    const std::size_t equals = flags.over.find('=');
+    std::vector<std::string> out;
+    for (std::size_t comma = equals; comma != std::string::npos && equals > 0;) {
+        const std::size_t next = flags.over.find(',', comma + 1);
+        out.push_back(flags.over.substr(comma + 1, next == std::string::npos ? next : next - comma - 1));
+        comma = next;
+    }
+    for (const std::string& value : out) number_in(value, "--over " + flags.over);
+    if (out.empty()) throw InputError({"--over " + flags.over, 0, 0}, "expected NAME=VALUE,VALUE,...: alpha=0.01,0.1");
+    return out;
+}
+
+/// A shader, at each value of --over: all under one alpha.
+std::vector<CheckCase> cases_of_shader(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    std::vector<CheckCase> out;
+    const std::vector<std::string> values = values_over(flags);
+    PipeLimits limits = limits_of(flags, monitor);
+    limits.total_seconds *= static_cast<double>(values.size());  // each one waits for those before it
+    for (const std::string& value : values) {
+        const auto adapter = start_shader(flags.arm, shader_words(flags, value), limits);
+        check_sides(flags, adapter->traits());
+        check_light(flags, adapter->traits(), adapter->has_f());
+        for (CheckCase& t : make_user_cases(adapter, flags.full, grid_of(flags))) out.push_back(std::move(t));
+    }
+    return out;
+}
+
+/// The options of a shader are for a shader alone.
+void check_shader_options(const CheckFlags& flags) {
+    if (names_shader(flags.arm)) {
+        if (flags.domain == "number") throw InputError({"--domain number", 0, 0}, "is for programs and Python, so far");
+        return;
+    }
+    if (!flags.domain.empty() && flags.exec.empty()) throw InputError({"--domain", 0, 0}, "needs --exec or a shader");
+    std::string given = flags.over.empty() ? "" : "--over";
+    for (const auto& [flag, values] : flags.shader)
+        if (!values.empty() && flag != "--device") given = flag;
+    if (!given.empty())
+        throw InputError({given, 0, 0}, "needs a shader: FILE.wgsl, FILE.glsl, FILE.hlsl or FILE.slang");
+}
+
+/// Replaces this process by the host of shaders, which prints the adapters.
+int list_adapters() {
+    const std::string command = "exec " + python_command("crescent_shader", {"--device=list"});
+    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    print_to_stderr("crescent check: cannot start /bin/sh\n");
+    return unwritable;
+}
+
 std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
     if (is_experiment(flags)) return cases_of_experiment(flags);
     if (!flags.sampler.empty() || flags.pixels > 0)
         throw InputError({flags.sampler.empty() ? "--pixels" : "--sampler", 0, 0},
             "needs an experiment: crescent check FILE.toml --sampler NAME");
+    if (names_shader(flags.arm)) return cases_of_shader(flags, monitor);
     if (const auto adapter = program_of(flags, monitor)) {
         if (adapter->traits().number) return {number_case(adapter)};
         if (!flags.estimates.empty()) throw InputError({"--estimates", 0, 0}, not_a_number);
@@ -299,9 +369,11 @@ void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases
 void check_limits(const CheckFlags& flags) {
     if (!flags.repro.empty() && (is_experiment(flags) || (flags.exec.empty() && !names_python_sampler(flags.arm))))
         throw InputError({"--repro", 0, 0}, "needs --exec or a sampler in a Python file");
-    if (!flags.exec.empty() || names_python_sampler(flags.arm) || is_experiment(flags)) return;
+    if (!flags.exec.empty() || names_python_sampler(flags.arm) || names_shader(flags.arm) || is_experiment(flags))
+        return;
     for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
-        if (given) throw InputError({flag, 0, 0}, "needs --exec, an experiment or a sampler in a Python file");
+        if (given)
+            throw InputError({flag, 0, 0}, "needs --exec, an experiment, or a sampler in a Python file or a shader");
 }
 
 bool whole_list(const CheckFlags& flags) {
@@ -326,6 +398,9 @@ std::string command_of(const CheckFlags& f) {
     if (!f.domain.empty()) out += " --domain " + shell_word(f.domain);
     if (!f.estimates.empty()) out += " --estimates " + shell_word(f.estimates);
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
+    for (const auto& [flag, values] : f.shader)
+        for (const std::string& text : values) out += " " + flag + " " + shell_word(text);
+    if (!f.over.empty()) out += " --over " + shell_word(f.over);
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
              {"--pdf-table", &f.table}, {"--against", &f.against}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
@@ -437,6 +512,10 @@ int check(const CheckFlags& given) {
     StopOnSignal stop(monitor);
     keep_freed_memory();
     check_limits(flags);
+    check_shader_options(flags);
+    if (const auto device = flags.shader.find("--device");
+        device != flags.shader.end() && device->second == std::vector<std::string>{"list"})
+        return list_adapters();
     try_files(flags);
     if (flags.planted) return check_planted(flags, monitor);
     CheckResult j;
@@ -517,6 +596,8 @@ std::vector<CheckCase> others_of(
                 "or a program");
     if (names_python_sampler(flags.against) && flags.against.find(' ') == std::string::npos)
         return sampler_against(start_python_sampler(flags.against, limits_of(flags, monitor)), a);
+    if (names_shader(flags.against) && flags.against.find(' ') == std::string::npos)
+        return sampler_against(start_shader(flags.against, {}, limits_of(flags, monitor)), a);
     try {
         return sampler_against(start_pipe(flags.against, limits_of(flags, monitor)), a);
     } catch (const InputError&) {  // start_pipe calls it --exec

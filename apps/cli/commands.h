@@ -1,6 +1,7 @@
 // The commands of the program: their flags, and the exit codes that all of them return.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,7 +70,9 @@ struct CheckFlags {
     std::string sampler;
     std::vector<std::string> settings;  // s=128
     std::string exec, plugin, samples, table;
-    std::string domain;                     // of a program that states none
+    std::map<std::string, std::vector<std::string>> shader;  // options of a shader, by flag
+    std::string over;                                        // NAME=VALUES of a shader
+    std::string domain;                                      // of a shader, or of a program that states none
     std::string estimates;                  // the expected value of an estimator of a number, one or three expressions
     std::string against;                    // a built-in arm, or a program
     std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails

@@ -81,6 +81,40 @@ Own own_samplers(CLI::App& c, CheckFlags& f) {
             ->check(not_empty)};
 }
 
+/// The options of a shader. A value may begin with '-'.
+void shaders(CLI::App& c, CheckFlags& f) {
+    struct Flag {
+        const char *name, *type, *means;
+    };
+    static constexpr Flag flags[] = {
+        {"--sample", "'STATEMENTS'", "of a shader: they assign wi, and pdf or weight, from wo and u"},
+        {"--pdf", "'EXPRESSION'", "of a shader: the density of wi for wo"},
+        {"--f", "'EXPRESSION'", "of a shader: f without the cosine"},
+        {"--f-cos", "'EXPRESSION'", "of a shader: f with the cosine"},
+        {"--let", "'STATEMENT'", "of a shader: declarations before these; may be repeated"},
+        {"--numbers", "K", "of a shader: random numbers of a sample; default 2"},
+        {"-I", "DIR", "of a shader: a folder of included files; may be repeated"},
+        {"-D", "NAME[=VALUE]", "of a shader: a macro; may be repeated"},
+        {"--prelude", "FILE", "of a shader: text before the file; may be repeated"},
+        {"--random", "FUNCTION", "of a shader: its calls return the next random numbers; may be repeated"},
+        {"--up", "x|y|z", "of a shader: the axis of the normal; default z"},
+        {"--frame", "local|world", "of a shader: world: about a normal n with tangents t and b"},
+        {"--sides", "upper|both|none", "of a shader: the wo that it accepts; default upper"},
+        {"--eta", "X[,Y,Z]", "of a shader: index of refraction below over above"},
+        {"--channels", "1|3", "of a shader: of f and weight; default: by the type of f"},
+        {"--device", "NAME", "of a shader: a part of an adapter's name; list: print them"},
+    };
+    for (const Flag& flag : flags)
+        c.add_option(flag.name, f.shader[flag.name], flag.means)
+            ->type_name(flag.type)
+            ->take_all()
+            ->expected(1)
+            ->allow_extra_args(false);
+    c.add_option("--over", f.over, "of a shader: verdicts at each value under one alpha: alpha=0.01,0.1")
+        ->type_name("NAME=VALUES")
+        ->check(not_empty);
+}
+
 /// The time limits of a program.
 void limits(CLI::App& c, CheckFlags& f) {
     c.add_option("--patience", f.patience,
@@ -98,7 +132,8 @@ void add_check(CLI::App& app, Work& work) {
     CLI::App* c = command(app, work, "check", "Check samplers alone, without a render.", check, f);
     c->footer(verdicts_in_order() + check_footer);
     auto* arm =
-        c->add_option("ARM", f->arm, "a built-in arm, FILE.py:NAME, or an experiment; without it, all")->type_name("");
+        c->add_option("ARM", f->arm, "a built-in arm, FILE.py:NAME, a shader, or an experiment; without it, all")
+            ->type_name("");
     auto* sampler =
         c->add_option("--sampler", f->sampler, "of an experiment: the arm to check, with its materials and lights")
             ->type_name("NAME")
@@ -112,7 +147,7 @@ void add_check(CLI::App& app, Work& work) {
         ->needs(sampler);
     c->add_flag("--light", f->light, "the sampler is a light with its radiance: compare its irradiance");
     auto* set =
-        c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; a key of the experiment; may be given again")
+        c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; a key of the experiment; a constant of a shader")
             ->type_name("KEY=VALUE")
             ->take_all()
             ->expected(1)
@@ -127,9 +162,9 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(arm)
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
-    c->add_option("--domain", f->domain, "what a program draws that does not say so; docs/domains.md")
+    shaders(*c, *f);
+    c->add_option("--domain", f->domain, "what a shader draws, or a program that does not say so; docs/domains.md")
         ->type_name("DOMAIN")
-        ->needs(exec)
         ->check(not_empty);
     c->add_option("--estimates", f->estimates, "the expected value of a sampler of domain=number: 0.8187, exp(-0.2)")
         ->type_name("VALUE[,VALUE,VALUE]")

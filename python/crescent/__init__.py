@@ -17,6 +17,7 @@ from ._crescent import commit
 from ._crescent import version as __version__
 from ._result import CheckResult, Verdict
 from ._sampler import Sampler
+from ._shader import shader
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from ._sweep import sweep, sweep_check
 from .combinations import Combination, mis, mixture, ris
@@ -59,6 +60,7 @@ __all__ = [
     "ris",
     "run",
     "scenes",
+    "shader",
     "sweep",
     "sweep_check",
     "tail",

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
 #include <tuple>
 #include <type_traits>
 
@@ -253,15 +254,19 @@ private:
         at.front().small.push_back(*fault);
     }
 
-    bool has_time_for(const Job& job, std::uint64_t largest_cost) const {
+    /// What the w_o of one program took so far.
+    struct Spent {
+        double answers = 0, seconds = 0, most = 0;  // most: answers of one w_o
+    };
+    bool has_time_for(const Job& job, const Spent& spent) const {
         const QueryUsage now = case_of(job).adapter->spending();
-        if (now.allowed <= 0 || largest_cost == 0) return true;
-        const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
-        return now.seconds + static_cast<double>(largest_cost) / rate < now.allowed;
+        if (now.allowed <= 0 || spent.answers == 0) return true;
+        return now.seconds + spent.most * spent.seconds / spent.answers < now.allowed;
     }
 
     /// Runs on one thread: first a few draws at every w_o and the tests of the whole sampler, then each w_o while time
-    /// is left. The cost of the most expensive w_o so far predicts the next one. The first w_o is always tried.
+    /// is left. The cost of the most expensive w_o so far predicts the next one. The first w_o of each program is
+    /// always tried.
     void run_serially() {
         order_jobs();
         std::vector<std::optional<SmallFault>> first_faults(jobs_.size());
@@ -275,7 +280,7 @@ private:
                     cut_of([&] { first_faults[j] = fault_of_first_draws(check_case, key); });
         }
         check_whole();
-        std::uint64_t largest_cost = 0;
+        std::map<const SamplerAdapter*, Spent> spent_by;
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             jobs_left_ = jobs_.size() - j - 1;
             std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
@@ -283,11 +288,16 @@ private:
                 monitor_.advance(1);
                 continue;
             }
-            const std::uint64_t before = case_of(jobs_[j]).adapter->spending().answers;
-            if (has_time_for(jobs_[j], largest_cost)) check(jobs_[j]);
+            Spent& spent = spent_by[case_of(jobs_[j]).adapter.get()];
+            const QueryUsage before = case_of(jobs_[j]).adapter->spending();
+            if (has_time_for(jobs_[j], spent)) check(jobs_[j]);
             else cut = Cut{Cut::Why::too_slow, "no time is left", true}, monitor_.advance(1);
             keep_first_fault(jobs_[j], first_faults[j]);
-            largest_cost = std::max(largest_cost, case_of(jobs_[j]).adapter->spending().answers - before);
+            const QueryUsage after = case_of(jobs_[j]).adapter->spending();
+            const double answers = static_cast<double>(after.answers - before.answers);
+            spent.answers += answers;
+            spent.most = std::max(spent.most, answers);
+            spent.seconds += after.seconds - before.seconds;
         }
     }
 };

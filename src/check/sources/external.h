@@ -40,8 +40,9 @@ public:
 };
 
 /// Starts `command` with /bin/sh -c. Throws SamplerError with the request, the answer and the expected answer;
-/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake. `label` is the prefix of
-/// its stderr output and of that text; "": the command. `domain`: what it draws, if its handshake does not say so.
+/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake, where TEXT may begin with
+/// FILE:LINE:COLUMN; OutputError if it answers `missing TEXT`. `label` is the prefix of its stderr output and of that
+/// text; "": the command. `domain`: what it draws, if its handshake does not say so.
 std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits = {},
     const std::string& label = "", const std::optional<Domain>& domain = {});
 
@@ -79,6 +80,20 @@ bool names_python_sampler(const std::string& word);
 /// CRESCENT_PYTHON, which the installed command sets to its own, or else python3. Throws InputError if the sampler
 /// cannot be loaded, OutputError if the interpreter or the package is missing.
 std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits);
+
+// ---- Samplers in shader files: `crescent check bsdf.wgsl`.
+
+/// Whether the word is a file of WGSL, GLSL, HLSL or Slang, by its suffix.
+bool names_shader(const std::string& word);
+
+/// Starts the Python interpreter with crescent_shader, which answers for this file over a pipe; `words` are its options
+/// (docs/shaders.md). Throws InputError for a mistake in the file or a snippet, with its place; OutputError if a
+/// compiler, a driver or the package is missing.
+std::shared_ptr<const ProgramSampler> start_shader(
+    const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits);
+
+/// The shell command that runs a Python module with these words.
+std::string python_command(const std::string& module, const std::vector<std::string>& words);
 
 // ---- A sampler in a shared library with the C interface of sampler_plugin.h: checked by itself, or an arm of an
 // experiment. A separate process (plugin_host.h), one for each calling thread, loads the library, so that changes to

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <mutex>
+#include <regex>
 #include <set>
 #include <vector>
 
@@ -35,6 +36,22 @@ double for_float(double u) {
 
 /// The random numbers of the draws to which the charts of infinite lines are fitted.
 constexpr check::StreamKey chart_key{.seed = 0x6c696e65, .purpose = check::Purpose::pilot};
+
+/// The mistake that a program found in its input: "FILE:LINE:COLUMN: TEXT", "FILE: TEXT" or TEXT about `label`.
+InputError error_of_program(std::string_view text, const std::string& label) {
+    static const std::regex with_line("(.+?):([0-9]{1,9})(?::([0-9]{1,9}))?: (.*)");
+    std::cmatch part;
+    if (std::regex_match(text.begin(), text.end(), part, with_line)) {
+        const auto number = [](const std::csub_match& digits) {
+            return static_cast<unsigned>(std::stoul(digits.str()));
+        };
+        const std::string file = printable(part[1].str()), message = printable(part[4].str());
+        if (part[3].matched) return InputError({file, number(part[2]), number(part[3])}, message);
+        return InputError({file + ":" + part[2].str(), 0, 0}, message);
+    }
+    if (text.starts_with(label + ": ")) text.remove_prefix(label.size() + 2);
+    return InputError({label, 0, 0}, printable(text));
+}
 
 class PipeSampler : public ProgramSampler {
 public:
@@ -330,7 +347,8 @@ private:
         connection_.lines(
             1, handshake_form, [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
-                if (s.starts_with("error ")) throw InputError({label, 0, 0}, printable(s.substr(6)));
+                if (s.starts_with("error ")) throw error_of_program(s.substr(6), label);
+                if (s.starts_with("missing ")) throw OutputError(label + ": " + printable(s.substr(8)));
                 Handshake hello;
                 if (given) {
                     hello.hemisphere = given->name() == "hemisphere";
@@ -628,24 +646,56 @@ bool names_python_sampler(const std::string& word) {
     return where.ends_with(".py") || std::ranges::all_of(where, [&](char c) { return in_name(c) || c == '.'; });
 }
 
-std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits) {
+namespace {
+
+std::string python_interpreter() {
     const char* given = std::getenv("CRESCENT_PYTHON");
-    const std::string python = given && *given ? given : "python3";
-    // -P: a file in the current folder does not replace a module that the package imports. An interpreter that the
-    // shell cannot start (126, 127) is reported in the same way as a missing package.
-    const std::string command = fmt::format(
-        "{} -P -m crescent.serve {}; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] "
-        "|| code=1; exit $code",
-        shell_word(python), shell_word(word));
+    return given && *given ? given : "python3";
+}
+
+/// Starts a module of the package `package`, which answers for the file `label`.
+std::shared_ptr<const ProgramSampler> start_python_module(const char* module, const std::vector<std::string>& words,
+    const char* package, const PipeLimits& limits, const std::string& label) {
+    // An interpreter that the shell cannot start (126, 127) is reported in the same way as a missing package.
+    const std::string command =
+        python_command(module, words) + "; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] || code=1; exit $code";
     try {
-        return start_pipe(command, limits, word);
+        return start_pipe(command, limits, label);
     } catch (const SamplerTimeout&) { throw; } catch (const SamplerError& error) {
         if (std::string_view(error.what()).find("exit code 1") == std::string_view::npos) throw;
         throw OutputError(fmt::format(
-            "{}: '{}' cannot run the module crescent.serve: install the package with `pip install crescent-bench`, or "
-            "set CRESCENT_PYTHON to an interpreter that has it",
-            word, python));
+            "{}: '{}' cannot run the module {}: install the package with `pip install {}`, or set CRESCENT_PYTHON to "
+            "an interpreter that has it",
+            label, python_interpreter(), module, package));
     }
+}
+
+}  // namespace
+
+std::string python_command(const std::string& module, const std::vector<std::string>& words) {
+    // -P: a file in the current folder does not replace a module that the package imports.
+    std::string out = fmt::format("{} -P -m {}", shell_word(python_interpreter()), module);
+    for (const std::string& word : words) out += " " + shell_word(word);
+    return out;
+}
+
+std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits) {
+    return start_python_module("crescent.serve", {word}, "crescent-bench", limits, word);
+}
+
+// ---- Shaders: crescent_shader of the same package.
+
+bool names_shader(const std::string& word) {
+    constexpr std::array<std::string_view, 9> suffixes = {
+        ".wgsl", ".glsl", ".frag", ".comp", ".rgen", ".rchit", ".hlsl", ".hlsli", ".slang"};
+    return std::ranges::any_of(suffixes, [&](std::string_view suffix) { return word.ends_with(suffix); });
+}
+
+std::shared_ptr<const ProgramSampler> start_shader(
+    const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--", file});
+    return start_python_module("crescent_shader", all, "'crescent-bench[shader]'", limits, file);
 }
 
 }  // namespace crescent::inline sources

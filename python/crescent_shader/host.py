@@ -1,0 +1,238 @@
+"""Answers the block protocol of ``crescent check --exec`` (docs/samplers.md) for a shader."""
+
+from __future__ import annotations
+
+import os
+import signal
+import struct
+import sys
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from . import GREETING_OF_PYTHON, BadInput, MissingPart
+from .compilers import compiled
+from .device import Array, Device, adapters, title_of
+from .languages import assigns, columns, program
+from .request import Request, read_request, wants_list
+
+BATCH_SECONDS = 8.0  # of one batch of at most 65536 rows: below the 10 s after which crescent ends a silent program
+LOOK_SECONDS = 30.0  # of the first batches, which include the driver's compilation
+
+Answer = Callable[[Array], Array]
+
+
+class Watchdog:
+    """Ends the process where a batch takes too long: a driver cannot be interrupted."""
+
+    def __init__(self, report: Callable[[str], None]) -> None:
+        self._report = report
+
+    def __call__(self, seconds: float, what: str, call: Callable[[], Array]) -> Array:
+        text = f"{what} did not finish within {seconds:g} s: does a loop of the shader never end?"
+        timer = threading.Timer(seconds, self._end, [text])
+        timer.daemon = True
+        timer.start()
+        try:
+            return call()
+        finally:
+            timer.cancel()
+
+    def _end(self, text: str) -> None:
+        self._report(text)
+        os._exit(3)
+
+
+@dataclass(frozen=True)
+class Shader:
+    """A compiled request: each operation, and what the handshake declares."""
+
+    request: Request
+    device: str  # its title
+    channels: int
+    weights: int
+    delta: bool
+    operations: dict[str, Answer]
+
+    def handshake(self, to_python: bool = False) -> str:
+        """The line that declares the sampler; `to_python`: with what crescent_shader.client asks for."""
+        request = self.request
+        keys = {
+            "u": str(request.numbers),
+            "domain": request.domain,
+            "wo": request.sides,
+            "channels": str(self.channels),
+            "block": "f64",
+            "real": "f32",
+        }
+        given = {
+            "weight": ("yes", self.weights > 0),
+            "delta": ("yes", self.delta),
+            "pdf": ("no", "pdf" not in self.operations),
+            "f": ("cos", request.f_has_cosine),
+            "eta": (request.eta, bool(request.eta)),
+            "uses": (",".join(request.uses), bool(request.uses)),
+            "transport": ("importance", request.transport == "importance"),
+            "reciprocal": ("no", not request.reciprocal),
+        }
+        keys |= {key: value for key, (value, there) in given.items() if there}
+        if to_python:
+            keys |= {"coordinates": str(request.coordinates), "has_f": "yes" if "f" in self.operations else "no"}
+        name = " ".join(request.name.replace("=", " ").split()) or "shader"
+        return f"hello 2 {name} " + " ".join(f"{key}={value}" for key, value in keys.items())
+
+
+def _rows_to_look_with(count: int) -> Array:
+    """A few rows that a function can evaluate: two oblique directions, then numbers spread over (0, 1)."""
+    at = np.arange(64)[:, None] + 0.5
+    z, phi = 0.1 + 0.8 * np.modf(at * 0.6180339887)[0], 2 * np.pi * np.modf(at * 0.7548776662)[0]
+    r = np.sqrt(1 - z * z)
+    rows: Array = np.modf(at * np.array([[0.5698402910 + 0.137 * k for k in range(count)]]))[0]
+    directions = np.hstack([r * np.cos(phi), r * np.sin(phi), z, r * np.sin(phi), -r * np.cos(phi), z])
+    if count >= 6:
+        rows[:, :6] = directions
+    elif count >= 3:
+        rows[:, :3] = directions[:, :3]
+    return rows
+
+
+def opened(request: Request, watch: Watchdog) -> Shader:
+    """Compiles the operations and evaluates each once; raises BadInput or MissingPart."""
+    device = Device(request.device)
+
+    def made(operation: str, channels: int, weights: int) -> Answer:
+        text = program(request, operation, channels, weights)
+        evaluate = device.evaluator(request, text, compiled(request, text))
+        return evaluate
+
+    def look(operation: str, answer: Answer) -> Array:
+        rows = _rows_to_look_with(columns(request, operation)[0])
+        return watch(LOOK_SECONDS, f"{operation} of {len(rows)} rows", lambda: answer(rows))
+
+    operations: dict[str, Answer] = {}
+    channels = request.channels
+    if request.f:
+        candidates = (channels,) if channels else (3,) if request.language in ("hlsl", "slang") else (1, 3)
+        operations["f"] = _first_that_compiles(lambda count: made("f", count, 0), candidates)[0]
+        seen = look("f", operations["f"])
+        channels = channels or int(seen[0, 3])
+    weighs = assigns(request.sample, "weight")
+    candidates = (0,) if not weighs else (channels,) if channels else (1, 3)
+    operations["sample"], weights = _first_that_compiles(lambda count: made("sample", max(count, 1), count), candidates)
+    look("sample", operations["sample"])
+    if request.pdf:
+        operations["pdf"] = made("pdf", 1, 0)
+        look("pdf", operations["pdf"])
+    delta = assigns(request.sample, "delta")
+    if delta and not weighs:
+        raise BadInput("--sample assigns delta without weight: expected weight = f |cos| / delta with it")
+    if not request.pdf and not assigns(request.sample, "pdf") and not weighs:
+        raise BadInput(f"{request.path}: expected --pdf 'EXPRESSION', or a sample that assigns pdf or weight")
+    return Shader(request, device.title, channels or max(weights, 1), weights, delta, operations)
+
+
+def _first_that_compiles(make: Callable[[int], Answer], candidates: tuple[int, ...]) -> tuple[Answer, int]:
+    """The first of these counts that the snippet's types fit; else the error of the first one."""
+    first: BadInput | None = None
+    for count in candidates:
+        try:
+            return make(count), count
+        except BadInput as error:
+            first = first or error
+    assert first is not None
+    raise first
+
+
+# ---- The protocol.
+
+
+def _answers(shader: Shader) -> dict[bytes, tuple[int, Answer]]:
+    """For each operation of the protocol the columns of a row, and its answer."""
+    request = shader.request
+    operations = shader.operations
+
+    def sample(rows: Array) -> Array:
+        out = operations["sample"](rows)
+        if request.random and (taken := out[:, -1].max(initial=0)) > request.numbers:
+            raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
+        return out[:, : (request.coordinates or 3) + 1 + shader.weights]
+
+    def pdf(rows: Array) -> Array:
+        return operations["pdf"](rows) if "pdf" in operations else np.ones((len(rows), 1))
+
+    def f(rows: Array) -> Array:
+        if "f" not in operations:
+            return np.full((len(rows), shader.channels), np.nan)
+        return operations["f"](rows)[:, : shader.channels]
+
+    answers = {b"smpl": ("sample", sample), b"pdf_": ("pdf", pdf), b"f___": ("f", f)}
+    return {letters: (columns(request, operation)[0], answer) for letters, (operation, answer) in answers.items()}
+
+
+def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdog) -> None:
+    operations = _answers(shader)
+    while len(head := requests.read(8)) == 8:
+        columns, answer = operations[head[:4]]
+        count = struct.unpack("<I", head[4:])[0]
+        rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns)
+        what = f"{head[:4].decode().strip('_').replace('smpl', 'sample')} of {count} rows"
+        try:
+            out = np.ascontiguousarray(watch(BATCH_SECONDS, what, lambda: answer(rows)), "<f8")
+        except Exception as error:  # noqa: BLE001: crescent reports every error of the device
+            answers.write(_error_block(str(error)))
+        else:
+            answers.write(struct.pack("<I", count))
+            answers.write(out.data)
+        answers.flush()
+
+
+def _error_block(text: str) -> bytes:
+    data = " ".join(text.split()).encode()[:4000]
+    return struct.pack("<II", 0, len(data)) + data
+
+
+def main(words: list[str] | None = None) -> int:
+    """Serves the shader that the command line names."""
+    words = sys.argv[1:] if words is None else words
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if "-h" in words or "--help" in words or (not words and sys.stdin.isatty()):
+        from .request import _parser
+
+        _parser().print_help()
+        return 0
+    answers: Any = os.fdopen(os.dup(1), "wb", 1 << 20)
+    os.dup2(2, 1)
+
+    def say(line: str) -> None:
+        answers.write((" ".join(line.split()) + "\n").encode(errors="replace"))
+        answers.flush()
+
+    try:
+        if wants_list(words):
+            for adapter in adapters():
+                say(title_of(adapter))
+            return 0
+        request = read_request(words)
+        greeting = sys.stdin.buffer.readline()
+        if not greeting.startswith(b"hello 2"):
+            print("crescent check starts this module: crescent check FILE.wgsl", file=sys.stderr)
+            return 2
+        shader = opened(request, Watchdog(lambda text: say(f"error {request.path}: {text}")))
+    except BadInput as error:
+        say(f"error {error}")
+        return 2
+    except MissingPart as error:
+        say(f"missing {error}")
+        return 3
+    print(f"{shader.device}, single precision", file=sys.stderr, flush=True)
+    say(shader.handshake(to_python=greeting.strip() == GREETING_OF_PYTHON))
+
+    def report(text: str) -> None:
+        answers.write(_error_block(text))
+        answers.flush()
+
+    _serve(sys.stdin.buffer, answers, shader, Watchdog(report))
+    return 0

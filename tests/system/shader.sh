@@ -1,0 +1,124 @@
+#!/bin/bash
+# `crescent check FILE.wgsl|glsl|hlsl|slang`: samplers in shaders are right, planted faults are found, and what cannot be
+# compiled or evaluated is an error with its place; nothing is left over.
+. "$(dirname "$0")/common.sh"
+
+for python in "${CRESCENT_PYTHON:-python3}" "${CRESCENT_BUILD:-.}/python-test/bin/python"; do
+    "$python" -c 'import numpy, wgpu' 2>/dev/null && export CRESCENT_PYTHON=$python && break
+done
+"${CRESCENT_PYTHON:-python3}" -c 'import numpy, wgpu' 2>/dev/null || skip "no Python with numpy and wgpu"
+export PYTHONPATH="$CRESCENT_SOURCE/python" XDG_CACHE_HOME="$work/cache" TMPDIR="$work/tmp"
+mkdir tmp
+"$CRESCENT" check --device list >printed 2>said || skip "$(cat said)"
+[ -s printed ] || die "no adapter is listed"
+languages=wgsl
+if command -v glslangValidator >/dev/null; then languages+=" glsl hlsl"; fi
+if command -v slangc >/dev/null; then languages+=" slang"; fi
+lobes="$CRESCENT_SOURCE/tests/known_samplers/shaders/lobes"
+check() { "$CRESCENT" check --quiet --wo 40 "$@"; }
+
+# Right samplers, each with what it needs.
+for language in $languages; do
+    file=$lobes.$language
+    expect 0 check "$file" --sample 'wi = cosine_sample(u); pdf = cosine_pdf(wi)' --pdf 'cosine_pdf(wi)' --f 1.0/PI \
+        --json right.json
+    grep -q '"state": *"right"' right.json || die "no result: $(cat right.json)"
+    grep -q "single precision" said || die "the device is not named: $(cat said)"
+        expect 0 check "$file" --sample 'wi = mixture_sample(wo, u3, u, alpha)' --pdf 'mixture_pdf(wo, wi, alpha)' \
+            --f 'mixture_f(wo, wi, alpha)' --set alpha=0.3 --numbers 3
+    expect 1 check "$file" --sample 'wi = ggx_sample(wo, u, alpha)' --pdf 'ggx_pdf(wo, wi, alpha) * 1.03' --set alpha=0.3
+    grep -q "normalised" printed || die "a factor of 1.03 has no verdict: $(cat printed)"
+done
+file=$lobes.wgsl
+expect 0 check "$file" --sample 'wi = hg_sample(wo, u, g)' --pdf 'hg(wo, wi, g)' --f-cos 'hg(wo, wi, g)' --set g=0.6 \
+    --domain sphere --sides both
+expect 0 "$CRESCENT" check --quiet "$file" --sample 'wi = rectangle_sample(u)' --pdf 'rectangle_pdf(wi)' --sides none
+expect 0 check "$file" --sample 'wi = glass_sample(wo, u3, u, alpha, n)' --pdf 'glass_pdf(wo, wi, alpha, n)' \
+    --f-cos 'glass_f_cos(wo, wi, alpha, n)' --set alpha=0.4 --set n=1.5 --numbers 3 --domain sphere --sides both \
+    --eta 1.5
+expect 0 check "$file" --sample 'wi = phong_sample(wo, u, s)' --pdf 'phong_pdf(wo, wi, s)' --over s=2,60
+for value in 2 60; do grep -q "lobes s $value" printed || die "no verdict at s = $value: $(cat printed)"; done
+
+# Faults: the draw's density without its Jacobian, the other side's cosine, a lobe that is never chosen.
+expect 1 check "$file" --sample 'wi = ggx_sample(wo, u, 0.3)' \
+    --pdf 'ggx_pdf(wo, wi, 0.3) * 4.0 * dot(wo, normalize(wo + wi))'
+expect 1 check "$file" --sample 'wi = cosine_sample(u)' --pdf 'wo.z / PI'
+expect 1 check "$file" --sample 'wi = mixture_sample(wo, 0.5, u, alpha)' --pdf 'mixture_pdf(wo, wi, alpha)' \
+    --set alpha=0.3
+expect 1 check "$file" --sample 'wi = cosine_sample(u); pdf = cosine_pdf(wi); wi = wi / 0.0 * 0.0' --pdf 'cosine_pdf(wi)'
+
+# What surrounds the functions: comments of the file, random numbers, another axis, a world frame, uniforms.
+cat >own.wgsl <<'W'
+// crescent: sample = wi = lobe(&state); pdf = density(wi)
+// crescent: pdf    = density(wi)
+// crescent: let    = var state = 1u
+// crescent: random = rand
+override width: f32 = 2.0;
+fn rand(state: ptr<function, u32>) -> f32 { *state = *state * 747796405u + 1u; return f32(*state) / 4294967296.0; }
+fn lobe(state: ptr<function, u32>) -> vec3<f32> {
+    let r = sqrt(rand(state));
+    let a = 6.2831853 * rand(state);
+    return vec3<f32>(r * cos(a), sqrt(1.0 - r * r), r * sin(a));
+}
+fn density(wi: vec3<f32>) -> f32 { return wi.y * width / 3.14159265; }
+W
+expect 0 check own.wgsl --up y --set width=1.0
+expect 1 check own.wgsl --up y
+expect 1 check own.wgsl --set width=1.0
+expect 3 check own.wgsl --up y --numbers 1
+grep -q "random numbers" printed || die "the third number is not reported: $(cat printed)"
+expect 0 check "$file" --frame world --sample 'wi = about(n, cosine_sample(u))' --pdf 'dot(wi, n) / PI'
+
+# Bad input: a place, exit 2, in one line.
+bad() {
+    local words=$1
+    shift
+    expect 2 check "$@"
+    [ "$(grep -vc "single precision" said)" -eq 1 ] || die "not one line: $(cat said)"
+    grep -qF -- "$words" said || die "it does not say '$words': $(cat said)"
+}
+printf 'fn a(u: vec2<f32>) -> vec3<f32> {\n    return vec3<f32>(u, y);\n}\n' >bad.wgsl
+bad "bad.wgsl:2:25: " bad.wgsl --sample 'wi = a(u)' --pdf 1.0
+bad "--sample:1:6: " "$file" --sample 'wi = cosine_sampel(u)' --pdf 1.0
+bad "--pdf:2:" "$file" --sample 'wi = cosine_sample(u)' --pdf $'1.0 +\n)'
+bad "expected --sample" "$file"
+sed 's/density(wi)$/densty(wi)/' own.wgsl >typing.wgsl
+bad "typing.wgsl:1:48: " typing.wgsl
+bad "no such file" nowhere.wgsl --sample 'wi = a(u)'
+bad "expected NAME=VALUE" "$file" --sample 'wi = cosine_sample(u)' --pdf 1.0 --set alpha=x
+bad "expected 1 to 8" "$file" --sample 'wi = cosine_sample(u)' --pdf 1.0 --numbers 9
+bad "needs a shader" cosine --sample 'wi = a(u)'
+bad "no such adapter" "$file" --sample 'wi = cosine_sample(u)' --pdf 1.0 --device nowhere
+printf '// crescent: smaple = wi = a(u)\n' >key.wgsl
+bad "key.wgsl:1: no key 'smaple'" key.wgsl
+printf '@group(0) @binding(1) var<uniform> time: f32;\nfn a(u: vec2f) -> vec3f { return vec3f(u, time); }\n' >time.wgsl
+bad "read 'time'" time.wgsl --sample 'wi = a(u)' --pdf 1.0
+printf 'fn a(u: vec2f) -> vec3f { return vec3f(u, "); }\n' >quote.wgsl
+bad "quote.wgsl:1:" quote.wgsl --sample 'wi = a(u)' --pdf 1.0
+{ cat "$file" && yes '// a long file' | head -c 1000000; } >long.wgsl
+expect 0 check long.wgsl --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)'
+# A loop without an end: Mesa's CPU driver gives up after 65536 turns, others are ended with their process.
+printf 'fn a(u: vec2f) -> vec3f { var x = u.x; while (x < 2.0) { x = fract(x + u.y); } return vec3f(x); }\n' >loop.wgsl
+timeout 120 "$CRESCENT" check --quiet --wo 40 loop.wgsl --sample 'wi = a(u)' --pdf 1.0 --patience 5 --timeout 10 \
+    >printed 2>said && die "an endless loop passes: $(cat printed)"
+[ $? -ne 124 ] || die "an endless loop does not end"
+if [[ $languages == *glsl* ]]; then
+    printf 'uniform sampler2D sky;\nvec3 a(vec2 u) { return texture(sky, u).xyz; }\nvoid main() {}\n' >sky.glsl
+    bad "read 'sky'" sky.glsl --sample 'wi = a(u)' --pdf 1.0
+    printf 'vec3 a(vec2 u) {\n    return vec3(u, y);\n}\n' >bad.glsl
+    bad "bad.glsl:2: " bad.glsl --sample 'wi = a(u)' --pdf 1.0
+    cp bad.glsl bad.hlsl
+    bad "bad.hlsl:1" bad.hlsl --sample 'wi = a(u)' --pdf 1.0
+    expect 3 env PATH= "$CRESCENT" check "$lobes.glsl" --sample 'wi = cosine_sample(u)' --pdf 1.0
+    grep -q "glslang-tools" said || die "the package is not named: $(cat said)"
+fi
+if CRESCENT_PYTHON=/usr/bin/python3 && ! /usr/bin/python3 -c 'import wgpu' 2>/dev/null; then
+    expect 3 check "$file" --sample 'wi = cosine_sample(u)' --pdf 1.0
+    grep -q "crescent-bench\[shader\]" said || die "the package is not named: $(cat said)"
+fi
+
+# Ten at once; then nothing is left.
+for i in $(seq 10); do check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --seed "$i" >/dev/null 2>&1 & done
+for job in $(jobs -p); do wait "$job" || die "one of ten checks at once fails"; done
+[ -z "$(ls tmp)" ] || die "left over: $(ls tmp)"
+! ps -eo args | grep -F "crescent_shader" | grep -F "$work" | grep -qv grep || die "a host still runs"
