@@ -202,7 +202,7 @@ def _named_resources(request: Request, text: str, tool: str, options: list[str],
 
 
 def not_given(request: Request, names: str) -> BadInput:
-    """The error of functions that read what nobody gave."""
+    """The error of functions that read what is not given."""
     return BadInput(
         f"{request.path}: the functions read {names or 'a uniform, texture or buffer'}, which is not given: "
         "--set NAME=VALUE gives a uniform a value, and -D or --prelude FILE replaces a texture or buffer by a function"
